@@ -14,6 +14,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 from core.alarms import CATALOGUE
+from core.interpreter.omniturn.code_table import CHAPTERS
 from resources.translations.reading import marked, texts_of
 
 HERE = Path(__file__).parent
@@ -22,7 +23,14 @@ CONTEXT = "turndesk"
 LANGUAGES = ("es",)
 # Of composing, what is said while the screen is open; the rest goes to the console before there is one.
 COMPOSING = "app/compose"
-COMPOSED = ("journal.py", "offsets.py", "mdi.py", "screen.py", "special.py", "searchto.py", "simulated.py")
+COMPOSED = (
+    "journal.py",
+    "screen_desk.py",
+    "simulated_backend.py",
+    "special_functions.py",
+    "stored_offsets.py",
+    "workshop.py",
+)
 ROOMS = (
     *(
         "app/automatic",
@@ -41,8 +49,8 @@ ROOMS = (
 # Scripts and tables that no screen shows, and what the console is told where there is no screen.
 APART = frozenset(
     {
-        *("pictures.py", "interpreter/book.py", "book_page.py", "database.py", "keys.py", "headless_run.py"),
-        *("logs.py", "screen/display.py"),
+        *("pictures.py", "code_table.py", "language_page.py", "keys.py", "headless_run.py"),
+        "screen/display.py",
     }
 )
 # Read by somebody, and not to be told from names by their looks.
@@ -63,6 +71,7 @@ ALSO = (
     "LINE %1",
     "AND %1 MORE",
     "STOP %1: %2",
+    "%1 cuts a contour, and its lines would have to follow",  # the reason stands in the code's entry
     "%1 COMES ON",
     "%1 GOES OFF",
     "%1 HAS COME ON AND %2",
@@ -74,7 +83,7 @@ LOUD = ("app", "core/alarms", "core/executor")  # where a single word in capital
 HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
 _NO_TEXT = re.compile(
     r"^\s*(SELECT|INSERT|UPDATE|DELETE|CREATE|PRAGMA|BEGIN|WHERE|FROM|JOIN|LEFT|GROUP|ORDER|ON|AND|COMMIT) .*"
-    r"|^F\d+$|^[A-Z]{1,3}$|^XYZABC$|^Callable|^finger|^\(?\?|.*[{};]\s*$|^%[YHd]|.*QLineEdit"
+    r"|^F\d+$|^:memory:$|^[A-Z]{1,3}$|^XYZABC$|^Callable|^finger|^\(?\?|.*[{};]\s*$|^%[YHd]|.*QLineEdit"
     r"|^(Page|Zoom|Pan|Shift) \w+$|^QWERTY|.*\\|^[A-Z]{2}\d"
 )
 _WORDS = re.compile(
@@ -99,7 +108,14 @@ def texts() -> dict[str, str]:
                 read = {text for text in texts_of(tree) if _is_read(text, loud)}
                 for text in sorted(read | set(marked(tree))):
                     found.setdefault(text, str(path.relative_to(HOUSE)))
-    return {**dict.fromkeys([*ALSO, *_loud_alarms()], ""), **found}
+    return {**dict.fromkeys([*ALSO, *_loud_alarms(), *_of_codes()], ""), **found}
+
+
+def _of_codes() -> list[str]:
+    """What the code table says of codes to an operator; the rest of it is documentation."""
+    codes = [code for _, chapter in CHAPTERS for code in chapter]
+    said = {code.not_in_mdi for code in codes} | {code.group for code in codes}
+    return sorted(text for text in said if _is_read(text, False))
 
 
 def _loud_alarms() -> list[str]:

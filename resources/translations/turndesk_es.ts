@@ -25,6 +25,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1 cuts a contour, and its lines would have to follow</source>
+      <translation>%1 corta un contorno, y sus líneas tendrían que seguir</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1 · SIMULATED</source>
       <translation>%1 · SIMULADO</translation>
     </message>
@@ -90,6 +95,61 @@
     </message>
     <message>
       <location filename="" />
+      <source>begins a loop, and its lines and LF would have to follow</source>
+      <translation>empieza un lazo, y sus líneas y LF tendrían que seguir</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>begins a subroutine, and those stand in programs</source>
+      <translation>empieza una subrutina, y ésas van en programas</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>begins nose compensation, which looks at the lines that follow</source>
+      <translation>empieza compensación de punta, que mira las líneas que siguen</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>belongs to plane switching, whose lines would have to follow</source>
+      <translation>pertenece a un cambio de plano, cuyas líneas tendrían que seguir</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>calls a subroutine, and those stand in programs</source>
+      <translation>llama una subrutina, y ésas van en programas</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>coarse feed</source>
+      <translation>avance burdo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>cuts a contour, and its lines would have to follow</source>
+      <translation>corta un contorno, y tendrían que seguir sus líneas</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>ends a contour, and there is none</source>
+      <translation>termina un contorno, y no hay ninguno</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>ends a loop, and there is none</source>
+      <translation>termina un lazo, y no hay ninguno</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>ends a subroutine, and there is none</source>
+      <translation>termina una subrutina, y no hay ninguna</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>ends nose compensation, which looks at the lines around it</source>
+      <translation>termina compensación de punta, que mira las líneas alrededor</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>in/min</source>
       <translation>pulg/min</translation>
     </message>
@@ -97,6 +157,16 @@
       <location filename="" />
       <source>in/rev</source>
       <translation>pulg/rev</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>needs a G92 on the next line</source>
+      <translation>necesita un G92 en la línea siguiente</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>nose compensation</source>
+      <translation>compensación de punta</translation>
     </message>
     <message>
       <location filename="" />
@@ -109,6 +179,66 @@
       <translation>encendida</translation>
     </message>
     <message>
+      <location filename="" />
+      <source>speed limits</source>
+      <translation>topes de velocidad</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>spindle mode</source>
+      <translation>modo de husillo</translation>
+    </message>
+    <message>
+      <location filename="app/automatic/automatic_view.py" />
+      <source>ALARMS</source>
+      <translation>ALARMAS</translation>
+    </message>
+    <message>
+      <location filename="app/automatic/automatic_view.py" />
+      <source>EDIT</source>
+      <translation>EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/automatic/automatic_view.py" />
+      <source>FILE</source>
+      <translation>ARCHIVO</translation>
+    </message>
+    <message>
+      <location filename="app/automatic/automatic_view.py" />
+      <source>FIT</source>
+      <translation>TODO</translation>
+    </message>
+    <message>
+      <location filename="app/automatic/automatic_view.py" />
+      <source>MENU</source>
+      <translation>MENÚ</translation>
+    </message>
+    <message>
+      <location filename="app/automatic/automatic_view.py" />
+      <source>READOUT</source>
+      <translation>LECTURA</translation>
+    </message>
+    <message>
+      <location filename="app/automatic/automatic_view.py" />
+      <source>SEARCHTO</source>
+      <translation>BUSCAR A</translation>
+    </message>
+    <message>
+      <location filename="app/automatic/automatic_view.py" />
+      <source>SECCMP</source>
+      <translation>COMPSEC</translation>
+    </message>
+    <message>
+      <location filename="app/automatic/automatic_view.py" />
+      <source>SPECIAL</source>
+      <translation>ESPECIAL</translation>
+    </message>
+    <message>
+      <location filename="app/automatic/automatic_view.py" />
+      <source>TOOLS</source>
+      <translation>HERRAM</translation>
+    </message>
+    <message>
       <location filename="app/compose/journal.py" />
       <source>loaded to run</source>
       <translation>cargado para correr</translation>
@@ -117,11 +247,6 @@
       <location filename="app/compose/journal.py" />
       <source>the store is closed</source>
       <translation>el almacén está cerrado</translation>
-    </message>
-    <message>
-      <location filename="app/compose/stored_offsets.py" />
-      <source>THE OFFSETS COME FROM A FILE (--offsets) AND ARE READ ONLY: CHANGE THE FILE, OR START WITHOUT IT</source>
-      <translation>LAS COMPENSACIONES VIENEN DE UN ARCHIVO (--offsets) Y SON DE SÓLO LECTURA: CAMBIE EL ARCHIVO, O ARRANQUE SIN ÉL</translation>
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -169,24 +294,9 @@
       <translation>{what} TERMINÓ: GUARDE LA BITÁCORA, CIERRE TURNDESK Y ÁBRALO OTRA VEZ</translation>
     </message>
     <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>NO START: %1</source>
-      <translation>NO ARRANCA: %1</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>NOT COUNTED AS A PART: %1</source>
-      <translation>NO CONTADO COMO PIEZA: %1</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>NOT KEPT: %1</source>
-      <translation>NO SE GUARDÓ: %1</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>REFUSED: %1</source>
-      <translation>RECHAZADO: %1</translation>
+      <location filename="app/compose/stored_offsets.py" />
+      <source>THE OFFSETS COME FROM A FILE (--offsets) AND ARE READ ONLY: CHANGE THE FILE, OR START WITHOUT IT</source>
+      <translation>LAS COMPENSACIONES VIENEN DE UN ARCHIVO (--offsets) Y SON DE SÓLO LECTURA: CAMBIE EL ARCHIVO, O ARRANQUE SIN ÉL</translation>
     </message>
     <message>
       <location filename="app/desk/arithmetic.py" />
@@ -244,9 +354,14 @@
       <translation>la entrada tiene más de %1 caracteres; escriba el resultado</translation>
     </message>
     <message>
-      <location filename="app/desk/machine_file_changes.py" />
-      <source>THE MACHINE FILE HAS CHANGED ({count}): F10, MACHINE FILE SHOWS IT AND ACCEPTS IT</source>
-      <translation>EL ARCHIVO DE MÁQUINA HA CAMBIADO ({count}): F10, ARCHIVO DE MÁQUINA LO MUESTRA Y LO ACEPTA</translation>
+      <location filename="app/desk/data_folder.py" />
+      <source>TURNDESK_HOME: %1 %2 a file and no folder; name a folder, or unset it</source>
+      <translation>TURNDESK_HOME: %1 %2 un archivo y no una carpeta; nombre una carpeta, o quítela</translation>
+    </message>
+    <message>
+      <location filename="app/desk/data_folder.py" />
+      <source>lies below %1, which is</source>
+      <translation>está debajo de %1, que es</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -290,6 +405,41 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
+      <source>NOT KEPT: %1</source>
+      <translation>NO SE GUARDÓ: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>PRESS BOTH PALM BUTTONS</source>
+      <translation>OPRIMA LOS DOS BOTONES DE PALMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>PRESS BOTH PALM BUTTONS (F11 + F12)</source>
+      <translation>OPRIMA LOS DOS BOTONES DE PALMA (F11 + F12)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>PRESS CYCLE START</source>
+      <translation>OPRIMA INICIO DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>PRESS CYCLE START (F12)</source>
+      <translation>OPRIMA INICIO DE CICLO (F12)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>RELEASE THE BUTTON</source>
+      <translation>SUELTE EL BOTÓN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>RELEASE THE BUTTON (U)</source>
+      <translation>SUELTE EL BOTÓN (U)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
       <source>THE DRIVES ARE ON</source>
       <translation>LOS SERVOS ESTÁN ENCENDIDOS</translation>
     </message>
@@ -329,734 +479,84 @@
       <translation>{name} NO SE CARGA: HAY UN TRABAJO INTERRUMPIDO</translation>
     </message>
     <message>
-      <location filename="app/path/measuring.py" />
-      <source>ANGLE {axis}</source>
-      <translation>ÁNGULO {axis}</translation>
+      <location filename="app/desk/interrupted_notice.py" />
+      <source> (ITS TEXT HAS CHANGED SINCE)</source>
+      <translation> (SU TEXTO HA CAMBIADO DESDE ENTONCES)</translation>
     </message>
     <message>
-      <location filename="app/path/measuring.py" />
-      <source>DISTANCE</source>
-      <translation>DISTANCIA</translation>
+      <location filename="app/desk/interrupted_notice.py" />
+      <source> PASS {now} OF {all}</source>
+      <translation> PASADA {now} DE {all}</translation>
     </message>
     <message>
-      <location filename="app/path/measuring.py" />
-      <source>ROUND</source>
-      <translation>REDONDO</translation>
+      <location filename="app/desk/interrupted_notice.py" />
+      <source>BEGINS AT LINE 1, {text}, FROM WHERE T{tool} STANDS NOW: {start}; ESC TAKES IT BACK</source>
+      <translation>EMPIEZA EN LA LÍNEA 1, {text}, DESDE DONDE ESTÁ T{tool}: {start}; ESC LO ANULA</translation>
     </message>
     <message>
-      <location filename="app/path/measuring.py" />
-      <source>TO X</source>
-      <translation>A LA X</translation>
+      <location filename="app/desk/interrupted_notice.py" />
+      <source>INTERRUPTED: {program} LINE {line}{passed}, T{tool}, PART {part}, {at}: {why}{changed}</source>
+      <translation>INTERRUMPIDO: {program} LÍNEA {line}{passed}, T{tool}, PIEZA {part}, {at}: {why}{changed}</translation>
     </message>
     <message>
-      <location filename="app/path/measuring.py" />
-      <source>TO Z</source>
-      <translation>A LA Z</translation>
+      <location filename="app/desk/interrupted_notice.py" />
+      <source>LINE {line} WAS INTERRUPTED: F6 SHOWS THE WAY OUT AND GOES ON THERE; Y, THEN THE START: LINE 1</source>
+      <translation>LA LÍNEA {line} SE INTERRUMPIÓ: F6 MUESTRA LA SALIDA Y SIGUE ALLÍ; OPRIMA Y, LUEGO EL ARRANQUE: LÍNEA 1</translation>
     </message>
     <message>
-      <location filename="app/path/measuring.py" />
-      <source>ARROWS: NEXT POINT   TAB: ALONG THE PATH   RETURN: HOLD, AND MEASURE FROM THERE   ESC: BACK</source>
-      <translation>FLECHAS: PUNTO SIGUIENTE   TAB: POR LA TRAYECTORIA   RETURN: FIJA, Y MIDE DESDE AHÍ   ESC: REGRESA</translation>
+      <location filename="app/desk/interrupted_notice.py" />
+      <source>LINE {line} WAS INTERRUPTED: JOG THE TOOL CLEAR; Y, THEN THE START: LINE 1</source>
+      <translation>LA LÍNEA {line} SE INTERRUMPIÓ: SAQUE LA HERRAMIENTA A MANO; OPRIMA Y, LUEGO EL ARRANQUE: LÍNEA 1</translation>
     </message>
     <message>
-      <location filename="app/path/measuring.py" />
-      <source>CENTRE</source>
-      <translation>CENTRO</translation>
+      <location filename="app/desk/interrupted_notice.py" />
+      <source>STANDS AT {stood} FROM HOME</source>
+      <translation>ESTÁ EN {stood} DESDE LA REFERENCIA</translation>
     </message>
     <message>
-      <location filename="app/path/measuring.py" />
-      <source>CROSSING</source>
-      <translation>CRUCE</translation>
+      <location filename="app/desk/interrupted_notice.py" />
+      <source>STOOD AT {stood} FROM HOME</source>
+      <translation>ESTABA EN {stood} DESDE LA REFERENCIA</translation>
     </message>
     <message>
-      <location filename="app/path/measuring.py" />
-      <source>END</source>
-      <translation>EXTREMO</translation>
+      <location filename="app/desk/interrupted_notice.py" />
+      <source>STOOD AT {stood} FROM HOME; WHERE IT STANDS NOW IS NOT KNOWN BEFORE HOMING</source>
+      <translation>ESTABA EN {stood} DESDE LA REFERENCIA; DÓNDE ESTÁ AHORA NO SE SABE SIN REFERENCIAR</translation>
     </message>
     <message>
-      <location filename="app/path/measuring.py" />
-      <source>FREE</source>
-      <translation>LIBRE</translation>
+      <location filename="app/desk/interrupted_notice.py" />
+      <source>STOOD AT {stood}, STANDS AT {now} FROM HOME</source>
+      <translation>ESTABA EN {stood}, ESTÁ EN {now} DESDE LA REFERENCIA</translation>
     </message>
     <message>
-      <location filename="app/editor/versions.py" />
-      <source>no version %1 of %2 is kept here</source>
-      <translation>no se guarda la versión %1 de %2</translation>
+      <location filename="app/desk/interrupted_notice.py" />
+      <source>T{tool} MAY STAND IN THE PART OF {program} LINE {line}: Y GIVES THAT JOB UP FOR {name}, ESC KEEPS IT</source>
+      <translation>T{tool} PUEDE ESTAR EN LA PIEZA DE {program} LÍNEA {line}: LA TECLA Y ABANDONA ESE TRABAJO POR {name}, ESC LO CONSERVA</translation>
     </message>
     <message>
-      <location filename="app/editor/live_proof.py" />
-      <source>PROVING FAILED: %1</source>
-      <translation>FALLÓ LA COMPROBACIÓN: %1</translation>
+      <location filename="app/desk/machine_file_changes.py" />
+      <source>THE MACHINE FILE HAS CHANGED ({count}): F10, MACHINE FILE SHOWS IT AND ACCEPTS IT</source>
+      <translation>EL ARCHIVO DE MÁQUINA HA CAMBIADO ({count}): F10, ARCHIVO DE MÁQUINA LO MUESTRA Y LO ACEPTA</translation>
     </message>
     <message>
-      <location filename="app/editor/document.py" />
-      <source>%1 CANNOT NAME A PROGRAM: LETTERS, DIGITS, DOT, DASH AND BLANK</source>
-      <translation>%1 NO PUEDE NOMBRAR UN PROGRAMA: LETRAS, NÚMEROS, PUNTO, GUION Y ESPACIO</translation>
+      <location filename="app/desk/machine_status.py" />
+      <source>ALARM %1: %2</source>
+      <translation>ALARMA %1: %2</translation>
     </message>
     <message>
-      <location filename="app/editor/document.py" />
-      <source>%1 IS NO ENDING OF A PROGRAM: TAKE NONE, OR ONE OF %2</source>
-      <translation>%1 NO ES TERMINACIÓN DE PROGRAMA: NINGUNA, O UNA DE %2</translation>
+      <location filename="app/desk/machine_status.py" />
+      <source>FEED HOLD %1: %2</source>
+      <translation>RETENCIÓN DE AVANCE %1: %2</translation>
     </message>
     <message>
-      <location filename="app/editor/document.py" />
-      <source>%1 WOULD BE HIDDEN: TAKE A NAME THAT BEGINS WITH A LETTER OR DIGIT</source>
-      <translation>%1 QUEDARÍA OCULTO: USE UN NOMBRE QUE EMPIECE CON LETRA O NÚMERO</translation>
+      <location filename="app/desk/machine_status.py" />
+      <source>PROGRAM STOP</source>
+      <translation>PARO DE PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/editor/document.py" />
-      <source>%1 has over %2 lines: too long for this editor; split it elsewhere</source>
-      <translation>%1 tiene más de %2 líneas: demasiado para este editor; divídalo en otra parte</translation>
-    </message>
-    <message>
-      <location filename="app/editor/document.py" />
-      <source>NO NAME WAS TYPED: A PROGRAM NEEDS ONE</source>
-      <translation>NO SE ESCRIBIÓ NOMBRE: UN PROGRAMA NECESITA UNO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/drafts.py" />
-      <source>typed and not saved</source>
-      <translation>escrito y no guardado</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor.py" />
-      <source>%1 IS SAVED</source>
-      <translation>%1 QUEDÓ GUARDADO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor.py" />
-      <source>%1; ESC</source>
-      <translation>%1; ESC</translation>
-    </message>
-    <message>
-      <location filename="app/programs/whole_file.py" />
-      <source>%1 CANNOT BE READ: %2</source>
-      <translation>NO SE PUEDE LEER %1: %2</translation>
-    </message>
-    <message>
-      <location filename="app/programs/whole_file.py" />
-      <source>%1 CANNOT BE WRITTEN: %2</source>
-      <translation>NO SE PUEDE ESCRIBIR %1: %2</translation>
-    </message>
-    <message>
-      <location filename="app/programs/whole_file.py" />
-      <source>NOT SAVED: %1</source>
-      <translation>NO SE GUARDÓ: %1</translation>
-    </message>
-    <message>
-      <location filename="app/programs/whole_file.py" />
-      <source>NOT SAVED: THE TEXT HOLDS SIGNS THAT NO PROGRAM FILE CAN KEEP</source>
-      <translation>NO SE GUARDÓ: EL TEXTO TIENE SIGNOS QUE NINGÚN ARCHIVO DE PROGRAMA PUEDE GUARDAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/versions.py" />
-      <source>COMPARING</source>
-      <translation>COMPARANDO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/versions.py" />
-      <source>NO VERSION IS KEPT OF THIS PROGRAM YET</source>
-      <translation>TODAVÍA NO SE GUARDA NINGUNA VERSIÓN DE ESTE PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/versions.py" />
-      <source>READING</source>
-      <translation>LEYENDO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/versions.py" />
-      <source>THE SAME AS IN THE EDITOR</source>
-      <translation>IGUAL QUE EN EL EDITOR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/document.py" />
-      <source>as it was before editing</source>
-      <translation>como estaba antes de editar</translation>
-    </message>
-    <message>
-      <location filename="app/editor/document.py" />
-      <source>changed by another program</source>
-      <translation>cambiado por otro programa</translation>
-    </message>
-    <message>
-      <location filename="app/editor/document.py" />
-      <source>saved in the editor</source>
-      <translation>guardado en el editor</translation>
-    </message>
-    <message>
-      <location filename="app/editor/find_replace.py" />
-      <source>%1 FOUND</source>
-      <translation>%1 ENCONTRADOS</translation>
-    </message>
-    <message>
-      <location filename="app/editor/find_replace.py" />
-      <source>%1, %2 MORE INSIDE LONGER WORDS</source>
-      <translation>%1, %2 MÁS DENTRO DE PALABRAS MÁS LARGAS</translation>
-    </message>
-    <message>
-      <location filename="app/editor/find_replace.py" />
-      <source>%1, PARTS OF WORDS TOO</source>
-      <translation>%1, TAMBIÉN PARTES DE PALABRAS</translation>
-    </message>
-    <message>
-      <location filename="app/editor/find_replace.py" />
-      <source>NOT FOUND</source>
-      <translation>NO SE ENCONTRÓ</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE EDITING</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE EDITAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>A SAMPLE IS NOT CHANGED: UNDER WHAT NAME SHALL IT BE SAVED?</source>
-      <translation>UNA MUESTRA NO SE CAMBIA: ¿CON QUÉ NOMBRE SE GUARDA?</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>AN EMPTY PROGRAM IS NOT SAVED: WRITE SOMETHING, OR LEAVE WITH F10</source>
-      <translation>UN PROGRAMA VACÍO NO SE GUARDA: ESCRIBA ALGO, O SALGA CON F10</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>ARROWS MARK A VERSION, RETURN PUTS IT INTO THE EDITOR; ESC: BACK</source>
-      <translation>LAS FLECHAS MARCAN UNA VERSIÓN, RETURN LA PONE EN EL EDITOR; ESC: REGRESA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>CHOOSE A PROGRAM FIRST (F2), OR TYPE THE NAME OF A NEW ONE THERE</source>
-      <translation>ELIJA PRIMERO UN PROGRAMA (F2), O ESCRIBA AHÍ EL NOMBRE DE UNO NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>F3 SAVES AND PUTS WHAT WAS WRITTEN ON THE DESK; F1 SAVES AND LEAVES THE DESK AS IT IS</source>
-      <translation>F3 GUARDA Y CARGA LO ESCRITO; F1 GUARDA Y DEJA CARGADO LO QUE HAY</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>F6 LEAVES WITHOUT SAVING, F3 SAVES AND LEAVES, ESC GOES ON</source>
-      <translation>F6 SALE SIN GUARDAR, F3 GUARDA Y SALE, ESC SIGUE</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>NOT SAVED YET: F3 SAVES AND LEAVES, F10 LEAVES WITHOUT SAVING</source>
-      <translation>AÚN SIN GUARDAR: F3 GUARDA Y SALE, F10 SALE SIN GUARDAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>PRESS F1 TO CREATE A NEW FILE, ESC TO ABORT</source>
-      <translation>OPRIMA F1 PARA CREAR UN ARCHIVO NUEVO, ESC PARA CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>RETURN: NEXT   SHIFT+RETURN: THE ONE BEFORE   TAB: THE OTHER FIELD   ESC: BACK</source>
-      <translation>RETURN: SIGUIENTE   SHIFT+RETURN: ANTERIOR   TAB: EL OTRO CAMPO   ESC: REGRESA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>SAVED. WHAT RUNS IS THE PROGRAM AS IT WAS LOADED: LOAD IT AGAIN (F2) WHEN THE RUN HAS ENDED</source>
-      <translation>GUARDADO. LO QUE CORRE ES EL PROGRAMA COMO SE CARGÓ: CÁRGUELO DE NUEVO (F2) CUANDO TERMINE</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>THE MACHINE RUNS THE PROGRAM AS IT WAS LOADED, NOT THIS TEXT: ESC FOR FEED HOLD</source>
-      <translation>LA MÁQUINA CORRE EL PROGRAMA COMO SE CARGÓ, NO ESTE TEXTO: ESC PARA RETENCIÓN DE AVANCE</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>THE SPINDLE IS ON: SWITCH IT OFF (M05, OR R FOR RESET) AND LET IT COME TO REST BEFORE EDITING</source>
-      <translation>EL HUSILLO ESTÁ ENCENDIDO: APÁGUELO (M05, O R PARA RESET) Y ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>THE SPINDLE STILL COASTS: WAIT UNTIL IT STANDS BEFORE EDITING</source>
-      <translation>EL HUSILLO AÚN GIRA POR INERCIA: ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>THERE IS NO PATH TO LOOK AT YET: WRITE A MOVE</source>
-      <translation>AÚN NO HAY TRAYECTORIA QUE VER: ESCRIBA UN MOVIMIENTO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>TYPE A LINE NUMBER AND PRESS RETURN; ESC: BACK</source>
-      <translation>ESCRIBA UN NÚMERO DE LÍNEA Y OPRIMA RETURN; ESC: REGRESA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>VERSION {} IS IN THE EDITOR; SAVE TO KEEP IT, UNDO TO TAKE IT BACK</source>
-      <translation>LA VERSIÓN {} ESTÁ EN EL EDITOR; GUARDE PARA CONSERVARLA, DESHAGA PARA QUITARLA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>WHAT WAS TYPED HERE LAST TIME AND NOT SAVED IS IN THE HISTORY</source>
-      <translation>LO QUE SE ESCRIBIÓ AQUÍ LA ÚLTIMA VEZ Y NO SE GUARDÓ ESTÁ EN EL HISTORIAL</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>no history is kept here</source>
-      <translation>aquí no se guarda historial</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>{name} IS SAVED; F2 PUTS IT ON THE DESK</source>
-      <translation>{name} ESTÁ GUARDADO; F2 LO CARGA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>{name} IS SAVED; {other} STAYS ON THE DESK</source>
-      <translation>{name} ESTÁ GUARDADO; {other} SIGUE CARGADO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>{name} WAS ONLY LOOKED AT: {other} STAYS ON THE DESK</source>
-      <translation>{name} SÓLO SE MIRÓ: {other} SIGUE CARGADO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>{} IS THERE ALREADY: TAKE ANOTHER NAME</source>
-      <translation>{} YA EXISTE: USE OTRO NOMBRE</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>{} WAS CHANGED BY ANOTHER PROGRAM MEANWHILE: F6 REPLACES IT (IT STAYS IN HISTORY), ESC GOES ON</source>
-      <translation>OTRO PROGRAMA CAMBIÓ {} MIENTRAS TANTO: F6 LO REEMPLAZA (QUEDA EN LA HISTORIA), ESC SIGUE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>%1 CANNOT BE DELETED: %2</source>
-      <translation>NO SE PUEDE BORRAR %1: %2</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>%1 CANNOT BE RENAMED: %2</source>
-      <translation>NO SE PUEDE CAMBIAR EL NOMBRE DE %1: %2</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>%1 IS ITS NAME ALREADY</source>
-      <translation>%1 YA ES SU NOMBRE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>%1 IS NOT THERE ANY MORE</source>
-      <translation>%1 YA NO ESTÁ</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>%1 IS THERE ALREADY; TAKE ANOTHER NAME</source>
-      <translation>%1 YA EXISTE; USE OTRO NOMBRE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>%1 WOULD BE HIDDEN; TAKE A NAME WITHOUT A POINT IN FRONT</source>
-      <translation>%1 QUEDARÍA OCULTO; USE UN NOMBRE SIN PUNTO AL PRINCIPIO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>NOT DELETED, BECAUSE ITS TEXT CANNOT BE KEPT: %1</source>
-      <translation>NO SE BORRÓ, PORQUE SU TEXTO NO SE PUEDE GUARDAR: %1</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>NOTHING IS ENTERED; TYPE A NAME</source>
-      <translation>NO SE ESCRIBIÓ NADA; ESCRIBA UN NOMBRE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>RENAMED, BUT ITS VERSIONS STAY UNDER %1: %2</source>
-      <translation>CAMBIÓ DE NOMBRE, PERO SUS VERSIONES QUEDAN EN %1: %2</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>A SAMPLE IS LEFT AS IT IS: COPY IT FIRST (F4)</source>
-      <translation>LAS MUESTRAS NO SE TOCAN: CÓPIELA PRIMERO (F4)</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>ITS NAME IS {name} NOW</source>
-      <translation>AHORA SE LLAMA {name}</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>NAME OF THE COPY?</source>
-      <translation>¿NOMBRE DE LA COPIA?</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>NEW NAME?</source>
-      <translation>¿NOMBRE NUEVO?</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>NO PROGRAM IS MARKED</source>
-      <translation>NO HAY PROGRAMA MARCADO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT</source>
-      <translation>OPRIMA Y PARA BORRAR {name} (SUS VERSIONES SE GUARDAN), ESC PARA DEJARLO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>STILL AT IT: WAIT UNTIL IT IS DONE</source>
-      <translation>TODAVÍA TRABAJANDO: ESPERE A QUE TERMINE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>{name} IS DELETED; ITS VERSIONS ARE KEPT</source>
-      <translation>{name} QUEDÓ BORRADO; SUS VERSIONES SE GUARDAN</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>{name} IS INTERRUPTED: FINISH IT, OR GIVE IT UP, FIRST</source>
-      <translation>{name} ESTÁ INTERRUMPIDO: PRIMERO TERMÍNELO O ABANDÓNELO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>{name} IS THERE NOW</source>
-      <translation>YA ESTÁ {name}</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>{name} IS UNDER WAY: LET IT END FIRST</source>
-      <translation>{name} ESTÁ EN CURSO: DEJE QUE TERMINE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/folder_chooser.py" />
-      <source>THIS CONTROL</source>
-      <translation>ESTE CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_list.py" />
-      <source>COPY</source>
-      <translation>COPIAR</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_list.py" />
-      <source>DELETE</source>
-      <translation>BORRAR</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_list.py" />
-      <source>EXPORT</source>
-      <translation>EXPORTAR</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_list.py" />
-      <source>IMPORT</source>
-      <translation>IMPORTAR</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_list.py" />
-      <source>NAME</source>
-      <translation>NOMBRE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_list.py" />
-      <source>RENAME</source>
-      <translation>NOMBRAR</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_list.py" />
-      <source>RETURN LOADS THE MARKED PROGRAM ONCE NONE IS UNDER WAY; H HOLDS</source>
-      <translation>RETURN CARGA EL PROGRAMA MARCADO CUANDO NO HAYA OTRO EN CURSO; H RETIENE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_list.py" />
-      <source>SORT</source>
-      <translation>ORDENAR</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_list.py" />
-      <source>TYPE A NAME AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS</source>
-      <translation>ESCRIBA UN NOMBRE Y OPRIMA RETURN; ESC DEJA TODO COMO ESTÁ</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_list.py" />
-      <source>TYPE A PART OF A NAME, OR MARK IT WITH ARROWS; RETURN LOADS IT; ESC FOR AUTOMATIC</source>
-      <translation>ESCRIBA PARTE DEL NOMBRE, O MÁRQUELO CON FLECHAS; RETURN LO CARGA; ESC A AUTOMÁTICO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/preview.py" />
-      <source>TOO LARGE FOR A PREVIEW</source>
-      <translation>DEMASIADO GRANDE PARA LA VISTA PREVIA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/run_record.py" />
-      <source>%1 ERRORS: %2</source>
-      <translation>%1 ERRORES: %2</translation>
-    </message>
-    <message>
-      <location filename="app/programs/run_record.py" />
-      <source>: the control ended in the middle of its last run</source>
-      <translation>: el control terminó en medio de su última corrida</translation>
-    </message>
-    <message>
-      <location filename="app/programs/run_record.py" />
-      <source>ALARM %1</source>
-      <translation>ALARMA %1</translation>
-    </message>
-    <message>
-      <location filename="app/programs/run_record.py" />
-      <source>COMPLETE</source>
-      <translation>COMPLETO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/run_record.py" />
-      <source>CUT OFF</source>
-      <translation>CORTADO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/run_record.py" />
-      <source>E-STOP</source>
-      <translation>PARO DE EMERGENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/run_record.py" />
-      <source>GIVEN UP</source>
-      <translation>ABANDONADO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/run_record.py" />
-      <source>NOT COUNTED</source>
-      <translation>NO CONTADO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/run_record.py" />
-      <source>PROVED</source>
-      <translation>COMPROBADO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/run_record.py" />
-      <source>UNREADABLE</source>
-      <translation>ILEGIBLE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>DATE</source>
-      <translation>FECHA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>LAST RUN</source>
-      <translation>ÚLTIMA CORRIDA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>PARTS</source>
-      <translation>PIEZAS</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>SIZE</source>
-      <translation>TAMAÑO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>%1 GB</source>
-      <translation>%1 GB</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>%1 OF %2 PROGRAMS</source>
-      <translation>%1 DE %2 PROGRAMAS</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>%1 PROGRAMS</source>
-      <translation>%1 PROGRAMAS</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>BEST</source>
-      <translation>MEJOR</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>BEST CYCLE</source>
-      <translation>MEJOR CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>CHANGED</source>
-      <translation>CAMBIADO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>FIND</source>
-      <translation>BUSCAR</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>FOLDER</source>
-      <translation>CARPETA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>LAST CYCLE</source>
-      <translation>ÚLTIMO CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>LAST PROOF</source>
-      <translation>ÚLTIMA PRUEBA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>NEVER PROVED</source>
-      <translation>NUNCA COMPROBADO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>OWN PROGRAM</source>
-      <translation>PROGRAMA PROPIO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>PLACES</source>
-      <translation>LUGARES</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>PLANNED</source>
-      <translation>PREVISTO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>PROGRAM</source>
-      <translation>PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>PROGRAMS  ·  %1  ·  BY %2</source>
-      <translation>PROGRAMAS  ·  %1  ·  POR %2</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>SAMPLE</source>
-      <translation>MUESTRA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>WHERE</source>
-      <translation>DÓNDE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>ALL</source>
-      <translation>TODO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>ALL HERE</source>
-      <translation>TODO ACÁ</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>COPYING: LEAVE THE STICK WHERE IT IS</source>
-      <translation>COPIANDO: NO SAQUE LA MEMORIA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>EXPORT %1</source>
-      <translation>EXPORTAR %1</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>F4 EXPORTS TO THE FOLDER THAT IS OPEN; RETURN OPENS FOLDERS</source>
-      <translation>F4 EXPORTA A LA CARPETA ABIERTA; RETURN ABRE CARPETAS</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>LOOK</source>
-      <translation>BUSCAR</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>NO PROGRAM IS IN THIS FOLDER</source>
-      <translation>NO HAY PROGRAMAS EN ESTA CARPETA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>ONE HERE</source>
-      <translation>UNO ACÁ</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>OPEN A PLACE FIRST: ARROWS MARK IT, RETURN OPENS IT</source>
-      <translation>ABRA PRIMERO UN LUGAR: LAS FLECHAS LO MARCAN, RETURN LO ABRE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>RETURN OPENS A PLACE OR FOLDER, ON A PROGRAM IT IMPORTS IT; F5 IMPORTS ALL; ESC GOES BACK</source>
-      <translation>RETURN ABRE UN LUGAR O CARPETA, Y SOBRE UN PROGRAMA LO IMPORTA; F5 IMPORTA TODO; ESC REGRESA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>RETURN OPENS A PLACE OR FOLDER; F4 COPIES THE MARKED PROGRAM THERE, F5 ALL; ESC GOES BACK</source>
-      <translation>RETURN ABRE UN LUGAR O CARPETA; F4 COPIA AHÍ EL PROGRAMA MARCADO, F5 TODOS; ESC REGRESA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>{count} COPIED, READ BACK AND ON THE DISK: A STICK IS SAFE TO REMOVE</source>
-      <translation>{count} COPIADOS, RELEÍDOS Y EN EL DISCO: YA PUEDE SACAR LA MEMORIA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>{count} IMPORTED AND PROVED WITHOUT AN ERROR</source>
-      <translation>{count} IMPORTADOS Y COMPROBADOS SIN ERROR</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>{count} IMPORTED; NOT ALL PROVE: {found}</source>
-      <translation>{count} IMPORTADOS; NO TODOS PASAN LA COMPROBACIÓN: {found}</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>{names}: THERE ALREADY WITH ANOTHER TEXT. PRESS Y TO REPLACE, ESC TO KEEP</source>
-      <translation>{names}: YA EXISTE CON OTRO TEXTO. OPRIMA Y PARA REEMPLAZAR, ESC PARA CONSERVAR</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>%1 CANNOT BE BROUGHT TO THE DISK: %2</source>
-      <translation>%1 NO SE PUEDE LLEVAR AL DISCO: %2</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>%1 DOES NOT READ BACK AS IT WAS WRITTEN: TAKE ANOTHER STICK</source>
-      <translation>%1 NO SE LEE COMO SE ESCRIBIÓ: USE OTRA MEMORIA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>%1 IS LARGER THAN ANY PROGRAM (%2 MB)</source>
-      <translation>%1 ES MÁS GRANDE QUE CUALQUIER PROGRAMA (%2 MB)</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>%1 IS NO PROGRAM: %2</source>
-      <translation>%1 NO ES UN PROGRAMA: %2</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>%1 IS NOT REPLACED, BECAUSE ITS TEXT CANNOT BE KEPT: %2</source>
-      <translation>%1 NO SE REEMPLAZA, PORQUE SU TEXTO NO SE PUEDE GUARDAR: %2</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>replaced by an import</source>
-      <translation>reemplazado por una importación</translation>
-    </message>
-    <message>
-      <location filename="app/desk/data_folder.py" />
-      <source>TURNDESK_HOME: %1 %2 a file and no folder; name a folder, or unset it</source>
-      <translation>TURNDESK_HOME: %1 %2 un archivo y no una carpeta; nombre una carpeta, o quítela</translation>
-    </message>
-    <message>
-      <location filename="app/desk/data_folder.py" />
-      <source>lies below %1, which is</source>
-      <translation>está debajo de %1, que es</translation>
+      <location filename="app/desk/machine_status.py" />
+      <source>WAITING: %1</source>
+      <translation>ESPERANDO: %1</translation>
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
@@ -1090,6 +590,11 @@
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
+      <source>DISTANCE</source>
+      <translation>DISTANCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/modal_rows.py" />
       <source>F THAT IS A RAPID</source>
       <translation>F QUE ES RÁPIDO</translation>
     </message>
@@ -1102,6 +607,11 @@
       <location filename="app/desk/modal_rows.py" />
       <source>FEED MODE</source>
       <translation>MODO DE AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/modal_rows.py" />
+      <source>FREE</source>
+      <translation>LIBRE</translation>
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
@@ -1224,1004 +734,9 @@
       <translation>compensación de herramienta</translation>
     </message>
     <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source> (ITS TEXT HAS CHANGED SINCE)</source>
-      <translation> (SU TEXTO HA CAMBIADO DESDE ENTONCES)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source> PASS {now} OF {all}</source>
-      <translation> PASADA {now} DE {all}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>BEGINS AT LINE 1, {text}, FROM WHERE T{tool} STANDS NOW: {start}; ESC TAKES IT BACK</source>
-      <translation>EMPIEZA EN LA LÍNEA 1, {text}, DESDE DONDE ESTÁ T{tool}: {start}; ESC LO ANULA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>INTERRUPTED: {program} LINE {line}{passed}, T{tool}, PART {part}, {at}: {why}{changed}</source>
-      <translation>INTERRUMPIDO: {program} LÍNEA {line}{passed}, T{tool}, PIEZA {part}, {at}: {why}{changed}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>LINE {line} WAS INTERRUPTED: F6 SHOWS THE WAY OUT AND GOES ON THERE; Y, THEN THE START: LINE 1</source>
-      <translation>LA LÍNEA {line} SE INTERRUMPIÓ: F6 MUESTRA LA SALIDA Y SIGUE ALLÍ; OPRIMA Y, LUEGO EL ARRANQUE: LÍNEA 1</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>LINE {line} WAS INTERRUPTED: JOG THE TOOL CLEAR; Y, THEN THE START: LINE 1</source>
-      <translation>LA LÍNEA {line} SE INTERRUMPIÓ: SAQUE LA HERRAMIENTA A MANO; OPRIMA Y, LUEGO EL ARRANQUE: LÍNEA 1</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>STANDS AT {stood} FROM HOME</source>
-      <translation>ESTÁ EN {stood} DESDE LA REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>STOOD AT {stood} FROM HOME</source>
-      <translation>ESTABA EN {stood} DESDE LA REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>STOOD AT {stood} FROM HOME; WHERE IT STANDS NOW IS NOT KNOWN BEFORE HOMING</source>
-      <translation>ESTABA EN {stood} DESDE LA REFERENCIA; DÓNDE ESTÁ AHORA NO SE SABE SIN REFERENCIAR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>STOOD AT {stood}, STANDS AT {now} FROM HOME</source>
-      <translation>ESTABA EN {stood}, ESTÁ EN {now} DESDE LA REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>T{tool} MAY STAND IN THE PART OF {program} LINE {line}: Y GIVES THAT JOB UP FOR {name}, ESC KEEPS IT</source>
-      <translation>T{tool} PUEDE ESTAR EN LA PIEZA DE {program} LÍNEA {line}: LA TECLA Y ABANDONA ESE TRABAJO POR {name}, ESC LO CONSERVA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>TOOL NUMBER?</source>
-      <translation>¿NÚMERO DE HERRAMIENTA?</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)</source>
-      <translation>T{number} SOLA: LAS DEMÁS QUEDAN (L: TODAS LA SIGUEN)</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>T{number} IS SET WHEN {axis} IS TOUCHED TOO</source>
-      <translation>T{number} QUEDA PUESTA CUANDO TAMBIÉN SE TOQUE {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)</source>
-      <translation>T{number} ES LA MAESTRA: TODAS LAS HERRAMIENTAS LA SIGUEN (L: SÓLO ELLA)</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>{tool} MEASURED DIAMETER?</source>
-      <translation>¿DIÁMETRO MEDIDO DE {tool}?</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>{tool} Z POSITION OF THE FACE?</source>
-      <translation>¿POSICIÓN Z DE LA CARA PARA {tool}?</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED</source>
-      <translation>SE ELIGIÓ OTRA VELOCIDAD: TERMINÓ EL MOVIMIENTO A MANO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>ANOTHER STEP WAS CHOSEN: THE JOG HAS ENDED</source>
-      <translation>SE ELIGIÓ OTRO PASO: TERMINÓ EL MOVIMIENTO A MANO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>AN ENTRY IS OPEN: PRESS RETURN OR ESC FIRST</source>
-      <translation>HAY UNA ENTRADA ABIERTA: OPRIMA PRIMERO RETURN O ESC</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>AN ENTRY IS OPEN: PRESS RETURN OR ESC; THE ARROWS MOVE NOTHING MEANWHILE</source>
-      <translation>HAY UNA ENTRADA ABIERTA: OPRIMA RETURN O ESC; MIENTRAS TANTO LAS FLECHAS NO MUEVEN NADA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>AN ENTRY IS OPEN: THE HANDWHEEL IS OFF</source>
-      <translation>HAY UNA ENTRADA ABIERTA: EL VOLANTE ESTÁ DESCONECTADO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>HOMING IS NOT DONE; PRESS THE ARROW AGAIN TO JOG</source>
-      <translation>LA REFERENCIA NO ESTÁ HECHA; OPRIMA OTRA VEZ LA FLECHA PARA MOVER</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>ON A MILL THE OFFSET IS THE LENGTH OF THE TOOL: MEASURE IT, AND TYPE IT ON F8</source>
-      <translation>EN UNA FRESADORA LA COMPENSACIÓN ES EL LARGO DE LA HERRAMIENTA: MÍDALO, Y ESCRÍBALO EN F8</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>THE HANDWHEEL IS OFF</source>
-      <translation>EL VOLANTE ESTÁ DESCONECTADO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>THE HANDWHEEL IS OFF: THE KEYBOARD WENT ELSEWHERE</source>
-      <translation>EL VOLANTE ESTÁ DESCONECTADO: EL TECLADO SE FUE A OTRA PARTE</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>THE JOG HAS ENDED: THE KEYBOARD WENT ELSEWHERE</source>
-      <translation>TERMINÓ EL MOVIMIENTO A MANO: EL TECLADO PASÓ A OTRA PARTE</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>THE SLIDES ARE STILL MOVING</source>
-      <translation>LOS CARROS TODAVÍA SE MUEVEN</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>TYPE A VALUE OR A SUM SUCH AS .5-.002, THEN RETURN; ESC LEAVES IT AS IT WAS</source>
-      <translation>ESCRIBA UN VALOR O UNA SUMA COMO .5-.002 Y RETURN; ESC LO DEJA COMO ESTABA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/held_jog.py" />
-      <source>ANOTHER KEY HAS ENDED THE JOG</source>
-      <translation>OTRA TECLA TERMINÓ EL MOVIMIENTO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/held_jog.py" />
-      <source>RAPID IS FOR A HELD JOG: CHOOSE CONTINUOUS, OR PRESS WITHOUT SHIFT</source>
-      <translation>EL RÁPIDO ES PARA MOVER SOSTENIENDO: ELIJA CONTINUO, U OPRIMA SIN SHIFT</translation>
-    </message>
-    <message>
-      <location filename="app/jog/held_jog.py" />
-      <source>SHIFT WAS LET GO: THE RAPID HAS ENDED</source>
-      <translation>SE SOLTÓ SHIFT: TERMINÓ EL RÁPIDO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/held_jog.py" />
-      <source>THE KEY HAS GONE SILENT: LET IT GO AND PRESS IT AGAIN</source>
-      <translation>LA TECLA DEJÓ DE RESPONDER: SUÉLTELA Y OPRÍMALA DE NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/held_jog.py" />
-      <source>THE SCREEN WAS AWAY: THE JOG HAS ENDED</source>
-      <translation>LA PANTALLA ESTUVO AUSENTE: TERMINÓ EL MOVIMIENTO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/held_jog.py" />
-      <source>TWO AT ONCE MOVE NOTHING: LET BOTH GO, THEN PRESS ONE</source>
-      <translation>DOS A LA VEZ NO MUEVEN NADA: SUELTE LAS DOS Y OPRIMA UNA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_homing.py" />
-      <source> OR </source>
-      <translation> O </translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_homing.py" />
-      <source>, THEN </source>
-      <translation>, LUEGO </translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_homing.py" />
-      <source>ABSOLUTE</source>
-      <translation>ABSOLUTO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_homing.py" />
-      <source>EVERY AXIS KNOWS ITS POSITION: THERE IS NOTHING TO HOME</source>
-      <translation>TODOS LOS EJES CONOCEN SU POSICIÓN: NO HAY NADA QUE REFERENCIAR</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_homing.py" />
-      <source>HOME {first}: PRESS RETURN FOR ALL, {letters} FOR ONE AXIS, ESC FOR NONE</source>
-      <translation>REFERENCIAR {first}: OPRIMA RETURN PARA TODOS, {letters} PARA UN EJE, ESC PARA NINGUNO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_homing.py" />
-      <source>HOMED</source>
-      <translation>CON REF</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_homing.py" />
-      <source>HOMING</source>
-      <translation>BUSCANDO REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_homing.py" />
-      <source>NOT HOMED</source>
-      <translation>SIN REF</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_homing.py" />
-      <source>T{tool} MAY STAND IN THE PART: JOG IT CLEAR FIRST. </source>
-      <translation>T{tool} PUEDE ESTAR EN LA PIEZA: PRIMERO SÁQUELA A MANO. </translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_homing.py" />
-      <source>{axis} KNOWS ITS POSITION</source>
-      <translation>{axis} CONOCE SU POSICIÓN</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source> AND </source>
-      <translation> Y </translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>A PROGRAM IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R, BEFORE JOGGING</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O ABANDÓNELO CON R, ANTES DE MOVER A MANO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R</source>
-      <translation>HAY UNA ALARMA: CORRIJA SU CAUSA Y OPRIMA R</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>EACH PRESS OF AN ARROW IS ONE STEP; F2 CHANGES ITS LENGTH</source>
-      <translation>CADA OPRESIÓN DE UNA FLECHA ES UN PASO; F2 CAMBIA SU TAMAÑO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF</source>
-      <translation>SOSTENGA UNA FLECHA PARA MOVER, CON SHIFT PARA RÁPIDO; T ELIGE HERRAMIENTA, X o Z LA TOCAN</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>THE DRIVES ARE OFF: PRESS D FOR DRIVES ON</source>
-      <translation>LOS SERVOS ESTÁN APAGADOS: OPRIMA D PARA ENCENDERLOS</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>THE E-STOP IS PRESSED: NOTHING MOVES</source>
-      <translation>EL PARO DE EMERGENCIA ESTÁ OPRIMIDO: NADA SE MUEVE</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>THE HANDWHEEL MOVES {axis}: ONE CLICK IS ONE STEP; V FOR THE NEXT AXIS</source>
-      <translation>EL VOLANTE MUEVE {axis}: UN CLIC ES UN PASO; V PARA EL EJE SIGUIENTE</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM</source>
-      <translation>LOS CARROS BUSCAN SU REFERENCIA: H LOS DETIENE</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>{axes} NOT HOMED: JOG SLOWLY, THERE ARE NO SOFT LIMITS; PRESS HOME</source>
-      <translation>{axes} SIN REFERENCIA: MUEVA DESPACIO, NO HAY LÍMITES POR PROGRAMA; OPRIMA REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>REFUSED: {why}</source>
-      <translation>RECHAZADO: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>THE CONTROL HAS CHANGED ITS UNIT OR ITS X: NOTHING WAS CHANGED, ENTER IT AGAIN</source>
-      <translation>EL CONTROL CAMBIÓ SU UNIDAD O SU X: NO SE CAMBIÓ NADA, ESCRÍBALO OTRA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>THE SLIDE HAS MOVED SINCE: PRESS ESC AND TOUCH AGAIN</source>
-      <translation>EL CARRO SE MOVIÓ DESPUÉS: OPRIMA ESC Y TOQUE OTRA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>T{number:g} does not exist; tools are T1…32</source>
-      <translation>T{number:g} no existe; las herramientas son T1…32</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>T{number} IS AS IT WAS</source>
-      <translation>T{number} QUEDA COMO ESTABA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>T{number} WAS NEVER SET: TOUCH X AND Z FIRST</source>
-      <translation>T{number} NUNCA SE PUSO: TOQUE PRIMERO X Y Z</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST</source>
-      <translation>¿CUÁL HERRAMIENTA? OPRIMA T Y ESCRIBA PRIMERO SU NÚMERO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/touch_off.py" />
-      <source>, alone</source>
-      <translation>, sola</translation>
-    </message>
-    <message>
-      <location filename="app/jog/touch_off.py" />
-      <source>TOUCH OFF WITH THE MACHINE AT REST AND READY</source>
-      <translation>TOQUE LA HERRAMIENTA CON LA MÁQUINA EN REPOSO Y LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/touch_off.py" />
-      <source>touched Z</source>
-      <translation>tocada en Z</translation>
-    </message>
-    <message>
-      <location filename="app/jog/touch_off.py" />
-      <source>touched off, new tool</source>
-      <translation>tocada, herramienta nueva</translation>
-    </message>
-    <message>
-      <location filename="app/jog/touch_off.py" />
-      <source>touched Ø</source>
-      <translation>tocada en Ø</translation>
-    </message>
-    <message>
-      <location filename="app/jog/touch_off.py" />
-      <source>{axis} IS NOT HOMED: ITS POSITION MEANS NOTHING YET</source>
-      <translation>{axis} NO TIENE REFERENCIA: SU POSICIÓN AÚN NO VALE</translation>
-    </message>
-    <message>
-      <location filename="app/jog/touch_off.py" />
-      <source>{axis} would be out of range</source>
-      <translation>{axis} quedaría fuera de alcance</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_handwheel.py" />
-      <source>THE HANDWHEEL IS OFF: {why}</source>
-      <translation>EL VOLANTE ESTÁ DESCONECTADO: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_handwheel.py" />
-      <source>THE SCREEN WAS AWAY: THE HANDWHEEL IS OFF</source>
-      <translation>LA PANTALLA ESTUVO AUSENTE: EL VOLANTE ESTÁ DESCONECTADO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_handwheel.py" />
-      <source>THE SWITCH AT THE STATION CHOOSES THE AXIS OF THE HANDWHEEL</source>
-      <translation>EL INTERRUPTOR DE LA ESTACIÓN ELIGE EL EJE DEL VOLANTE</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_handwheel.py" />
-      <source>THIS MACHINE HAS NO HANDWHEEL</source>
-      <translation>ESTA MÁQUINA NO TIENE VOLANTE</translation>
-    </message>
-    <message>
       <location filename="app/desk/persistence.py" />
       <source>nothing is kept here; start turndesk with a folder that can be written (TURNDESK_HOME)</source>
       <translation>aquí no se guarda nada; arranque turndesk con una carpeta en la que se pueda escribir (TURNDESK_HOME)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>BLOCK DELETE</source>
-      <translation>SALTO BLOQUE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>COLLET CLOSED</source>
-      <translation>BOQUILLA CERRADA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>COLLET OPEN</source>
-      <translation>BOQUILLA ABIERTA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>CYCLE REPEAT</source>
-      <translation>REPETIR CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>LIVE TOOL</source>
-      <translation>HERR MOTRIZ</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>NO COUNT</source>
-      <translation>SIN CONT</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>OPTIONAL STOP</source>
-      <translation>PARO OPCIONAL</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>SINGLE BLOCK</source>
-      <translation>BLOQUE A BLOQUE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>SPINDLE COASTS</source>
-      <translation>HUSILLO POR INERCIA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>SPINDLE FWD</source>
-      <translation>HUSILLO ADELANTE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>SPINDLE REV</source>
-      <translation>HUSILLO REVERSA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>TABLE TURNED</source>
-      <translation>MESA GIRADA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>TILTED PLANE</source>
-      <translation>PLANO INCLINADO</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>PROVING THE LINE</source>
-      <translation>COMPROBANDO LA LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>Set it with F8.</source>
-      <translation>Póngala con F8.</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>THE LINE DOES NOT RUN: MEND IT, OR ESC TO CLEAR IT</source>
-      <translation>LA LÍNEA NO CORRE: CORRÍJALA, O ESC PARA BORRARLA</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>TO RUN THE LINE {start}; ESC TAKES IT BACK</source>
-      <translation>PARA CORRER LA LÍNEA {start}; ESC LA RETIRA</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>TYPE A LINE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS</source>
-      <translation>ESCRIBA UNA LÍNEA, ENTER LA COMPRUEBA; F1 SALE, EL HUSILLO QUEDA COMO ESTÁ</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>Tool {number} was never set.</source>
-      <translation>La herramienta {number} nunca se puso.</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>A LINE IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R</source>
-      <translation>HAY UNA LÍNEA EN CURSO: DEJE QUE TERMINE, O PÁRELA Y OPRIMA R</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE MDI</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE MDI</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>DRIVES ARE OFF: PRESS F5 FOR DRIVES ON; A LINE CAN BE TYPED MEANWHILE</source>
-      <translation>SERVOS APAGADOS: OPRIMA F5 PARA ENCENDERLOS; MIENTRAS TANTO SE PUEDE ESCRIBIR UNA LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>NO LINE IS READY: TYPE ONE AND PRESS ENTER</source>
-      <translation>NO HAY LÍNEA LISTA: ESCRIBA UNA Y OPRIMA ENTER</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>THE LINE CANNOT BE PROVED: {why}</source>
-      <translation>LA LÍNEA NO SE PUEDE COMPROBAR: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>THE LINE IS PROVED AND RUN WITH THE DRIVES ON: F5 SWITCHES THEM ON, F6 IS RESET</source>
-      <translation>LA LÍNEA SE COMPRUEBA Y CORRE CON SERVOS ENCENDIDOS: F5 LOS ENCIENDE, F6 ES RESET</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>TYPE A LINE FIRST; ARROW UP BRINGS EARLIER ONES BACK</source>
-      <translation>ESCRIBA PRIMERO UNA LÍNEA; LA FLECHA ARRIBA TRAE LAS ANTERIORES</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_changes.py" />
-      <source>; IT COUNTS FROM THE NEXT CYCLE START</source>
-      <translation>; CUENTA DESDE EL PRÓXIMO INICIO DE CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_changes.py" />
-      <source>; IT COUNTS FROM THE NEXT PART</source>
-      <translation>; CUENTA DESDE LA PRÓXIMA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_changes.py" />
-      <source>A PROGRAM IS UNDER WAY: ONLY WEAR AND F9 CORRECTIONS MAY CHANGE</source>
-      <translation>HAY UN PROGRAMA EN MARCHA: SÓLO EL DESGASTE Y LAS CORRECCIONES DE F9 PUEDEN CAMBIAR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_changes.py" />
-      <source>PARTS RUN: A CORRECTION COUNTS FROM THE NEXT PART, ONCE IT IS PROVED</source>
-      <translation>HAY PIEZAS EN MARCHA: UNA CORRECCIÓN CUENTA DESDE LA PRÓXIMA PIEZA, UNA VEZ COMPROBADA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_changes.py" />
-      <source>THE PART UNDER WAY KEEPS ITS OFFSETS: A CORRECTION COUNTS FROM THE NEXT CYCLE START</source>
-      <translation>LA PIEZA EN MARCHA CONSERVA SUS COMPENSACIONES: UNA CORRECCIÓN CUENTA DESDE EL PRÓXIMO ARRANQUE DE CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_changes.py" />
-      <source>THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST</source>
-      <translation>LOS CARROS SE MUEVEN: LAS COMPENSACIONES CAMBIAN EN REPOSO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_book.py" />
-      <source>C: all offsets cleared</source>
-      <translation>C: todas las compensaciones a cero</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_book.py" />
-      <source>NO OFFSETS ARE KEPT HERE</source>
-      <translation>AQUÍ NO SE GUARDAN COMPENSACIONES</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_cells.py" />
-      <source>NOW {axis}: T{number} IS SET WHEN BOTH ARE THERE</source>
-      <translation>AHORA {axis}: T{number} QUEDA PUESTA CUANDO ESTÉN LAS DOS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_cells.py" />
-      <source>T{number} WAS NEVER SET: TYPE X AND Z FIRST, OR TOUCH IT OFF ON THE JOG PAGE</source>
-      <translation>T{number} NUNCA SE PUSO: ESCRIBA PRIMERO X Y Z, O TÓQUELA EN LA PÁGINA MANUAL</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_cells.py" />
-      <source>chosen as master</source>
-      <translation>elegida como maestra</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_cells.py" />
-      <source>entered by hand</source>
-      <translation>escrito a mano</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_cells.py" />
-      <source>no master</source>
-      <translation>sin maestra</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_offsets.py" />
-      <source>C CLEARS ALL OFFSETS ONLY WHILE Offset Number? IS ASKED; PRESS ESC FIRST</source>
-      <translation>C BORRA TODO SÓLO MIENTRAS SE PREGUNTA ¿Número de compensación?; OPRIMA PRIMERO ESC</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_offsets.py" />
-      <source>D{number} IS AS IT WAS</source>
-      <translation>D{number} QUEDA COMO ESTABA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_offsets.py" />
-      <source>EVERY VALUE TAKES ARITHMETIC, SUCH AS .5-.002; RETURN ALONE KEEPS THE VALUE</source>
-      <translation>TODO VALOR ACEPTA OPERACIONES, COMO .5-.002; RETURN SOLO CONSERVA EL VALOR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_offsets.py" />
-      <source>F5 OR ESC LEAVES THE HISTORY; PAGE UP AND PAGE DOWN LOOK ON</source>
-      <translation>F5 O ESC DEJA LA HISTORIA; RE PÁG Y AV PÁG SIGUEN VIENDO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_offsets.py" />
-      <source>PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, ESC TO KEEP THEM</source>
-      <translation>OPRIMA Y PARA BORRAR LAS 32 COMPENSACIONES SECUNDARIAS, ESC PARA CONSERVARLAS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_offsets.py" />
-      <source>Press C to clear all offsets</source>
-      <translation>Oprima C para borrar todas las compensaciones</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_offsets.py" />
-      <source>Press Esc to exit offset adjustment screen</source>
-      <translation>Oprima Esc para salir del ajuste de compensaciones</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_dialogue.py" />
-      <source>D{number:g} does not exist; offsets are D1…32</source>
-      <translation>D{number:g} no existe; las compensaciones son D1…32</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_dialogue.py" />
-      <source>FINISH D{number} FIRST, OR PRESS ESC</source>
-      <translation>TERMINE PRIMERO D{number}, U OPRIMA ESC</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_dialogue.py" />
-      <source>THE CONTROL HAS CHANGED ITS UNIT: NOTHING WAS CHANGED, ENTER IT AGAIN</source>
-      <translation>EL CONTROL HA CAMBIADO SU UNIDAD: NO SE CAMBIÓ NADA, INTRODÚZCALO OTRA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>MASTER</source>
-      <translation>MAESTRA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>NOSE RADIUS</source>
-      <translation>RADIO PUNTA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>REMARK</source>
-      <translation>NOTA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>TIP</source>
-      <translation>PUNTA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>WEAR X</source>
-      <translation>DESGASTE X</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>WEAR Z</source>
-      <translation>DESGASTE Z</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>X</source>
-      <translation>X</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>Z</source>
-      <translation>Z</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>{field} takes no sum; press Return to set it</source>
-      <translation>{field} no acepta sumas; oprima Return para ponerlo</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>{field} takes {range}</source>
-      <translation>{field} acepta {range}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>{field} would become {value} {unit}; it may be {low}…{high}</source>
-      <translation>{field} quedaría en {value} {unit}; puede ser {low}…{high}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>WEAR</source>
-      <translation>DESGASTE</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>not set</source>
-      <translation>sin poner</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets.py" />
-      <source>ARROWS CHOOSE A CELL; TYPE A VALUE OR A SUM; RETURN SETS IT, F2 ADDS IT TO WHAT IS THERE</source>
-      <translation>LAS FLECHAS ELIGEN CELDA; ESCRIBA UN VALOR O UNA SUMA; RETURN LO PONE, F2 LO SUMA A LO QUE HAY</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets.py" />
-      <source>NO TOOL IS THE MASTER: CHOOSE ONE IN ITS COLUMN WITH RETURN</source>
-      <translation>NINGUNA HERRAMIENTA ES LA MAESTRA: ELIJA UNA EN SU COLUMNA CON RETURN</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets.py" />
-      <source>PRESS RETURN TO SET IT, OR ESC TO LEAVE IT AS IT WAS</source>
-      <translation>OPRIMA RETURN PARA PONERLO, O ESC PARA DEJARLO COMO ESTABA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets.py" />
-      <source>PRESS RETURN TO WRITE A REMARK</source>
-      <translation>OPRIMA RETURN PARA ESCRIBIR UNA NOTA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets.py" />
-      <source>TYPE THE REMARK; RETURN KEEPS IT, ESC LEAVES IT AS IT WAS; F-KEYS STILL WORK</source>
-      <translation>ESCRIBA LA NOTA; RETURN LA GUARDA, ESC LA DEJA COMO ESTABA; LAS TECLAS F SIGUEN FUNCIONANDO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets.py" />
-      <source>TYPE WHAT IS TO BE ADDED FIRST, THEN PRESS F2</source>
-      <translation>ESCRIBA PRIMERO LO QUE SE SUMA, Y OPRIMA F2</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets.py" />
-      <source>T{number} IS NOT SET: X AND Z BELONG TOGETHER</source>
-      <translation>T{number} NO SE PUSO: X Y Z VAN JUNTAS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets.py" />
-      <source>X AND Z ARE SHOWN FROM THE MASTER: PRESS F3, THEN TYPE THEM FROM HOME</source>
-      <translation>X Y Z SE MUESTRAN DESDE LA MAESTRA: OPRIMA F3, Y ESCRÍBALAS DESDE LA REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_book.py" />
-      <source>OFFSETS CANNOT BE KEPT: %1</source>
-      <translation>NO SE PUEDEN GUARDAR LAS COMPENSACIONES: %1</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_book.py" />
-      <source>STILL SAVING THE CHANGE BEFORE: PRESS RETURN AGAIN</source>
-      <translation>EL CAMBIO ANTERIOR TODAVÍA SE ESTÁ GUARDANDO: OPRIMA RETURN OTRA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>SAVED</source>
-      <translation>GUARDADO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>{count} OFFSETS</source>
-      <translation>{count} COMPENSACIONES</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>{count} offsets changed: F5 shows them</source>
-      <translation>cambiaron {count} compensaciones: F5 las muestra</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>{names} SAVED</source>
-      <translation>{names} GUARDADAS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>{names} TAKEN BACK</source>
-      <translation>{names} RETIRADAS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_dialogue.py" />
-      <source>Offset Number?</source>
-      <translation>¿Número de compensación?</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_dialogue.py" />
-      <source>R?</source>
-      <translation>¿R?</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_dialogue.py" />
-      <source>X DIAMETER CORRECTION?</source>
-      <translation>¿CORRECCIÓN EN DIÁMETRO X?</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_dialogue.py" />
-      <source>Z CORRECTION?</source>
-      <translation>¿CORRECCIÓN Z?</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_dialogue.py" />
-      <source>{name} would become {value} {unit}; it may be {low}…{high}</source>
-      <translation>{name} quedaría en {value} {unit}; puede ser {low}…{high}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/effect_shown.py" />
-      <source>DRAWING THE PATH BEFORE AND AFTER</source>
-      <translation>DIBUJANDO LA TRAYECTORIA ANTES Y DESPUÉS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/effect_shown.py" />
-      <source>LOAD A PROGRAM FIRST: THE EFFECT IS SHOWN ON ITS PATH</source>
-      <translation>CARGUE PRIMERO UN PROGRAMA: EL EFECTO SE VE SOBRE SU TRAYECTORIA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/effect_shown.py" />
-      <source>NOTHING HAS CHANGED HERE YET: TYPE A VALUE OR CHANGE ONE, THEN PRESS F6</source>
-      <translation>AQUÍ AÚN NO CAMBIÓ NADA: ESCRIBA UN VALOR O CAMBIE UNO, Y OPRIMA F6</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/effect_shown.py" />
-      <source>THE EFFECT CANNOT BE DRAWN: {why}</source>
-      <translation>EL EFECTO NO SE PUEDE DIBUJAR: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/effect_shown.py" />
-      <source>THE PATHS DIFFER IN KIND; F6 SHOWS THE TABLE</source>
-      <translation>LAS TRAYECTORIAS DIFIEREN EN CLASE; F6 MUESTRA LA TABLA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/effect_shown.py" />
-      <source>THIS CHANGE DOES NOTHING TO THE LOADED PROGRAM; F6 SHOWS THE TABLE</source>
-      <translation>ESTE CAMBIO NO HACE NADA EN EL PROGRAMA CARGADO; F6 MUESTRA LA TABLA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/effect_shown.py" />
-      <source>UP TO {far} APART, AT THE CIRCLE; F6 GOES NEAR, Z ZOOMS, ESC SHOWS THE TABLE</source>
-      <translation>HASTA {far} DE DIFERENCIA, EN EL CÍRCULO; F6 SE ACERCA, Z AMPLÍA, ESC MUESTRA LA TABLA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/effect_shown.py" />
-      <source>UP TO {far} APART; Z ZOOMS, F6 SHOWS THE TABLE</source>
-      <translation>HASTA {far} DE DIFERENCIA; Z AMPLÍA, F6 MUESTRA LA TABLA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>no</source>
-      <translation>no</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>none</source>
-      <translation>ninguna</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>yes</source>
-      <translation>sí</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>AUTO</source>
-      <translation>AUTO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>AUTOMATIC</source>
-      <translation>AUTOMÁTICO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>D1…D32: corrections of wear and size</source>
-      <translation>D1…D32: correcciones de desgaste y medida</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>EDIT</source>
-      <translation>EDITAR</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>EDITOR</source>
-      <translation>EDITOR</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>G54…G59: where SINUMERIK programs have their zero</source>
-      <translation>G54…G59: dónde tienen su cero los programas SINUMERIK</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>JOG</source>
-      <translation>MANUAL</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>LIST</source>
-      <translation>LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>MAIN MENU</source>
-      <translation>MENÚ PRINCIPAL</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>MDI</source>
-      <translation>MDI</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>PROGRAMS</source>
-      <translation>PROGRAMAS</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>SEARCHTO</source>
-      <translation>BUSCAR A</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>SECCMP</source>
-      <translation>COMPSEC</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>SECONDARY OFFSETS</source>
-      <translation>COMPENSACIÓN SECUNDARIA</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>SPECIAL</source>
-      <translation>ESPECIAL</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>SPECIAL FUNCTIONS</source>
-      <translation>FUNCIONES ESPECIALES</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>T1…T32: position and nose radius</source>
-      <translation>T1…T32: posición y radio de punta</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>TOOL OFFSETS</source>
-      <translation>HERRAMIENTAS</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>TOOLS</source>
-      <translation>HERRAM</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>ZERO</source>
-      <translation>CEROS</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>ZERO OFFSETS</source>
-      <translation>CEROS DE PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>list, preview, copy, import and export</source>
-      <translation>lista, vista previa, copiar, importar y exportar</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>move by hand, touch tools off</source>
-      <translation>mover a mano, tocar herramientas</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>one line at a time</source>
-      <translation>una línea a la vez</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>run programs</source>
-      <translation>correr programas</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>speed limit, parts, inputs and outputs, log, backup</source>
-      <translation>tope de velocidad, piezas, entradas y salidas, bitácora, respaldo</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>write and prove programs</source>
-      <translation>escribir y comprobar programas</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>PRESS BOTH PALM BUTTONS</source>
-      <translation>OPRIMA LOS DOS BOTONES DE PALMA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>PRESS BOTH PALM BUTTONS (F11 + F12)</source>
-      <translation>OPRIMA LOS DOS BOTONES DE PALMA (F11 + F12)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>PRESS CYCLE START</source>
-      <translation>OPRIMA INICIO DE CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>PRESS CYCLE START (F12)</source>
-      <translation>OPRIMA INICIO DE CICLO (F12)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>RELEASE THE BUTTON</source>
-      <translation>SUELTE EL BOTÓN</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>RELEASE THE BUTTON (U)</source>
-      <translation>SUELTE EL BOTÓN (U)</translation>
     </message>
     <message>
       <location filename="app/desk/program_folder.py" />
@@ -2232,6 +747,51 @@
       <location filename="app/desk/program_folder.py" />
       <source>{name} IS NOT ON THE DISK ANY MORE: WHAT IS SHOWN IS WHAT RUNS</source>
       <translation>{name} YA NO ESTÁ EN EL DISCO: LO QUE SE MUESTRA ES LO QUE CORRE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/program_loading.py" />
+      <source>DRAWING</source>
+      <translation>DIBUJANDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/program_loading.py" />
+      <source>EMPTY</source>
+      <translation>VACÍO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/program_loading.py" />
+      <source>PROVING</source>
+      <translation>COMPROBANDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/program_loading.py" />
+      <source>READING</source>
+      <translation>LEYENDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/program_loading.py" />
+      <source>READY</source>
+      <translation>LISTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/program_loading.py" />
+      <source>REFUSED</source>
+      <translation>RECHAZADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/program_loading.py" />
+      <source>UNREADABLE</source>
+      <translation>ILEGIBLE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/program_renewal.py" />
+      <source>NO NEXT PART WITH THE CHANGED OFFSETS: {why}</source>
+      <translation>NO HAY PRÓXIMA PIEZA CON LAS COMPENSACIONES CAMBIADAS: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/program_renewal.py" />
+      <source>REFUSED: %1</source>
+      <translation>RECHAZADO: %1</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -2310,6 +870,11 @@
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
+      <source>NO START: %1</source>
+      <translation>NO ARRANCA: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompt_line.py" />
       <source>NO START: A BACKUP IS BEING RESTORED</source>
       <translation>NO ARRANCA: SE ESTÁ RESTAURANDO UN RESPALDO</translation>
     </message>
@@ -2317,6 +882,11 @@
       <location filename="app/desk/prompt_line.py" />
       <source>NO START: THE PROGRAM IS BEING READ ANEW</source>
       <translation>NO ARRANCA: SE ESTÁ LEYENDO DE NUEVO EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompt_line.py" />
+      <source>NOT COUNTED AS A PART: %1</source>
+      <translation>NO CONTADO COMO PIEZA: %1</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -2420,6 +990,26 @@
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
+      <source>BLOCK DELETE</source>
+      <translation>SALTO BLOQUE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>COLLET CLOSED</source>
+      <translation>BOQUILLA CERRADA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>COLLET OPEN</source>
+      <translation>BOQUILLA ABIERTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>CYCLE REPEAT</source>
+      <translation>REPETIR CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
       <source>DISTANCE TO GO</source>
       <translation>DISTANCIA POR RECORRER</translation>
     </message>
@@ -2430,13 +1020,73 @@
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
+      <source>LIVE TOOL</source>
+      <translation>HERR MOTRIZ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>MACHINE</source>
+      <translation>MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
       <source>MM</source>
       <translation>MM</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
+      <source>NO COUNT</source>
+      <translation>SIN CONT</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>OPTIONAL STOP</source>
+      <translation>PARO OPCIONAL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
       <source>POSITION</source>
       <translation>POSICIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>SINGLE BLOCK</source>
+      <translation>BLOQUE A BLOQUE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>SPINDLE COASTS</source>
+      <translation>HUSILLO POR INERCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>SPINDLE FWD</source>
+      <translation>HUSILLO ADELANTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>SPINDLE REV</source>
+      <translation>HUSILLO REVERSA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>TABLE TURNED</source>
+      <translation>MESA GIRADA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>TILTED PLANE</source>
+      <translation>PLANO INCLINADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>TILTED PLANE OF LINE {line}</source>
+      <translation>PLANO INCLINADO DE LA LÍNEA {line}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>WORKPIECE</source>
+      <translation>PIEZA</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
@@ -2449,49 +1099,2374 @@
       <translation>X ES RADIO</translation>
     </message>
     <message>
-      <location filename="app/desk/program_renewal.py" />
-      <source>NO NEXT PART WITH THE CHANGED OFFSETS: {why}</source>
-      <translation>NO HAY PRÓXIMA PIEZA CON LAS COMPENSACIONES CAMBIADAS: {why}</translation>
+      <location filename="app/desk/screen_settings.py" />
+      <source>AS THE PROGRAM</source>
+      <translation>COMO EL PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>C HAS TURNED SINCE T{tool} WENT IN: TURN THE SPINDLE FREE BY HAND AND JOG T{tool} OUT</source>
-      <translation>C GIRÓ DESDE QUE ENTRÓ T{tool}: LIBÉRELA GIRANDO EL HUSILLO A MANO Y SAQUE T{tool} A MANO</translation>
+      <location filename="app/editor/document.py" />
+      <source>%1 CANNOT NAME A PROGRAM: LETTERS, DIGITS, DOT, DASH AND BLANK</source>
+      <translation>%1 NO PUEDE NOMBRAR UN PROGRAMA: LETRAS, NÚMEROS, PUNTO, GUION Y ESPACIO</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>HOW T{tool} CAME TO STAND HERE IS NOT KNOWN: JOG IT CLEAR OF THE PART BY THE WAY IT CAME</source>
-      <translation>NO SE SABE CÓMO LLEGÓ AQUÍ T{tool}: SÁQUELA A MANO DE LA PIEZA POR DONDE ENTRÓ</translation>
+      <location filename="app/editor/document.py" />
+      <source>%1 IS NO ENDING OF A PROGRAM: TAKE NONE, OR ONE OF %2</source>
+      <translation>%1 NO ES TERMINACIÓN DE PROGRAMA: NINGUNA, O UNA DE %2</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>T{tool} IS A TAP IN ITS THREAD: TURN IT OUT BY HAND WITH THE SPINDLE, Z FOLLOWING</source>
-      <translation>T{tool} ES UN MACHUELO EN SU ROSCA: SÁQUELO A MANO GIRANDO EL HUSILLO, CON Z DETRÁS</translation>
+      <location filename="app/editor/document.py" />
+      <source>%1 WOULD BE HIDDEN: TAKE A NAME THAT BEGINS WITH A LETTER OR DIGIT</source>
+      <translation>%1 QUEDARÍA OCULTO: USE UN NOMBRE QUE EMPIECE CON LETRA O NÚMERO</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>T{tool} STANDS CLEAR OF THE PART ALREADY</source>
-      <translation>T{tool} YA ESTÁ FUERA DE LA PIEZA</translation>
+      <location filename="app/editor/document.py" />
+      <source>%1 has over %2 lines: too long for this editor; split it elsewhere</source>
+      <translation>%1 tiene más de %2 líneas: demasiado para este editor; divídalo en otra parte</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>T{tool} STANDS IN A THREAD: JOG X OFF THE THREAD FIRST, NOT Z</source>
-      <translation>T{tool} ESTÁ EN UNA ROSCA: SAQUE PRIMERO X DE LA ROSCA A MANO, NO Z</translation>
+      <location filename="app/editor/document.py" />
+      <source>NO NAME WAS TYPED: A PROGRAM NEEDS ONE</source>
+      <translation>NO SE ESCRIBIÓ NOMBRE: UN PROGRAMA NECESITA UNO</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>T{tool} STANDS IN THE PART: JOG IT OUT BY THE WAY IT CAME, {x} AND Z+ TOGETHER</source>
-      <translation>T{tool} ESTÁ EN LA PIEZA: SÁQUELA A MANO POR DONDE ENTRÓ, {x} Y Z+ A LA VEZ</translation>
+      <location filename="app/editor/document.py" />
+      <source>as it was before editing</source>
+      <translation>como estaba antes de editar</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>T{tool} STANDS IN THE PART: JOG Z+ OUT OF IT FIRST, NOT X</source>
-      <translation>T{tool} ESTÁ EN LA PIEZA: SÁQUELA PRIMERO A MANO EN Z+, NO EN X</translation>
+      <location filename="app/editor/document.py" />
+      <source>changed by another program</source>
+      <translation>cambiado por otro programa</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>T{tool} STANDS IN THE PART: JOG {x} OUT OF IT FIRST, NOT Z</source>
-      <translation>T{tool} ESTÁ EN LA PIEZA: SÁQUELA PRIMERO A MANO EN {x}, NO EN Z</translation>
+      <location filename="app/editor/document.py" />
+      <source>saved in the editor</source>
+      <translation>guardado en el editor</translation>
+    </message>
+    <message>
+      <location filename="app/editor/drafts.py" />
+      <source>typed and not saved</source>
+      <translation>escrito y no guardado</translation>
+    </message>
+    <message>
+      <location filename="app/editor/edited_path_view.py" />
+      <source>PATH TO THE CURSOR</source>
+      <translation>TRAYECTORIA HASTA EL CURSOR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/edited_path_view.py" />
+      <source>THE CROSS STANDS ON NO LINE OF THE PATH: AN ARROW TAKES IT TO ONE</source>
+      <translation>LA CRUZ NO ESTÁ SOBRE NINGUNA LÍNEA DE LA TRAYECTORIA: UNA FLECHA LA LLEVA A UNA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor.py" />
+      <source>%1 IS SAVED</source>
+      <translation>%1 QUEDÓ GUARDADO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor.py" />
+      <source>%1; ESC</source>
+      <translation>%1; ESC</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>ABORT</source>
+      <translation>CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>ALL</source>
+      <translation>TODO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>BACK</source>
+      <translation>ATRÁS</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>BEFORE</source>
+      <translation>ANTERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>CREATE</source>
+      <translation>CREAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>DOWN</source>
+      <translation>ABAJO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>FARTHER</source>
+      <translation>ALEJAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>FIND</source>
+      <translation>BUSCAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>GO</source>
+      <translation>IR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>GO TO</source>
+      <translation>IR A</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>HISTORY</source>
+      <translation>HISTORIA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>HOLD</source>
+      <translation>RETENER</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>LEAVE</source>
+      <translation>SALIR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>NEARER</source>
+      <translation>ACERCAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>NEWER</source>
+      <translation>MÁS NVA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>NEXT</source>
+      <translation>SIGUE</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>NEXT ERR</source>
+      <translation>SIG ERR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>NO SAVE</source>
+      <translation>NO GUARD</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>OLDER</source>
+      <translation>MÁS ANT</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>PARTS</source>
+      <translation>PIEZAS</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>REDO</source>
+      <translation>REHACER</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>REPLACE</source>
+      <translation>CAMBIAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>RESTORE</source>
+      <translation>RESTAURAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>SAVE</source>
+      <translation>GUARDAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>TO LINE</source>
+      <translation>A LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>UNDO</source>
+      <translation>DESHACER</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>UP</source>
+      <translation>ARRIBA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>VIEW</source>
+      <translation>VISTA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>WHOLE</source>
+      <translation>COMPLETA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_keys_view.py" />
+      <source>go to</source>
+      <translation>ir a</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
+      <source>LINE %1 OF %2  ·  %3</source>
+      <translation>LÍNEA %1 DE %2  ·  %3</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
+      <source>NOTHING WAS FOUND THAT IS WRONG</source>
+      <translation>NO SE HALLÓ NADA MAL</translation>
+    </message>
+    <message>
+      <location filename="app/editor/find_replace.py" />
+      <source>%1 FOUND</source>
+      <translation>%1 ENCONTRADOS</translation>
+    </message>
+    <message>
+      <location filename="app/editor/find_replace.py" />
+      <source>%1, %2 MORE INSIDE LONGER WORDS</source>
+      <translation>%1, %2 MÁS DENTRO DE PALABRAS MÁS LARGAS</translation>
+    </message>
+    <message>
+      <location filename="app/editor/find_replace.py" />
+      <source>%1, PARTS OF WORDS TOO</source>
+      <translation>%1, TAMBIÉN PARTES DE PALABRAS</translation>
+    </message>
+    <message>
+      <location filename="app/editor/find_replace.py" />
+      <source>NOT FOUND</source>
+      <translation>NO SE ENCONTRÓ</translation>
+    </message>
+    <message>
+      <location filename="app/editor/findings_view.py" />
+      <source>ERROR</source>
+      <translation>ERROR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/findings_view.py" />
+      <source>FINDINGS  ·  %1  ·  %2</source>
+      <translation>HALLAZGOS  ·  %1  ·  %2</translation>
+    </message>
+    <message>
+      <location filename="app/editor/findings_view.py" />
+      <source>PROVED  ·  %1 BLOCKS  ·  CYCLE %2</source>
+      <translation>COMPROBADO  ·  %1 BLOQUES  ·  CICLO %2</translation>
+    </message>
+    <message>
+      <location filename="app/editor/findings_view.py" />
+      <source>WARNING</source>
+      <translation>AVISO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/heading_view.py" />
+      <source>KEYBOARD</source>
+      <translation>TECLADO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/highlight_view.py" />
+      <source>END</source>
+      <translation>EXTREMO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/live_proof.py" />
+      <source>PROVING FAILED: %1</source>
+      <translation>FALLÓ LA COMPROBACIÓN: %1</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE EDITING</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>A SAMPLE IS NOT CHANGED: UNDER WHAT NAME SHALL IT BE SAVED?</source>
+      <translation>UNA MUESTRA NO SE CAMBIA: ¿CON QUÉ NOMBRE SE GUARDA?</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>AN EMPTY PROGRAM IS NOT SAVED: WRITE SOMETHING, OR LEAVE WITH F10</source>
+      <translation>UN PROGRAMA VACÍO NO SE GUARDA: ESCRIBA ALGO, O SALGA CON F10</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>ARROWS MARK A VERSION, RETURN PUTS IT INTO THE EDITOR; ESC: BACK</source>
+      <translation>LAS FLECHAS MARCAN UNA VERSIÓN, RETURN LA PONE EN EL EDITOR; ESC: REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>CHOOSE A PROGRAM FIRST (F2), OR TYPE THE NAME OF A NEW ONE THERE</source>
+      <translation>ELIJA PRIMERO UN PROGRAMA (F2), O ESCRIBA AHÍ EL NOMBRE DE UNO NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>F3 SAVES AND PUTS WHAT WAS WRITTEN ON THE DESK; F1 SAVES AND LEAVES THE DESK AS IT IS</source>
+      <translation>F3 GUARDA Y CARGA LO ESCRITO; F1 GUARDA Y DEJA CARGADO LO QUE HAY</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>F6 LEAVES WITHOUT SAVING, F3 SAVES AND LEAVES, ESC GOES ON</source>
+      <translation>F6 SALE SIN GUARDAR, F3 GUARDA Y SALE, ESC SIGUE</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>NOT SAVED YET: F3 SAVES AND LEAVES, F10 LEAVES WITHOUT SAVING</source>
+      <translation>AÚN SIN GUARDAR: F3 GUARDA Y SALE, F10 SALE SIN GUARDAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>PRESS F1 TO CREATE A NEW FILE, ESC TO ABORT</source>
+      <translation>OPRIMA F1 PARA CREAR UN ARCHIVO NUEVO, ESC PARA CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>RETURN: NEXT   SHIFT+RETURN: THE ONE BEFORE   TAB: THE OTHER FIELD   ESC: BACK</source>
+      <translation>RETURN: SIGUIENTE   SHIFT+RETURN: ANTERIOR   TAB: EL OTRO CAMPO   ESC: REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>SAVED. WHAT RUNS IS THE PROGRAM AS IT WAS LOADED: LOAD IT AGAIN (F2) WHEN THE RUN HAS ENDED</source>
+      <translation>GUARDADO. LO QUE CORRE ES EL PROGRAMA COMO SE CARGÓ: CÁRGUELO DE NUEVO (F2) CUANDO TERMINE</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>THE MACHINE RUNS THE PROGRAM AS IT WAS LOADED, NOT THIS TEXT: ESC FOR FEED HOLD</source>
+      <translation>LA MÁQUINA CORRE EL PROGRAMA COMO SE CARGÓ, NO ESTE TEXTO: ESC PARA RETENCIÓN DE AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>THE SPINDLE IS ON: SWITCH IT OFF (M05, OR R FOR RESET) AND LET IT COME TO REST BEFORE EDITING</source>
+      <translation>EL HUSILLO ESTÁ ENCENDIDO: APÁGUELO (M05, O R PARA RESET) Y ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>THE SPINDLE STILL COASTS: WAIT UNTIL IT STANDS BEFORE EDITING</source>
+      <translation>EL HUSILLO AÚN GIRA POR INERCIA: ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>THERE IS NO PATH TO LOOK AT YET: WRITE A MOVE</source>
+      <translation>AÚN NO HAY TRAYECTORIA QUE VER: ESCRIBA UN MOVIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>TYPE A LINE NUMBER AND PRESS RETURN; ESC: BACK</source>
+      <translation>ESCRIBA UN NÚMERO DE LÍNEA Y OPRIMA RETURN; ESC: REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>VERSION {} IS IN THE EDITOR; SAVE TO KEEP IT, UNDO TO TAKE IT BACK</source>
+      <translation>LA VERSIÓN {} ESTÁ EN EL EDITOR; GUARDE PARA CONSERVARLA, DESHAGA PARA QUITARLA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>WHAT WAS TYPED HERE LAST TIME AND NOT SAVED IS IN THE HISTORY</source>
+      <translation>LO QUE SE ESCRIBIÓ AQUÍ LA ÚLTIMA VEZ Y NO SE GUARDÓ ESTÁ EN EL HISTORIAL</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>no history is kept here</source>
+      <translation>aquí no se guarda historial</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>{name} IS SAVED; F2 PUTS IT ON THE DESK</source>
+      <translation>{name} ESTÁ GUARDADO; F2 LO CARGA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>{name} IS SAVED; {other} STAYS ON THE DESK</source>
+      <translation>{name} ESTÁ GUARDADO; {other} SIGUE CARGADO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>{name} WAS ONLY LOOKED AT: {other} STAYS ON THE DESK</source>
+      <translation>{name} SÓLO SE MIRÓ: {other} SIGUE CARGADO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>{} IS THERE ALREADY: TAKE ANOTHER NAME</source>
+      <translation>{} YA EXISTE: USE OTRO NOMBRE</translation>
+    </message>
+    <message>
+      <location filename="app/editor/messages.py" />
+      <source>{} WAS CHANGED BY ANOTHER PROGRAM MEANWHILE: F6 REPLACES IT (IT STAYS IN HISTORY), ESC GOES ON</source>
+      <translation>OTRO PROGRAMA CAMBIÓ {} MIENTRAS TANTO: F6 LO REEMPLAZA (QUEDA EN LA HISTORIA), ESC SIGUE</translation>
+    </message>
+    <message>
+      <location filename="app/editor/question_view.py" />
+      <source>%1 REPLACED</source>
+      <translation>%1 CAMBIADOS</translation>
+    </message>
+    <message>
+      <location filename="app/editor/question_view.py" />
+      <source>A NUMBER FROM 1 TO %1</source>
+      <translation>UN NÚMERO DE 1 A %1</translation>
+    </message>
+    <message>
+      <location filename="app/editor/question_view.py" />
+      <source>GO TO LINE</source>
+      <translation>IR A LA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/question_view.py" />
+      <source>REPLACE BY</source>
+      <translation>CAMBIAR POR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/question_view.py" />
+      <source>SAVE AS</source>
+      <translation>GUARDAR COMO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/text_view.py" />
+      <source>CHANGED</source>
+      <translation>CAMBIADO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/text_view.py" />
+      <source>SAMPLE</source>
+      <translation>MUESTRA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/text_view.py" />
+      <source>SAMPLE, CHANGED</source>
+      <translation>MUESTRA, CAMBIADA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/versions.py" />
+      <source>COMPARING</source>
+      <translation>COMPARANDO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/versions.py" />
+      <source>NO VERSION IS KEPT OF THIS PROGRAM YET</source>
+      <translation>TODAVÍA NO SE GUARDA NINGUNA VERSIÓN DE ESTE PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/versions.py" />
+      <source>THE SAME AS IN THE EDITOR</source>
+      <translation>IGUAL QUE EN EL EDITOR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/versions.py" />
+      <source>no version %1 of %2 is kept here</source>
+      <translation>no se guarda la versión %1 de %2</translation>
+    </message>
+    <message>
+      <location filename="app/editor/versions_view.py" />
+      <source>%1 bytes</source>
+      <translation>%1 bytes</translation>
+    </message>
+    <message>
+      <location filename="app/jog/held_jog.py" />
+      <source>ANOTHER KEY HAS ENDED THE JOG</source>
+      <translation>OTRA TECLA TERMINÓ EL MOVIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/held_jog.py" />
+      <source>RAPID IS FOR A HELD JOG: CHOOSE CONTINUOUS, OR PRESS WITHOUT SHIFT</source>
+      <translation>EL RÁPIDO ES PARA MOVER SOSTENIENDO: ELIJA CONTINUO, U OPRIMA SIN SHIFT</translation>
+    </message>
+    <message>
+      <location filename="app/jog/held_jog.py" />
+      <source>SHIFT WAS LET GO: THE RAPID HAS ENDED</source>
+      <translation>SE SOLTÓ SHIFT: TERMINÓ EL RÁPIDO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/held_jog.py" />
+      <source>THE KEY HAS GONE SILENT: LET IT GO AND PRESS IT AGAIN</source>
+      <translation>LA TECLA DEJÓ DE RESPONDER: SUÉLTELA Y OPRÍMALA DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/held_jog.py" />
+      <source>THE SCREEN WAS AWAY: THE JOG HAS ENDED</source>
+      <translation>LA PANTALLA ESTUVO AUSENTE: TERMINÓ EL MOVIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/held_jog.py" />
+      <source>TWO AT ONCE MOVE NOTHING: LET BOTH GO, THEN PRESS ONE</source>
+      <translation>DOS A LA VEZ NO MUEVEN NADA: SUELTE LAS DOS Y OPRIMA UNA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_handwheel.py" />
+      <source>THE HANDWHEEL IS OFF: {why}</source>
+      <translation>EL VOLANTE ESTÁ DESCONECTADO: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_handwheel.py" />
+      <source>THE SCREEN WAS AWAY: THE HANDWHEEL IS OFF</source>
+      <translation>LA PANTALLA ESTUVO AUSENTE: EL VOLANTE ESTÁ DESCONECTADO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_handwheel.py" />
+      <source>THE SWITCH AT THE STATION CHOOSES THE AXIS OF THE HANDWHEEL</source>
+      <translation>EL INTERRUPTOR DE LA ESTACIÓN ELIGE EL EJE DEL VOLANTE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_handwheel.py" />
+      <source>THIS MACHINE HAS NO HANDWHEEL</source>
+      <translation>ESTA MÁQUINA NO TIENE VOLANTE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_homing.py" />
+      <source> OR </source>
+      <translation> O </translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_homing.py" />
+      <source>, THEN </source>
+      <translation>, LUEGO </translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_homing.py" />
+      <source>ABSOLUTE</source>
+      <translation>ABSOLUTO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_homing.py" />
+      <source>EVERY AXIS KNOWS ITS POSITION: THERE IS NOTHING TO HOME</source>
+      <translation>TODOS LOS EJES CONOCEN SU POSICIÓN: NO HAY NADA QUE REFERENCIAR</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_homing.py" />
+      <source>HOME {first}: PRESS RETURN FOR ALL, {letters} FOR ONE AXIS, ESC FOR NONE</source>
+      <translation>REFERENCIAR {first}: OPRIMA RETURN PARA TODOS, {letters} PARA UN EJE, ESC PARA NINGUNO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_homing.py" />
+      <source>HOMED</source>
+      <translation>CON REF</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_homing.py" />
+      <source>HOMING</source>
+      <translation>BUSCANDO REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_homing.py" />
+      <source>NOT HOMED</source>
+      <translation>SIN REF</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_homing.py" />
+      <source>T{tool} MAY STAND IN THE PART: JOG IT CLEAR FIRST. </source>
+      <translation>T{tool} PUEDE ESTAR EN LA PIEZA: PRIMERO SÁQUELA A MANO. </translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_homing.py" />
+      <source>{axis} KNOWS ITS POSITION</source>
+      <translation>{axis} CONOCE SU POSICIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source> AND </source>
+      <translation> Y </translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R, BEFORE JOGGING</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O ABANDÓNELO CON R, ANTES DE MOVER A MANO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R</source>
+      <translation>HAY UNA ALARMA: CORRIJA SU CAUSA Y OPRIMA R</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>AN ENTRY IS OPEN: PRESS RETURN OR ESC FIRST</source>
+      <translation>HAY UNA ENTRADA ABIERTA: OPRIMA PRIMERO RETURN O ESC</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>AN ENTRY IS OPEN: PRESS RETURN OR ESC; THE ARROWS MOVE NOTHING MEANWHILE</source>
+      <translation>HAY UNA ENTRADA ABIERTA: OPRIMA RETURN O ESC; MIENTRAS TANTO LAS FLECHAS NO MUEVEN NADA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>AN ENTRY IS OPEN: THE HANDWHEEL IS OFF</source>
+      <translation>HAY UNA ENTRADA ABIERTA: EL VOLANTE ESTÁ DESCONECTADO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED</source>
+      <translation>SE ELIGIÓ OTRA VELOCIDAD: TERMINÓ EL MOVIMIENTO A MANO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>ANOTHER STEP WAS CHOSEN: THE JOG HAS ENDED</source>
+      <translation>SE ELIGIÓ OTRO PASO: TERMINÓ EL MOVIMIENTO A MANO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>EACH PRESS OF AN ARROW IS ONE STEP; F2 CHANGES ITS LENGTH</source>
+      <translation>CADA OPRESIÓN DE UNA FLECHA ES UN PASO; F2 CAMBIA SU TAMAÑO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF</source>
+      <translation>SOSTENGA UNA FLECHA PARA MOVER, CON SHIFT PARA RÁPIDO; T ELIGE HERRAMIENTA, X o Z LA TOCAN</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>HOMING IS NOT DONE; PRESS THE ARROW AGAIN TO JOG</source>
+      <translation>LA REFERENCIA NO ESTÁ HECHA; OPRIMA OTRA VEZ LA FLECHA PARA MOVER</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>ON A MILL THE OFFSET IS THE LENGTH OF THE TOOL: MEASURE IT, AND TYPE IT ON F8</source>
+      <translation>EN UNA FRESADORA LA COMPENSACIÓN ES EL LARGO DE LA HERRAMIENTA: MÍDALO, Y ESCRÍBALO EN F8</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>THE DRIVES ARE OFF: PRESS D FOR DRIVES ON</source>
+      <translation>LOS SERVOS ESTÁN APAGADOS: OPRIMA D PARA ENCENDERLOS</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>THE E-STOP IS PRESSED: NOTHING MOVES</source>
+      <translation>EL PARO DE EMERGENCIA ESTÁ OPRIMIDO: NADA SE MUEVE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>THE HANDWHEEL IS OFF</source>
+      <translation>EL VOLANTE ESTÁ DESCONECTADO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>THE HANDWHEEL IS OFF: THE KEYBOARD WENT ELSEWHERE</source>
+      <translation>EL VOLANTE ESTÁ DESCONECTADO: EL TECLADO SE FUE A OTRA PARTE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>THE HANDWHEEL MOVES {axis}: ONE CLICK IS ONE STEP; V FOR THE NEXT AXIS</source>
+      <translation>EL VOLANTE MUEVE {axis}: UN CLIC ES UN PASO; V PARA EL EJE SIGUIENTE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>THE JOG HAS ENDED: THE KEYBOARD WENT ELSEWHERE</source>
+      <translation>TERMINÓ EL MOVIMIENTO A MANO: EL TECLADO PASÓ A OTRA PARTE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM</source>
+      <translation>LOS CARROS BUSCAN SU REFERENCIA: H LOS DETIENE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>THE SLIDES ARE STILL MOVING</source>
+      <translation>LOS CARROS TODAVÍA SE MUEVEN</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>TYPE A VALUE OR A SUM SUCH AS .5-.002, THEN RETURN; ESC LEAVES IT AS IT WAS</source>
+      <translation>ESCRIBA UN VALOR O UNA SUMA COMO .5-.002 Y RETURN; ESC LO DEJA COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>{axes} NOT HOMED: JOG SLOWLY, THERE ARE NO SOFT LIMITS; PRESS HOME</source>
+      <translation>{axes} SIN REFERENCIA: MUEVA DESPACIO, NO HAY LÍMITES POR PROGRAMA; OPRIMA REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>CONT</source>
+      <translation>CONT</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>HELD</source>
+      <translation>SOSTENIDO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>HOME</source>
+      <translation>REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>IN/MIN</source>
+      <translation>PULG/MIN</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>JOG  ·  HOLD TO MOVE</source>
+      <translation>MANUAL  ·  SOSTENGA PARA MOVER</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>MM/MIN</source>
+      <translation>MM/MIN</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>STEP</source>
+      <translation>PASO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>STEP IN</source>
+      <translation>PASO PLG</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>STEP MM</source>
+      <translation>PASO MM</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>WHEEL</source>
+      <translation>VOLANTE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>WHEEL {axis}</source>
+      <translation>VOLANTE {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>in</source>
+      <translation>pulg</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>mm</source>
+      <translation>mm</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>ALONE</source>
+      <translation>SOLA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>NUM LOCK IS OFF: THE ARROWS OF THE NUMBER PAD MOVE NOTHING</source>
+      <translation>BLOQ NUM ESTÁ DESACTIVADO: LAS FLECHAS DEL TECLADO NUMÉRICO NO MUEVEN NADA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>Return enters it, Esc leaves it as it was</source>
+      <translation>Return lo pone, Esc lo deja como estaba</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo</source>
+      <translation>T herr · X Z tocar · W desgaste · N punta · Q cuadrante · K nota · M maestra · F10 deshacer</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>REFUSED: {why}</source>
+      <translation>RECHAZADO: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>THE CONTROL HAS CHANGED ITS UNIT OR ITS X: NOTHING WAS CHANGED, ENTER IT AGAIN</source>
+      <translation>EL CONTROL CAMBIÓ SU UNIDAD O SU X: NO SE CAMBIÓ NADA, ESCRÍBALO OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>THE SLIDE HAS MOVED SINCE: PRESS ESC AND TOUCH AGAIN</source>
+      <translation>EL CARRO SE MOVIÓ DESPUÉS: OPRIMA ESC Y TOQUE OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>TOOL NUMBER?</source>
+      <translation>¿NÚMERO DE HERRAMIENTA?</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>T{number:g} does not exist; tools are T1…32</source>
+      <translation>T{number:g} no existe; las herramientas son T1…32</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)</source>
+      <translation>T{number} SOLA: LAS DEMÁS QUEDAN (L: TODAS LA SIGUEN)</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>T{number} IS AS IT WAS</source>
+      <translation>T{number} QUEDA COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>T{number} IS SET WHEN {axis} IS TOUCHED TOO</source>
+      <translation>T{number} QUEDA PUESTA CUANDO TAMBIÉN SE TOQUE {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)</source>
+      <translation>T{number} ES LA MAESTRA: TODAS LAS HERRAMIENTAS LA SIGUEN (L: SÓLO ELLA)</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>T{number} WAS NEVER SET: TOUCH X AND Z FIRST</source>
+      <translation>T{number} NUNCA SE PUSO: TOQUE PRIMERO X Y Z</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST</source>
+      <translation>¿CUÁL HERRAMIENTA? OPRIMA T Y ESCRIBA PRIMERO SU NÚMERO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>{tool} MEASURED DIAMETER?</source>
+      <translation>¿DIÁMETRO MEDIDO DE {tool}?</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>{tool} Z POSITION OF THE FACE?</source>
+      <translation>¿POSICIÓN Z DE LA CARA PARA {tool}?</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>ITS TIP IS NOW AT</source>
+      <translation>SU PUNTA ESTÁ AHORA EN</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>THIS ONE</source>
+      <translation>ÉSTA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>TOOL SETTING</source>
+      <translation>AJUSTE DE HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>TOUCH X</source>
+      <translation>TOCAR X</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>TOUCH Z</source>
+      <translation>TOCAR Z</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>none</source>
+      <translation>ninguna</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off.py" />
+      <source>, alone</source>
+      <translation>, sola</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off.py" />
+      <source>TOUCH OFF WITH THE MACHINE AT REST AND READY</source>
+      <translation>TOQUE LA HERRAMIENTA CON LA MÁQUINA EN REPOSO Y LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off.py" />
+      <source>touched Z</source>
+      <translation>tocada en Z</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off.py" />
+      <source>touched off, new tool</source>
+      <translation>tocada, herramienta nueva</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off.py" />
+      <source>touched Ø</source>
+      <translation>tocada en Ø</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off.py" />
+      <source>{axis} IS NOT HOMED: ITS POSITION MEANS NOTHING YET</source>
+      <translation>{axis} NO TIENE REFERENCIA: SU POSICIÓN AÚN NO VALE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off.py" />
+      <source>{axis} would be out of range</source>
+      <translation>{axis} quedaría fuera de alcance</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_model.py" />
+      <source>A LINE IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R</source>
+      <translation>HAY UNA LÍNEA EN CURSO: DEJE QUE TERMINE, O PÁRELA Y OPRIMA R</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_model.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE MDI</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE MDI</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_model.py" />
+      <source>DRIVES ARE OFF: PRESS F5 FOR DRIVES ON; A LINE CAN BE TYPED MEANWHILE</source>
+      <translation>SERVOS APAGADOS: OPRIMA F5 PARA ENCENDERLOS; MIENTRAS TANTO SE PUEDE ESCRIBIR UNA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_model.py" />
+      <source>NO LINE IS READY: TYPE ONE AND PRESS ENTER</source>
+      <translation>NO HAY LÍNEA LISTA: ESCRIBA UNA Y OPRIMA ENTER</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_model.py" />
+      <source>PROVING THE LINE</source>
+      <translation>COMPROBANDO LA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_model.py" />
+      <source>Set it with F8.</source>
+      <translation>Póngala con F8.</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_model.py" />
+      <source>THE LINE CANNOT BE PROVED: {why}</source>
+      <translation>LA LÍNEA NO SE PUEDE COMPROBAR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_model.py" />
+      <source>THE LINE DOES NOT RUN: MEND IT, OR ESC TO CLEAR IT</source>
+      <translation>LA LÍNEA NO CORRE: CORRÍJALA, O ESC PARA BORRARLA</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_model.py" />
+      <source>THE LINE IS PROVED AND RUN WITH THE DRIVES ON: F5 SWITCHES THEM ON, F6 IS RESET</source>
+      <translation>LA LÍNEA SE COMPRUEBA Y CORRE CON SERVOS ENCENDIDOS: F5 LOS ENCIENDE, F6 ES RESET</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_model.py" />
+      <source>TO RUN THE LINE {start}; ESC TAKES IT BACK</source>
+      <translation>PARA CORRER LA LÍNEA {start}; ESC LA RETIRA</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_model.py" />
+      <source>TYPE A LINE FIRST; ARROW UP BRINGS EARLIER ONES BACK</source>
+      <translation>ESCRIBA PRIMERO UNA LÍNEA; LA FLECHA ARRIBA TRAE LAS ANTERIORES</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_model.py" />
+      <source>TYPE A LINE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS</source>
+      <translation>ESCRIBA UNA LÍNEA, ENTER LA COMPRUEBA; F1 SALE, EL HUSILLO QUEDA COMO ESTÁ</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_model.py" />
+      <source>Tool {number} was never set.</source>
+      <translation>La herramienta {number} nunca se puso.</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_view.py" />
+      <source>AUTO</source>
+      <translation>AUTO</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_view.py" />
+      <source>DRIVES</source>
+      <translation>SERVOS</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_view.py" />
+      <source>HISTORY  ·  ARROW UP AND DOWN</source>
+      <translation>HISTORIA  ·  FLECHA ARRIBA Y ABAJO</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_view.py" />
+      <source>IN FORCE</source>
+      <translation>VIGENTE</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_view.py" />
+      <source>LINE</source>
+      <translation>LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_view.py" />
+      <source>LINE  ·  READY, CYCLE START RUNS IT</source>
+      <translation>LÍNEA  ·  LISTA, INICIO DE CICLO LA CORRE</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_view.py" />
+      <source>No line was run yet.</source>
+      <translation>Todavía no se corre ninguna línea.</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_view.py" />
+      <source>RESET</source>
+      <translation>RESET</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_view.py" />
+      <source>SPN STOP</source>
+      <translation>PARO HUS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/effect_shown.py" />
+      <source>DRAWING THE PATH BEFORE AND AFTER</source>
+      <translation>DIBUJANDO LA TRAYECTORIA ANTES Y DESPUÉS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/effect_shown.py" />
+      <source>LOAD A PROGRAM FIRST: THE EFFECT IS SHOWN ON ITS PATH</source>
+      <translation>CARGUE PRIMERO UN PROGRAMA: EL EFECTO SE VE SOBRE SU TRAYECTORIA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/effect_shown.py" />
+      <source>NOTHING HAS CHANGED HERE YET: TYPE A VALUE OR CHANGE ONE, THEN PRESS F6</source>
+      <translation>AQUÍ AÚN NO CAMBIÓ NADA: ESCRIBA UN VALOR O CAMBIE UNO, Y OPRIMA F6</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/effect_shown.py" />
+      <source>THE EFFECT CANNOT BE DRAWN: {why}</source>
+      <translation>EL EFECTO NO SE PUEDE DIBUJAR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/effect_shown.py" />
+      <source>THE PATHS DIFFER IN KIND; F6 SHOWS THE TABLE</source>
+      <translation>LAS TRAYECTORIAS DIFIEREN EN CLASE; F6 MUESTRA LA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/effect_shown.py" />
+      <source>THIS CHANGE DOES NOTHING TO THE LOADED PROGRAM; F6 SHOWS THE TABLE</source>
+      <translation>ESTE CAMBIO NO HACE NADA EN EL PROGRAMA CARGADO; F6 MUESTRA LA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/effect_shown.py" />
+      <source>UP TO {far} APART, AT THE CIRCLE; F6 GOES NEAR, Z ZOOMS, ESC SHOWS THE TABLE</source>
+      <translation>HASTA {far} DE DIFERENCIA, EN EL CÍRCULO; F6 SE ACERCA, Z AMPLÍA, ESC MUESTRA LA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/effect_shown.py" />
+      <source>UP TO {far} APART; Z ZOOMS, F6 SHOWS THE TABLE</source>
+      <translation>HASTA {far} DE DIFERENCIA; Z AMPLÍA, F6 MUESTRA LA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_book.py" />
+      <source>C: all offsets cleared</source>
+      <translation>C: todas las compensaciones a cero</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_book.py" />
+      <source>NO OFFSETS ARE KEPT HERE</source>
+      <translation>AQUÍ NO SE GUARDAN COMPENSACIONES</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_book.py" />
+      <source>NO ZERO OFFSETS ARE KEPT HERE</source>
+      <translation>AQUÍ NO SE GUARDAN CEROS DE PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_book.py" />
+      <source>OFFSETS CANNOT BE KEPT: %1</source>
+      <translation>NO SE PUEDEN GUARDAR LAS COMPENSACIONES: %1</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_book.py" />
+      <source>STILL SAVING THE CHANGE BEFORE: PRESS RETURN AGAIN</source>
+      <translation>EL CAMBIO ANTERIOR TODAVÍA SE ESTÁ GUARDANDO: OPRIMA RETURN OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>; IT COUNTS FROM THE NEXT CYCLE START</source>
+      <translation>; CUENTA DESDE EL PRÓXIMO INICIO DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>; IT COUNTS FROM THE NEXT PART</source>
+      <translation>; CUENTA DESDE LA PRÓXIMA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>A PROGRAM IS UNDER WAY: ONLY WEAR AND F9 CORRECTIONS MAY CHANGE</source>
+      <translation>HAY UN PROGRAMA EN MARCHA: SÓLO EL DESGASTE Y LAS CORRECCIONES DE F9 PUEDEN CAMBIAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>PARTS RUN: A CORRECTION COUNTS FROM THE NEXT PART, ONCE IT IS PROVED</source>
+      <translation>HAY PIEZAS EN MARCHA: UNA CORRECCIÓN CUENTA DESDE LA PRÓXIMA PIEZA, UNA VEZ COMPROBADA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>THE PART UNDER WAY KEEPS ITS OFFSETS: A CORRECTION COUNTS FROM THE NEXT CYCLE START</source>
+      <translation>LA PIEZA EN MARCHA CONSERVA SUS COMPENSACIONES: UNA CORRECCIÓN CUENTA DESDE EL PRÓXIMO ARRANQUE DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST</source>
+      <translation>LOS CARROS SE MUEVEN: LAS COMPENSACIONES CAMBIAN EN REPOSO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_history.py" />
+      <source>SAVED</source>
+      <translation>GUARDADO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_history.py" />
+      <source>no</source>
+      <translation>no</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_history.py" />
+      <source>yes</source>
+      <translation>sí</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_history.py" />
+      <source>{count} OFFSETS</source>
+      <translation>{count} COMPENSACIONES</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_history.py" />
+      <source>{count} offsets changed: F5 shows them</source>
+      <translation>cambiaron {count} compensaciones: F5 las muestra</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_history.py" />
+      <source>{names} SAVED</source>
+      <translation>{names} GUARDADAS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_history.py" />
+      <source>{names} TAKEN BACK</source>
+      <translation>{names} RETIRADAS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_history_view.py" />
+      <source>HISTORY  ·  NEWEST ON TOP</source>
+      <translation>HISTORIA  ·  LO NUEVO ARRIBA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_history_view.py" />
+      <source>No offset was changed yet.</source>
+      <translation>Todavía no se cambia ninguna compensación.</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>MASTER</source>
+      <translation>MAESTRA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>NOSE RADIUS</source>
+      <translation>RADIO PUNTA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>REMARK</source>
+      <translation>NOTA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>TIP</source>
+      <translation>PUNTA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>WEAR</source>
+      <translation>DESGASTE</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>WEAR X</source>
+      <translation>DESGASTE X</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>WEAR Z</source>
+      <translation>DESGASTE Z</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>X</source>
+      <translation>X</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>Z</source>
+      <translation>Z</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>degrees</source>
+      <translation>grados</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>not set</source>
+      <translation>sin poner</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>{field} takes no sum; press Return to set it</source>
+      <translation>{field} no acepta sumas; oprima Return para ponerlo</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>{field} takes {range}</source>
+      <translation>{field} acepta {range}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>{field} would become {value} {unit}; it may be {low}…{high}</source>
+      <translation>{field} quedaría en {value} {unit}; puede ser {low}…{high}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>{name} would become {value} {unit}; it may be {low}…{high}</source>
+      <translation>{name} quedaría en {value} {unit}; puede ser {low}…{high}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_dialogue.py" />
+      <source>D{number:g} does not exist; offsets are D1…32</source>
+      <translation>D{number:g} no existe; las compensaciones son D1…32</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_dialogue.py" />
+      <source>D{number} IS AS IT WAS</source>
+      <translation>D{number} QUEDA COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_dialogue.py" />
+      <source>FINISH D{number} FIRST, OR PRESS ESC</source>
+      <translation>TERMINE PRIMERO D{number}, U OPRIMA ESC</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_dialogue.py" />
+      <source>Offset Number?</source>
+      <translation>¿Número de compensación?</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_dialogue.py" />
+      <source>R?</source>
+      <translation>¿R?</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_dialogue.py" />
+      <source>THE CONTROL HAS CHANGED ITS UNIT: NOTHING WAS CHANGED, ENTER IT AGAIN</source>
+      <translation>EL CONTROL HA CAMBIADO SU UNIDAD: NO SE CAMBIÓ NADA, INTRODÚZCALO OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_dialogue.py" />
+      <source>X DIAMETER CORRECTION?</source>
+      <translation>¿CORRECCIÓN EN DIÁMETRO X?</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_dialogue.py" />
+      <source>Z CORRECTION?</source>
+      <translation>¿CORRECCIÓN Z?</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
+      <source>C CLEARS ALL OFFSETS ONLY WHILE Offset Number? IS ASKED; PRESS ESC FIRST</source>
+      <translation>C BORRA TODO SÓLO MIENTRAS SE PREGUNTA ¿Número de compensación?; OPRIMA PRIMERO ESC</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
+      <source>EVERY VALUE TAKES ARITHMETIC, SUCH AS .5-.002; RETURN ALONE KEEPS THE VALUE</source>
+      <translation>TODO VALOR ACEPTA OPERACIONES, COMO .5-.002; RETURN SOLO CONSERVA EL VALOR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
+      <source>F5 OR ESC LEAVES THE HISTORY; PAGE UP AND PAGE DOWN LOOK ON</source>
+      <translation>F5 O ESC DEJA LA HISTORIA; RE PÁG Y AV PÁG SIGUEN VIENDO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
+      <source>PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, ESC TO KEEP THEM</source>
+      <translation>OPRIMA Y PARA BORRAR LAS 32 COMPENSACIONES SECUNDARIAS, ESC PARA CONSERVARLAS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
+      <source>Press C to clear all offsets</source>
+      <translation>Oprima C para borrar todas las compensaciones</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
+      <source>Press Esc to exit offset adjustment screen</source>
+      <translation>Oprima Esc para salir del ajuste de compensaciones</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets_view.py" />
+      <source>ALL 32 OFFSETS</source>
+      <translation>LAS 32 COMPENSACIONES</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets_view.py" />
+      <source>EFFECT</source>
+      <translation>EFECTO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets_view.py" />
+      <source>SECONDARY OFFSETS  ·  X STORED AS A RADIUS</source>
+      <translation>COMPENSACIONES SECUNDARIAS  ·  X SE GUARDA COMO RADIO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets_view.py" />
+      <source>Secondary offset number:</source>
+      <translation>Número de compensación secundaria:</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets_view.py" />
+      <source>ZERO</source>
+      <translation>CEROS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_cells.py" />
+      <source>NOW {axis}: T{number} IS SET WHEN BOTH ARE THERE</source>
+      <translation>AHORA {axis}: T{number} QUEDA PUESTA CUANDO ESTÉN LAS DOS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_cells.py" />
+      <source>T{number} WAS NEVER SET: TYPE X AND Z FIRST, OR TOUCH IT OFF ON THE JOG PAGE</source>
+      <translation>T{number} NUNCA SE PUSO: ESCRIBA PRIMERO X Y Z, O TÓQUELA EN LA PÁGINA MANUAL</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_cells.py" />
+      <source>chosen as master</source>
+      <translation>elegida como maestra</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_cells.py" />
+      <source>entered by hand</source>
+      <translation>escrito a mano</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_cells.py" />
+      <source>no master</source>
+      <translation>sin maestra</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets.py" />
+      <source>ARROWS CHOOSE A CELL; TYPE A VALUE OR A SUM; RETURN SETS IT, F2 ADDS IT TO WHAT IS THERE</source>
+      <translation>LAS FLECHAS ELIGEN CELDA; ESCRIBA UN VALOR O UNA SUMA; RETURN LO PONE, F2 LO SUMA A LO QUE HAY</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets.py" />
+      <source>NO TOOL IS THE MASTER: CHOOSE ONE IN ITS COLUMN WITH RETURN</source>
+      <translation>NINGUNA HERRAMIENTA ES LA MAESTRA: ELIJA UNA EN SU COLUMNA CON RETURN</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets.py" />
+      <source>PRESS RETURN TO SET IT, OR ESC TO LEAVE IT AS IT WAS</source>
+      <translation>OPRIMA RETURN PARA PONERLO, O ESC PARA DEJARLO COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets.py" />
+      <source>PRESS RETURN TO WRITE A REMARK</source>
+      <translation>OPRIMA RETURN PARA ESCRIBIR UNA NOTA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets.py" />
+      <source>TYPE THE REMARK; RETURN KEEPS IT, ESC LEAVES IT AS IT WAS; F-KEYS STILL WORK</source>
+      <translation>ESCRIBA LA NOTA; RETURN LA GUARDA, ESC LA DEJA COMO ESTABA; LAS TECLAS F SIGUEN FUNCIONANDO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets.py" />
+      <source>TYPE WHAT IS TO BE ADDED FIRST, THEN PRESS F2</source>
+      <translation>ESCRIBA PRIMERO LO QUE SE SUMA, Y OPRIMA F2</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets.py" />
+      <source>T{number} IS NOT SET: X AND Z BELONG TOGETHER</source>
+      <translation>T{number} NO SE PUSO: X Y Z VAN JUNTAS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets.py" />
+      <source>X AND Z ARE SHOWN FROM THE MASTER: PRESS F3, THEN TYPE THEM FROM HOME</source>
+      <translation>X Y Z SE MUESTRAN DESDE LA MAESTRA: OPRIMA F3, Y ESCRÍBALAS DESDE LA REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets_view.py" />
+      <source>ADD</source>
+      <translation>SUMAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets_view.py" />
+      <source>F2 adds what is typed; F3 shows X and Z from the master; Esc leaves</source>
+      <translation>F2 suma lo escrito; F3 muestra X y Z desde la maestra; Esc sale</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets_view.py" />
+      <source>TOOL OFFSETS</source>
+      <translation>HERRAMIENTAS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets_view.py" />
+      <source>X AND Z FROM THE MASTER T{number}</source>
+      <translation>X Y Z DESDE LA MAESTRA T{number}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>A PROGRAM IS UNDER WAY: G54 TO G59 CHANGE BETWEEN CYCLES ONLY</source>
+      <translation>HAY UN PROGRAMA EN CURSO: G54 A G59 SÓLO CAMBIAN ENTRE CICLOS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>C, DEGREES?</source>
+      <translation>¿C, GRADOS?</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>C: all cleared</source>
+      <translation>C: todo borrado</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>G{code} IS AS IT WAS</source>
+      <translation>G{code} QUEDA COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>PRESS Y TO CLEAR G54 TO G59, ESC TO KEEP THEM</source>
+      <translation>OPRIMA Y PARA BORRAR G54 A G59, ESC PARA CONSERVARLOS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>THIS MACHINE HAS NO AXIS {axis}</source>
+      <translation>ESTA MÁQUINA NO TIENE EJE {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>TYPE A VALUE OR A SUM AND PRESS RETURN; ARROWS AND TAB CHOOSE ANOTHER CELL</source>
+      <translation>ESCRIBA UN VALOR O UNA SUMA Y OPRIMA RETURN; FLECHAS Y TAB ELIGEN OTRA CELDA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>X RADIUS, MM?</source>
+      <translation>¿RADIO X, MM?</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>Z, MM?</source>
+      <translation>¿Z, MM?</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>reads {value}</source>
+      <translation>lee {value}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>{axis} DOES NOT KNOW ITS POSITION: HOME IT FIRST</source>
+      <translation>{axis} NO CONOCE SU POSICIÓN: REFERÉNCIELO PRIMERO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets_view.py" />
+      <source>F2: where the machine stands reads what is typed        C: clear G54 to G59        Esc: exit</source>
+      <translation>F2: donde está la máquina lee lo que se escribe        C: borra G54 a G59        Esc: sale</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets_view.py" />
+      <source>HERE</source>
+      <translation>AQUÍ</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets_view.py" />
+      <source>SETTABLE OFFSETS  ·  X IS A RADIUS  ·  MM AND DEGREES</source>
+      <translation>CEROS AJUSTABLES  ·  X ES RADIO  ·  MM Y GRADOS</translation>
+    </message>
+    <message>
+      <location filename="app/path/measuring.py" />
+      <source>ANGLE {axis}</source>
+      <translation>ÁNGULO {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/path/measuring.py" />
+      <source>ARROWS: NEXT POINT   TAB: ALONG THE PATH   RETURN: HOLD, AND MEASURE FROM THERE   ESC: BACK</source>
+      <translation>FLECHAS: PUNTO SIGUIENTE   TAB: POR LA TRAYECTORIA   RETURN: FIJA, Y MIDE DESDE AHÍ   ESC: REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/path/measuring.py" />
+      <source>CENTRE</source>
+      <translation>CENTRO</translation>
+    </message>
+    <message>
+      <location filename="app/path/measuring.py" />
+      <source>CROSSING</source>
+      <translation>CRUCE</translation>
+    </message>
+    <message>
+      <location filename="app/path/measuring.py" />
+      <source>ROUND</source>
+      <translation>REDONDO</translation>
+    </message>
+    <message>
+      <location filename="app/path/measuring.py" />
+      <source>TO X</source>
+      <translation>A LA X</translation>
+    </message>
+    <message>
+      <location filename="app/path/measuring.py" />
+      <source>TO Z</source>
+      <translation>A LA Z</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_aspects.py" />
+      <source>FACE</source>
+      <translation>CARA</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_aspects.py" />
+      <source>PATH</source>
+      <translation>TRAYECTORIA</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_aspects.py" />
+      <source>SIDE</source>
+      <translation>LADO</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_marks_view.py" />
+      <source>AT MOST {length} {unit} APART  ·  AT THE CIRCLE</source>
+      <translation>A LO MÁS {length} {unit} DE DIFERENCIA  ·  EN EL CÍRCULO</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_marks_view.py" />
+      <source>FACE  ·  SEEN FROM THE TAILSTOCK</source>
+      <translation>CARA  ·  VISTA DESDE EL CONTRAPUNTO</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_marks_view.py" />
+      <source>MEAS</source>
+      <translation>MEDIR</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_marks_view.py" />
+      <source>NOTHING THAT IS CUT HAS CHANGED</source>
+      <translation>NO CAMBIÓ NADA DE LO QUE SE CORTA</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_marks_view.py" />
+      <source>SIDE  ·  UNROLLED AT Ø {diameter}</source>
+      <translation>LADO  ·  DESARROLLADO EN Ø {diameter}</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_marks_view.py" />
+      <source>The path is shown when a program is loaded.</source>
+      <translation>La trayectoria se muestra cuando hay un programa cargado.</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_marks_view.py" />
+      <source>after</source>
+      <translation>después</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_marks_view.py" />
+      <source>before</source>
+      <translation>antes</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_marks_view.py" />
+      <source>done</source>
+      <translation>hecho</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_marks_view.py" />
+      <source>rapid</source>
+      <translation>rápido</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_marks_view.py" />
+      <source>to come</source>
+      <translation>por hacer</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>A SAMPLE IS LEFT AS IT IS: COPY IT FIRST (F4)</source>
+      <translation>LAS MUESTRAS NO SE TOCAN: CÓPIELA PRIMERO (F4)</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>ITS NAME IS {name} NOW</source>
+      <translation>AHORA SE LLAMA {name}</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>NAME OF THE COPY?</source>
+      <translation>¿NOMBRE DE LA COPIA?</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>NEW NAME?</source>
+      <translation>¿NOMBRE NUEVO?</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>NO PROGRAM IS MARKED</source>
+      <translation>NO HAY PROGRAMA MARCADO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT</source>
+      <translation>OPRIMA Y PARA BORRAR {name} (SUS VERSIONES SE GUARDAN), ESC PARA DEJARLO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>STILL AT IT: WAIT UNTIL IT IS DONE</source>
+      <translation>TODAVÍA TRABAJANDO: ESPERE A QUE TERMINE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>{name} IS DELETED; ITS VERSIONS ARE KEPT</source>
+      <translation>{name} QUEDÓ BORRADO; SUS VERSIONES SE GUARDAN</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>{name} IS INTERRUPTED: FINISH IT, OR GIVE IT UP, FIRST</source>
+      <translation>{name} ESTÁ INTERRUMPIDO: PRIMERO TERMÍNELO O ABANDÓNELO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>{name} IS THERE NOW</source>
+      <translation>YA ESTÁ {name}</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>{name} IS UNDER WAY: LET IT END FIRST</source>
+      <translation>{name} ESTÁ EN CURSO: DEJE QUE TERMINE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/file_changes.py" />
+      <source>%1 CANNOT BE DELETED: %2</source>
+      <translation>NO SE PUEDE BORRAR %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/programs/file_changes.py" />
+      <source>%1 CANNOT BE RENAMED: %2</source>
+      <translation>NO SE PUEDE CAMBIAR EL NOMBRE DE %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/programs/file_changes.py" />
+      <source>%1 IS ITS NAME ALREADY</source>
+      <translation>%1 YA ES SU NOMBRE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/file_changes.py" />
+      <source>%1 IS NOT THERE ANY MORE</source>
+      <translation>%1 YA NO ESTÁ</translation>
+    </message>
+    <message>
+      <location filename="app/programs/file_changes.py" />
+      <source>%1 IS THERE ALREADY; TAKE ANOTHER NAME</source>
+      <translation>%1 YA EXISTE; USE OTRO NOMBRE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/file_changes.py" />
+      <source>%1 WOULD BE HIDDEN; TAKE A NAME WITHOUT A POINT IN FRONT</source>
+      <translation>%1 QUEDARÍA OCULTO; USE UN NOMBRE SIN PUNTO AL PRINCIPIO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/file_changes.py" />
+      <source>NOT DELETED, BECAUSE ITS TEXT CANNOT BE KEPT: %1</source>
+      <translation>NO SE BORRÓ, PORQUE SU TEXTO NO SE PUEDE GUARDAR: %1</translation>
+    </message>
+    <message>
+      <location filename="app/programs/file_changes.py" />
+      <source>NOTHING IS ENTERED; TYPE A NAME</source>
+      <translation>NO SE ESCRIBIÓ NADA; ESCRIBA UN NOMBRE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/file_changes.py" />
+      <source>RENAMED, BUT ITS VERSIONS STAY UNDER %1: %2</source>
+      <translation>CAMBIÓ DE NOMBRE, PERO SUS VERSIONES QUEDAN EN %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/programs/file_prompt_view.py" />
+      <source>%1 programs</source>
+      <translation>%1 programas</translation>
+    </message>
+    <message>
+      <location filename="app/programs/file_prompt_view.py" />
+      <source>RETURN takes the marked program   ESC keeps the present one   F2 shows the list</source>
+      <translation>RETURN toma el programa marcado   ESC conserva el actual   F2 muestra la lista</translation>
+    </message>
+    <message>
+      <location filename="app/programs/folder_chooser.py" />
+      <source>%1 CANNOT BE READ: %2</source>
+      <translation>NO SE PUEDE LEER %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/programs/folder_chooser.py" />
+      <source>THIS CONTROL</source>
+      <translation>ESTE CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>%1 CANNOT BE BROUGHT TO THE DISK: %2</source>
+      <translation>%1 NO SE PUEDE LLEVAR AL DISCO: %2</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>%1 CANNOT BE WRITTEN: %2</source>
+      <translation>NO SE PUEDE ESCRIBIR %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>%1 DOES NOT READ BACK AS IT WAS WRITTEN: TAKE ANOTHER STICK</source>
+      <translation>%1 NO SE LEE COMO SE ESCRIBIÓ: USE OTRA MEMORIA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>%1 IS LARGER THAN ANY PROGRAM (%2 MB)</source>
+      <translation>%1 ES MÁS GRANDE QUE CUALQUIER PROGRAMA (%2 MB)</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>%1 IS NO PROGRAM: %2</source>
+      <translation>%1 NO ES UN PROGRAMA: %2</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>%1 IS NOT REPLACED, BECAUSE ITS TEXT CANNOT BE KEPT: %2</source>
+      <translation>%1 NO SE REEMPLAZA, PORQUE SU TEXTO NO SE PUEDE GUARDAR: %2</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>ALL HERE</source>
+      <translation>TODO ACÁ</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>COPYING: LEAVE THE STICK WHERE IT IS</source>
+      <translation>COPIANDO: NO SAQUE LA MEMORIA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>EXPORT %1</source>
+      <translation>EXPORTAR %1</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>F4 EXPORTS TO THE FOLDER THAT IS OPEN; RETURN OPENS FOLDERS</source>
+      <translation>F4 EXPORTA A LA CARPETA ABIERTA; RETURN ABRE CARPETAS</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>IMPORT</source>
+      <translation>IMPORTAR</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>LOOK</source>
+      <translation>BUSCAR</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>NO PROGRAM IS IN THIS FOLDER</source>
+      <translation>NO HAY PROGRAMAS EN ESTA CARPETA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>ONE HERE</source>
+      <translation>UNO ACÁ</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>OPEN A PLACE FIRST: ARROWS MARK IT, RETURN OPENS IT</source>
+      <translation>ABRA PRIMERO UN LUGAR: LAS FLECHAS LO MARCAN, RETURN LO ABRE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>RETURN OPENS A PLACE OR FOLDER, ON A PROGRAM IT IMPORTS IT; F5 IMPORTS ALL; ESC GOES BACK</source>
+      <translation>RETURN ABRE UN LUGAR O CARPETA, Y SOBRE UN PROGRAMA LO IMPORTA; F5 IMPORTA TODO; ESC REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>RETURN OPENS A PLACE OR FOLDER; F4 COPIES THE MARKED PROGRAM THERE, F5 ALL; ESC GOES BACK</source>
+      <translation>RETURN ABRE UN LUGAR O CARPETA; F4 COPIA AHÍ EL PROGRAMA MARCADO, F5 TODOS; ESC REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>replaced by an import</source>
+      <translation>reemplazado por una importación</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>{count} COPIED, READ BACK AND ON THE DISK: A STICK IS SAFE TO REMOVE</source>
+      <translation>{count} COPIADOS, RELEÍDOS Y EN EL DISCO: YA PUEDE SACAR LA MEMORIA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>{count} IMPORTED AND PROVED WITHOUT AN ERROR</source>
+      <translation>{count} IMPORTADOS Y COMPROBADOS SIN ERROR</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>{count} IMPORTED; NOT ALL PROVE: {found}</source>
+      <translation>{count} IMPORTADOS; NO TODOS PASAN LA COMPROBACIÓN: {found}</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>{names}: THERE ALREADY WITH ANOTHER TEXT. PRESS Y TO REPLACE, ESC TO KEEP</source>
+      <translation>{names}: YA EXISTE CON OTRO TEXTO. OPRIMA Y PARA REEMPLAZAR, ESC PARA CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/programs/preview.py" />
+      <source>TOO LARGE FOR A PREVIEW</source>
+      <translation>DEMASIADO GRANDE PARA LA VISTA PREVIA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>COPY</source>
+      <translation>COPIAR</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>DELETE</source>
+      <translation>BORRAR</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>EXPORT</source>
+      <translation>EXPORTAR</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>NAME</source>
+      <translation>NOMBRE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>RENAME</source>
+      <translation>NOMBRAR</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>RETURN LOADS THE MARKED PROGRAM ONCE NONE IS UNDER WAY; H HOLDS</source>
+      <translation>RETURN CARGA EL PROGRAMA MARCADO CUANDO NO HAYA OTRO EN CURSO; H RETIENE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>SORT</source>
+      <translation>ORDENAR</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>TYPE A NAME AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS</source>
+      <translation>ESCRIBA UN NOMBRE Y OPRIMA RETURN; ESC DEJA TODO COMO ESTÁ</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>TYPE A PART OF A NAME, OR MARK IT WITH ARROWS; RETURN LOADS IT; ESC FOR AUTOMATIC</source>
+      <translation>ESCRIBA PARTE DEL NOMBRE, O MÁRQUELO CON FLECHAS; RETURN LO CARGA; ESC A AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>%1 GB</source>
+      <translation>%1 GB</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>%1 OF %2 PROGRAMS</source>
+      <translation>%1 DE %2 PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>%1 PROGRAMS</source>
+      <translation>%1 PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>BEST</source>
+      <translation>MEJOR</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>BEST CYCLE</source>
+      <translation>MEJOR CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>DATE</source>
+      <translation>FECHA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>FOLDER</source>
+      <translation>CARPETA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>LAST CYCLE</source>
+      <translation>ÚLTIMO CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>LAST PROOF</source>
+      <translation>ÚLTIMA PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>LAST RUN</source>
+      <translation>ÚLTIMA CORRIDA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>NEVER PROVED</source>
+      <translation>NUNCA COMPROBADO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>OWN PROGRAM</source>
+      <translation>PROGRAMA PROPIO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>PLACES</source>
+      <translation>LUGARES</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>PLANNED</source>
+      <translation>PREVISTO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>PROGRAM</source>
+      <translation>PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>PROGRAMS  ·  %1  ·  BY %2</source>
+      <translation>PROGRAMAS  ·  %1  ·  POR %2</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>PROVED</source>
+      <translation>COMPROBADO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>SIZE</source>
+      <translation>TAMAÑO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>WHERE</source>
+      <translation>DÓNDE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/programs_view.py" />
+      <source>DRAWING …</source>
+      <translation>DIBUJANDO …</translation>
+    </message>
+    <message>
+      <location filename="app/programs/programs_view.py" />
+      <source>PREVIEW</source>
+      <translation>VISTA PREVIA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/programs_view.py" />
+      <source>RECORD</source>
+      <translation>REGISTRO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_record.py" />
+      <source>%1 ERRORS: %2</source>
+      <translation>%1 ERRORES: %2</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_record.py" />
+      <source>: the control ended in the middle of its last run</source>
+      <translation>: el control terminó en medio de su última corrida</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_record.py" />
+      <source>ALARM %1</source>
+      <translation>ALARMA %1</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_record.py" />
+      <source>COMPLETE</source>
+      <translation>COMPLETO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_record.py" />
+      <source>CUT OFF</source>
+      <translation>CORTADO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_record.py" />
+      <source>E-STOP</source>
+      <translation>PARO DE EMERGENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_record.py" />
+      <source>GIVEN UP</source>
+      <translation>ABANDONADO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_record.py" />
+      <source>NOT COUNTED</source>
+      <translation>NO CONTADO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/whole_file.py" />
+      <source>NOT SAVED: %1</source>
+      <translation>NO SE GUARDÓ: %1</translation>
+    </message>
+    <message>
+      <location filename="app/programs/whole_file.py" />
+      <source>NOT SAVED: THE TEXT HOLDS SIGNS THAT NO PROGRAM FILE CAN KEEP</source>
+      <translation>NO SE GUARDÓ: EL TEXTO TIENE SIGNOS QUE NINGÚN ARCHIVO DE PROGRAMA PUEDE GUARDAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/alarm_panels.py" />
+      <source>ALARMS AND STOPS  ·  ESC CLOSES  ·  PAGE DOWN: OLDER</source>
+      <translation>ALARMAS Y PAROS  ·  ESC CIERRA  ·  AV PÁG: ANTERIORES</translation>
+    </message>
+    <message>
+      <location filename="app/screen/alarm_panels.py" />
+      <source>ALSO: %1</source>
+      <translation>TAMBIÉN: %1</translation>
+    </message>
+    <message>
+      <location filename="app/screen/alarm_panels.py" />
+      <source>CAUSE, THE LIKELIEST FIRST</source>
+      <translation>CAUSA, LA MÁS PROBABLE PRIMERO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/alarm_panels.py" />
+      <source>LINE %1</source>
+      <translation>LÍNEA %1</translation>
+    </message>
+    <message>
+      <location filename="app/screen/alarm_panels.py" />
+      <source>No alarm and no stop yet.</source>
+      <translation>Todavía ninguna alarma ni paro.</translation>
+    </message>
+    <message>
+      <location filename="app/screen/alarm_panels.py" />
+      <source>WHAT TO DO</source>
+      <translation>QUÉ HACER</translation>
+    </message>
+    <message>
+      <location filename="app/screen/alarm_panels.py" />
+      <source>line %1</source>
+      <translation>línea %1</translation>
+    </message>
+    <message>
+      <location filename="app/screen/entry_panel.py" />
+      <source>DEL</source>
+      <translation>BORRAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/entry_panel.py" />
+      <source>RETURN</source>
+      <translation>RETURN</translation>
+    </message>
+    <message>
+      <location filename="app/screen/language.py" />
+      <source>there is no catalogue turndesk_%1.qm in %2</source>
+      <translation>no hay catálogo turndesk_%1.qm en %2</translation>
+    </message>
+    <message>
+      <location filename="app/screen/letter_keys.py" />
+      <source>SPACE</source>
+      <translation>ESPACIO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/main_menu.py" />
+      <source>PRESS A FUNCTION KEY OR TOUCH A PAGE; ESC FOR AUTOMATIC</source>
+      <translation>OPRIMA UNA TECLA DE FUNCIÓN O TOQUE UNA PÁGINA; ESC A AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/main_window.py" />
+      <source>A PROGRAM IS UNDER WAY: STOP IT AND PRESS R BEFORE LEAVING</source>
+      <translation>HAY UN PROGRAMA EN CURSO: PÁRELO Y OPRIMA R ANTES DE SALIR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/main_window.py" />
+      <source>AN ENTRY HAS THE KEYBOARD, AND DOES NOT TAKE {key} HERE</source>
+      <translation>UN CAMPO TIENE EL TECLADO, Y NO ADMITE {key} AQUÍ</translation>
+    </message>
+    <message>
+      <location filename="app/screen/main_window.py" />
+      <source>THE SCREEN STOOD STILL FOR {seconds} S: WHAT WAS PRESSED MEANWHILE WAS FORGOTTEN</source>
+      <translation>LA PANTALLA ESTUVO DETENIDA {seconds} S: LO OPRIMIDO MIENTRAS TANTO SE OLVIDÓ</translation>
+    </message>
+    <message>
+      <location filename="app/screen/main_window.py" />
+      <source>{key} HAS NO FUNCTION ON THIS PAGE</source>
+      <translation>{key} NO TIENE FUNCIÓN EN ESTA PÁGINA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>AUTOMATIC</source>
+      <translation>AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>D1…D32: corrections of wear and size</source>
+      <translation>D1…D32: correcciones de desgaste y medida</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>EDITOR</source>
+      <translation>EDITOR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>G54…G59: where SINUMERIK programs have their zero</source>
+      <translation>G54…G59: dónde tienen su cero los programas SINUMERIK</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>JOG</source>
+      <translation>MANUAL</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>LIST</source>
+      <translation>LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>MAIN MENU</source>
+      <translation>MENÚ PRINCIPAL</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>MDI</source>
+      <translation>MDI</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>PROGRAMS</source>
+      <translation>PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>SECONDARY OFFSETS</source>
+      <translation>COMPENSACIÓN SECUNDARIA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>SPECIAL FUNCTIONS</source>
+      <translation>FUNCIONES ESPECIALES</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>T1…T32: position and nose radius</source>
+      <translation>T1…T32: posición y radio de punta</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>ZERO OFFSETS</source>
+      <translation>CEROS DE PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>list, preview, copy, import and export</source>
+      <translation>lista, vista previa, copiar, importar y exportar</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>move by hand, touch tools off</source>
+      <translation>mover a mano, tocar herramientas</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>one line at a time</source>
+      <translation>una línea a la vez</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>run programs</source>
+      <translation>correr programas</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>speed limit, parts, inputs and outputs, log, backup</source>
+      <translation>tope de velocidad, piezas, entradas y salidas, bitácora, respaldo</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>write and prove programs</source>
+      <translation>escribir y comprobar programas</translation>
+    </message>
+    <message>
+      <location filename="app/screen/program_listing.py" />
+      <source>%1  ·  HOME FOLLOWS AGAIN</source>
+      <translation>%1  ·  INICIO VUELVE A SEGUIR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/program_listing.py" />
+      <source>BLOCK</source>
+      <translation>BLOQUE</translation>
+    </message>
+    <message>
+      <location filename="app/screen/program_listing.py" />
+      <source>No program.</source>
+      <translation>Sin programa.</translation>
+    </message>
+    <message>
+      <location filename="app/screen/program_listing.py" />
+      <source>PROGRAM  ·  %1 LINES</source>
+      <translation>PROGRAMA  ·  %1 LÍNEAS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/readout_panels.py" />
+      <source>ACTUAL</source>
+      <translation>REAL</translation>
+    </message>
+    <message>
+      <location filename="app/screen/readout_panels.py" />
+      <source>FEED %1</source>
+      <translation>AVANCE %1</translation>
+    </message>
+    <message>
+      <location filename="app/screen/readout_panels.py" />
+      <source>SPINDLE %1</source>
+      <translation>HUSILLO %1</translation>
+    </message>
+    <message>
+      <location filename="app/screen/readout_panels.py" />
+      <source>STOP %1: %2</source>
+      <translation>PARO %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/screen/readout_panels.py" />
+      <source>SWITCH OFF</source>
+      <translation>APAGADO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/run_screen.py" />
+      <source>A MISTAKE OF THE SCREEN; THE MACHINE IS NOT CONCERNED: %1: %2</source>
+      <translation>UN ERROR DE LA PANTALLA; LA MÁQUINA NO TIENE QUE VER: %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
+      <source>CYCLE START</source>
+      <translation>INICIO DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
+      <source>CYCLE START: BOTH PALMS</source>
+      <translation>INICIO DE CICLO: DOS PALMAS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
+      <source>FEED HOLD</source>
+      <translation>RETENCIÓN DE AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
+      <source>FEED RATE</source>
+      <translation>AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
+      <source>IS IN</source>
+      <translation>OPRIMIDO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
+      <source>OPERATOR STATION</source>
+      <translation>ESTACIÓN DEL OPERADOR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
+      <source>OUT</source>
+      <translation>AFUERA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
+      <source>PAUSE</source>
+      <translation>PAUSA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
+      <source>SCR LOCK</source>
+      <translation>BLOQ DES</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
+      <source>SPINDLE SPEED</source>
+      <translation>VELOC DE HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
+      <source>SPINDLE SWITCH</source>
+      <translation>INTERRUPTOR HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
+      <source>STOP</source>
+      <translation>PARO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
+      <source>TWIST</source>
+      <translation>GIRE</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_bars.py" />
+      <source>NO PROGRAM</source>
+      <translation>SIN PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_bars.py" />
+      <source>STARTING</source>
+      <translation>ARRANCANDO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>%1 TO GO ON</source>
+      <translation>%1 PARA SEGUIR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>CYCLE</source>
+      <translation>CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>DRIVES ON</source>
+      <translation>SERVOS ACTIVOS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: {what}</source>
+      <translation>EN MEMORIA, SE ESCRIBE CUANDO HAYA ESPACIO: {what}</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>LAST</source>
+      <translation>ÚLTIMO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>LEFT</source>
+      <translation>FALTA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>NOT KEPT</source>
+      <translation>SIN GUARDAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>NOT KEPT: {why}</source>
+      <translation>SIN GUARDAR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>PARTS  ·  TIME</source>
+      <translation>PIEZAS  ·  TIEMPO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>TOOL  ·  OFFSET</source>
+      <translation>HERRAMIENTA  ·  COMPENSACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>(WAY OUT OF THE PART)</source>
+      <translation>(SALIDA DE LA PIEZA)</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -2500,8 +3475,53 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
+      <source>CHOOSE A GOOD LINE FIRST</source>
+      <translation>ELIJA PRIMERO UNA LÍNEA BUENA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
       <source>CHOOSE A PROGRAM FIRST (F2)</source>
       <translation>ELIJA PRIMERO UN PROGRAMA (F2)</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>COMPARE; LOOK AT THE WAY AND AT WHAT WILL START; F10 CONFIRMS</source>
+      <translation>COMPARE; VEA EL CAMINO Y LO QUE ARRANCARÁ; F10 CONFIRMA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>ENTER FIRST; ONLY A LINE IN A LOOP OR A SUBROUTINE HAS PASSES</source>
+      <translation>PRIMERO ENTER; SÓLO TIENE PASADAS UNA LÍNEA DE UN LAZO O DE UNA SUBRUTINA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>GOING THROUGH THE PROGRAM; ESC GIVES UP</source>
+      <translation>RECORRIENDO EL PROGRAMA; ESC ABANDONA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>LINE {line} WAS RUNNING WHEN THE PROGRAM BROKE OFF; ENTER REBUILDS ITS STATE, F4 ONLY LEADS OUT</source>
+      <translation>LA LÍNEA {line} CORRÍA AL INTERRUMPIRSE EL PROGRAMA; ENTER RECONSTRUYE SU ESTADO, F4 SÓLO SACA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>LOOK AT THE WAY OUT OF THE PART; F10 CONFIRMS IT</source>
+      <translation>VEA EL CAMINO DE SALIDA DE LA PIEZA; F10 LO CONFIRMA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>NO START FROM THIS LINE: F8 OR F9 GOES TO THE NEAREST GOOD ONE</source>
+      <translation>DESDE ESTA LÍNEA NO ARRANCA: F8 O F9 VA A LA BUENA MÁS CERCANA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>NO START: SEARCH A LINE AND CONFIRM IT FIRST (F10)</source>
+      <translation>NO ARRANCA: BUSQUE PRIMERO UNA LÍNEA Y CONFÍRMELA (F10)</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>PROVING THE RESTART; ESC GIVES UP</source>
+      <translation>COMPROBANDO EL REARRANQUE; ESC ABANDONA</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -2510,13 +3530,68 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
+      <source>SWITCH THE DRIVES ON FIRST (D)</source>
+      <translation>ENCIENDA PRIMERO LOS SERVOS (D)</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>THE LINE CANNOT BE SEARCHED: {why}</source>
+      <translation>LA LÍNEA NO SE PUEDE BUSCAR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
       <source>THE PROGRAM IS NOT PROVED WITHOUT ERRORS: SEARCHTO NEEDS THAT</source>
       <translation>EL PROGRAMA NO ESTÁ COMPROBADO SIN ERRORES: BUSCAR A LO NECESITA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>TO START THE RESTART {start}; ESC TAKES IT BACK</source>
+      <translation>PARA INICIAR EL REARRANQUE {start}; ESC LO RETIRA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>TO TAKE THE TOOL OUT OF THE PART {start}; ESC TAKES IT BACK</source>
+      <translation>PARA SACAR LA HERRAMIENTA DE LA PIEZA {start}; ESC LO ANULA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>TYPE A LINE NUMBER OR A TEXT, OR CHOOSE BY THE ARROWS; ENTER REBUILDS THE STATE</source>
+      <translation>ESCRIBA UN NÚMERO DE LÍNEA O UN TEXTO, O ELIJA CON FLECHAS; ENTER RECONSTRUYE EL ESTADO</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>TYPE A TEXT FIRST; A QUOTATION MARK BEFORE FIGURES MAKES THEM ONE</source>
+      <translation>ESCRIBA PRIMERO UN TEXTO; COMILLAS ANTES DE LAS CIFRAS LAS VUELVEN TEXTO</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>WAY OUT</source>
+      <translation>SALIDA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>WILL NOT START: {why}</source>
+      <translation>NO ARRANCARÁ: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_model.py" />
+      <source>{text} IS IN NO LINE</source>
+      <translation>{text} NO ESTÁ EN NINGUNA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_plan.py" />
+      <source>C HAS TURNED SINCE T{tool} WENT IN: TURN THE SPINDLE FREE BY HAND AND JOG T{tool} OUT</source>
+      <translation>C GIRÓ DESDE QUE ENTRÓ T{tool}: LIBÉRELA GIRANDO EL HUSILLO A MANO Y SAQUE T{tool} A MANO</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
       <source>CALLED ON LINE</source>
       <translation>LLAMADA EN LA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_plan.py" />
+      <source>HOW T{tool} CAME TO STAND HERE IS NOT KNOWN: JOG IT CLEAR OF THE PART BY THE WAY IT CAME</source>
+      <translation>NO SE SABE CÓMO LLEGÓ AQUÍ T{tool}: SÁQUELA A MANO DE LA PIEZA POR DONDE ENTRÓ</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
@@ -2555,6 +3630,36 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
+      <source>T{tool} IS A TAP IN ITS THREAD: TURN IT OUT BY HAND WITH THE SPINDLE, Z FOLLOWING</source>
+      <translation>T{tool} ES UN MACHUELO EN SU ROSCA: SÁQUELO A MANO GIRANDO EL HUSILLO, CON Z DETRÁS</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_plan.py" />
+      <source>T{tool} STANDS CLEAR OF THE PART ALREADY</source>
+      <translation>T{tool} YA ESTÁ FUERA DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_plan.py" />
+      <source>T{tool} STANDS IN A THREAD: JOG X OFF THE THREAD FIRST, NOT Z</source>
+      <translation>T{tool} ESTÁ EN UNA ROSCA: SAQUE PRIMERO X DE LA ROSCA A MANO, NO Z</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_plan.py" />
+      <source>T{tool} STANDS IN THE PART: JOG IT OUT BY THE WAY IT CAME, {x} AND Z+ TOGETHER</source>
+      <translation>T{tool} ESTÁ EN LA PIEZA: SÁQUELA A MANO POR DONDE ENTRÓ, {x} Y Z+ A LA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_plan.py" />
+      <source>T{tool} STANDS IN THE PART: JOG Z+ OUT OF IT FIRST, NOT X</source>
+      <translation>T{tool} ESTÁ EN LA PIEZA: SÁQUELA PRIMERO A MANO EN Z+, NO EN X</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_plan.py" />
+      <source>T{tool} STANDS IN THE PART: JOG {x} OUT OF IT FIRST, NOT Z</source>
+      <translation>T{tool} ESTÁ EN LA PIEZA: SÁQUELA PRIMERO A MANO EN {x}, NO EN Z</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_plan.py" />
       <source>{name} ON</source>
       <translation>{name} ENCENDIDO</translation>
     </message>
@@ -2564,144 +3669,204 @@
       <translation>{number} DE {count}</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>COMPARE; LOOK AT THE WAY AND AT WHAT WILL START; F10 CONFIRMS</source>
-      <translation>COMPARE; VEA EL CAMINO Y LO QUE ARRANCARÁ; F10 CONFIRMA</translation>
+      <location filename="app/searchto/searchto_state_view.py" />
+      <source>AT THE LINE</source>
+      <translation>EN LA LÍNEA</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>GOING THROUGH THE PROGRAM; ESC GIVES UP</source>
-      <translation>RECORRIENDO EL PROGRAMA; ESC ABANDONA</translation>
+      <location filename="app/searchto/searchto_state_view.py" />
+      <source>NOW</source>
+      <translation>AHORA</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>LINE {line} WAS RUNNING WHEN THE PROGRAM BROKE OFF; ENTER REBUILDS ITS STATE, F4 ONLY LEADS OUT</source>
-      <translation>LA LÍNEA {line} CORRÍA AL INTERRUMPIRSE EL PROGRAMA; ENTER RECONSTRUYE SU ESTADO, F4 SÓLO SACA</translation>
+      <location filename="app/searchto/searchto_state_view.py" />
+      <source>Pass after</source>
+      <translation>Pasada sig.</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>LOOK AT THE WAY OUT OF THE PART; F10 CONFIRMS IT</source>
-      <translation>VEA EL CAMINO DE SALIDA DE LA PIEZA; F10 LO CONFIRMA</translation>
+      <location filename="app/searchto/searchto_state_view.py" />
+      <source>Pass before</source>
+      <translation>Pasada ant.</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>NO START FROM THIS LINE: F8 OR F9 GOES TO THE NEAREST GOOD ONE</source>
-      <translation>DESDE ESTA LÍNEA NO ARRANCA: F8 O F9 VA A LA BUENA MÁS CERCANA</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>AFTER</source>
+      <translation>DESPUÉS</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>PROVING THE RESTART; ESC GIVES UP</source>
-      <translation>COMPROBANDO EL REARRANQUE; ESC ABANDONA</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>CONFIRM</source>
+      <translation>CONFIRMA</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>TO START THE RESTART {start}; ESC TAKES IT BACK</source>
-      <translation>PARA INICIAR EL REARRANQUE {start}; ESC LO RETIRA</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>CONFIRMED: CYCLE START BEGINS IT</source>
+      <translation>CONFIRMADO: INICIO DE CICLO LO ARRANCA</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>TO TAKE THE TOOL OUT OF THE PART {start}; ESC TAKES IT BACK</source>
-      <translation>PARA SACAR LA HERRAMIENTA DE LA PIEZA {start}; ESC LO ANULA</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>ENTER REBUILDS THE STATE OF LINE {line}</source>
+      <translation>ENTER RECONSTRUYE EL ESTADO DE LA LÍNEA {line}</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>TYPE A LINE NUMBER OR A TEXT, OR CHOOSE BY THE ARROWS; ENTER REBUILDS THE STATE</source>
-      <translation>ESCRIBA UN NÚMERO DE LÍNEA O UN TEXTO, O ELIJA CON FLECHAS; ENTER RECONSTRUYE EL ESTADO</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>F5: WITH COOLANT</source>
+      <translation>F5: CON REFRIGERANTE</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>(WAY OUT OF THE PART)</source>
-      <translation>(SALIDA DE LA PIEZA)</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>F5: WITHOUT COOLANT</source>
+      <translation>F5: SIN REFRIGERANTE</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>CHOOSE A GOOD LINE FIRST</source>
-      <translation>ELIJA PRIMERO UNA LÍNEA BUENA</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>GOING THROUGH THE PROGRAM TO LINE {line}</source>
+      <translation>RECORRIENDO EL PROGRAMA HASTA LA LÍNEA {line}</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>ENTER FIRST; ONLY A LINE IN A LOOP OR A SUBROUTINE HAS PASSES</source>
-      <translation>PRIMERO ENTER; SÓLO TIENE PASADAS UNA LÍNEA DE UN LAZO O DE UNA SUBRUTINA</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>GOOD AFTER</source>
+      <translation>BUENA DESPUÉS</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>NO START: SEARCH A LINE AND CONFIRM IT FIRST (F10)</source>
-      <translation>NO ARRANCA: BUSQUE PRIMERO UNA LÍNEA Y CONFÍRMELA (F10)</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>GOOD BEFORE</source>
+      <translation>BUENA ANTES</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>SWITCH THE DRIVES ON FIRST (D)</source>
-      <translation>ENCIENDA PRIMERO LOS SERVOS (D)</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>H HOLDS IT ON ITS WAY</source>
+      <translation>H LA RETIENE EN SU CAMINO</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>THE LINE CANNOT BE SEARCHED: {why}</source>
-      <translation>LA LÍNEA NO SE PUEDE BUSCAR: {why}</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>LINE OR TEXT?</source>
+      <translation>¿LÍNEA O TEXTO?</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>TYPE A TEXT FIRST; A QUOTATION MARK BEFORE FIGURES MAKES THEM ONE</source>
-      <translation>ESCRIBA PRIMERO UN TEXTO; COMILLAS ANTES DE LAS CIFRAS LAS VUELVEN TEXTO</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>LINE {line} IS NOT GOOD</source>
+      <translation>LA LÍNEA {line} NO ES BUENA</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>WAY OUT</source>
-      <translation>SALIDA</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>NOTHING BUT THE SLIDES</source>
+      <translation>NADA MÁS LOS CARROS</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>WILL NOT START: {why}</source>
-      <translation>NO ARRANCARÁ: {why}</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>PASS {number} OF {count}</source>
+      <translation>PASADA {number} DE {count}</translation>
     </message>
     <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>{text} IS IN NO LINE</source>
-      <translation>{text} NO ESTÁ EN NINGUNA LÍNEA</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>PREVIOUS</source>
+      <translation>PREVIA</translation>
     </message>
     <message>
-      <location filename="app/desk/program_loading.py" />
-      <source>DRAWING</source>
-      <translation>DIBUJANDO</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>SEARCH</source>
+      <translation>BUSCAR</translation>
     </message>
     <message>
-      <location filename="app/desk/program_loading.py" />
-      <source>EMPTY</source>
-      <translation>VACÍO</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>STATE AT LINE {line}</source>
+      <translation>ESTADO EN LA LÍNEA {line}</translation>
     </message>
     <message>
-      <location filename="app/desk/program_loading.py" />
-      <source>PROVING</source>
-      <translation>COMPROBANDO</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>THE TOOL LEAVES THE PART AT {feed}</source>
+      <translation>LA HERRAMIENTA SALE DE LA PIEZA A {feed}</translation>
     </message>
     <message>
-      <location filename="app/desk/program_loading.py" />
-      <source>READY</source>
-      <translation>LISTO</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>THE WAY OUT OF THE PART</source>
+      <translation>CAMINO DE SALIDA DE LA PIEZA</translation>
     </message>
     <message>
-      <location filename="app/desk/program_loading.py" />
-      <source>REFUSED</source>
-      <translation>RECHAZADO</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>WILL START</source>
+      <translation>ARRANCARÁ</translation>
     </message>
     <message>
-      <location filename="app/desk/screen_settings.py" />
-      <source>AS THE PROGRAM</source>
-      <translation>COMO EL PROGRAMA</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>{which}: LINE {line}</source>
+      <translation>{which}: LÍNEA {line}</translation>
     </message>
     <message>
-      <location filename="app/special/part_count.py" />
-      <source>TARGET REACHED: {count} OF {target} PARTS</source>
-      <translation>META ALCANZADA: {count} DE {target} PIEZAS</translation>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>{which}: NONE</source>
+      <translation>{which}: NINGUNA</translation>
     </message>
     <message>
-      <location filename="app/special/part_count.py" />
-      <source>THE LAST PART OF THE TARGET: CYCLE REPEAT IS SWITCHED OFF</source>
-      <translation>LA ÚLTIMA PIEZA DE LA META: SE APAGÓ REPETIR CICLO</translation>
+      <location filename="app/special/backup.py" />
+      <source>%1 KB</source>
+      <translation>%1 KB</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
-      <source>ACTUAL</source>
-      <translation>REAL</translation>
+      <location filename="app/special/backup.py" />
+      <source>A PROGRAM IS UNDER WAY: NOTHING IS RESTORED BEFORE IT HAS ENDED</source>
+      <translation>HAY UN PROGRAMA EN CURSO: NO SE RESTAURA NADA ANTES DE QUE TERMINE</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup.py" />
+      <source>BACKUP AND RESTORE</source>
+      <translation>RESPALDO Y RESTAURACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup.py" />
+      <source>BACKUP TO HERE</source>
+      <translation>RESPALDAR AQUÍ</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup.py" />
+      <source>BACKUP {name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED</source>
+      <translation>EL RESPALDO {name} ESTÁ COMPLETO Y EN EL DISCO: YA PUEDE SACAR LA MEMORIA</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup.py" />
+      <source>Backing up …</source>
+      <translation>Respaldando …</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup.py" />
+      <source>PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW, ESC TO LEAVE IT</source>
+      <translation>OPRIMA Y PARA RESTAURAR {name} SOBRE TODO LO GUARDADO, ESC PARA DEJARLO</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup.py" />
+      <source>RESTORED; WHAT WAS THERE BEFORE IS KEPT AS {name}</source>
+      <translation>RESTAURADO; LO QUE HABÍA ANTES SE GUARDA COMO {name}</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup.py" />
+      <source>RETURN DOES</source>
+      <translation>RETURN HACE</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup.py" />
+      <source>RETURN ON A PLACE BACKS UP, ON A BACKUP RESTORES IT; F4 LOOKS FOR STICKS AGAIN</source>
+      <translation>RETURN SOBRE UN LUGAR RESPALDA, SOBRE UN RESPALDO LO RESTAURA; F4 BUSCA MEMORIAS OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup.py" />
+      <source>Restoring …</source>
+      <translation>Restaurando …</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup.py" />
+      <source>WHEN</source>
+      <translation>CUÁNDO</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup.py" />
+      <source>What a restore replaces is kept beside it.</source>
+      <translation>Lo que una restauración reemplaza se guarda al lado.</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup.py" />
+      <source>offsets, versions, counts, settings, log</source>
+      <translation>compensaciones, versiones, ajustes</translation>
     </message>
     <message>
       <location filename="app/special/drive_status.py" />
@@ -2745,11 +3910,6 @@
     </message>
     <message>
       <location filename="app/special/drive_status.py" />
-      <source>HOME</source>
-      <translation>REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/special/drive_status.py" />
       <source>Largest following error since the start: %1</source>
       <translation>Mayor error de seguimiento desde el arranque: %1</translation>
     </message>
@@ -2785,11 +3945,6 @@
     </message>
     <message>
       <location filename="app/special/event_log.py" />
-      <source>ALARMS</source>
-      <translation>ALARMAS</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
       <source>EVENT LOG</source>
       <translation>BITÁCORA</translation>
     </message>
@@ -2815,11 +3970,6 @@
     </message>
     <message>
       <location filename="app/special/event_log.py" />
-      <source>LINE</source>
-      <translation>LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
       <source>OPERATOR</source>
       <translation>OPERADOR</translation>
     </message>
@@ -2827,11 +3977,6 @@
       <location filename="app/special/event_log.py" />
       <source>RUNS</source>
       <translation>CORRIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
-      <source>SEARCH</source>
-      <translation>BUSCAR</translation>
     </message>
     <message>
       <location filename="app/special/event_log.py" />
@@ -2855,83 +4000,108 @@
     </message>
     <message>
       <location filename="app/special/event_log.py" />
-      <source>WHEN</source>
-      <translation>CUÁNDO</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
       <source>what happened when; search</source>
       <translation>qué pasó y cuándo; buscar</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
-      <source>%1 KB</source>
-      <translation>%1 KB</translation>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>ALARM</source>
+      <translation>ALARMA</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
-      <source>A PROGRAM IS UNDER WAY: NOTHING IS RESTORED BEFORE IT HAS ENDED</source>
-      <translation>HAY UN PROGRAMA EN CURSO: NO SE RESTAURA NADA ANTES DE QUE TERMINE</translation>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>ASKED BY</source>
+      <translation>LA LEE</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
-      <source>BACKUP AND RESTORE</source>
-      <translation>RESPALDO Y RESTAURACIÓN</translation>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>AXES HOMED</source>
+      <translation>EJES REFERENCIADOS</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
-      <source>BACKUP TO HERE</source>
-      <translation>RESPALDAR AQUÍ</translation>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>F4 SHOWS THE NEXT LIST; ESC GOES BACK TO THE LIST OF FUNCTIONS</source>
+      <translation>F4 MUESTRA LA LISTA SIGUIENTE; ESC REGRESA A LA LISTA DE FUNCIONES</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
-      <source>BACKUP {name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED</source>
-      <translation>EL RESPALDO {name} ESTÁ COMPLETO Y EN EL DISCO: YA PUEDE SACAR LA MEMORIA</translation>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>GUARD</source>
+      <translation>GUARDA</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
-      <source>Backing up …</source>
-      <translation>Respaldando …</translation>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>INPUTS</source>
+      <translation>ENTRADAS</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
-      <source>PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW, ESC TO LEAVE IT</source>
-      <translation>OPRIMA Y PARA RESTAURAR {name} SOBRE TODO LO GUARDADO, ESC PARA DEJARLO</translation>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>INPUTS AND OUTPUTS</source>
+      <translation>ENTRADAS Y SALIDAS</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
-      <source>RESTORE</source>
-      <translation>RESTAURAR</translation>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>LAMP</source>
+      <translation>LÁMPARA</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
-      <source>RESTORED; WHAT WAS THERE BEFORE IS KEPT AS {name}</source>
-      <translation>RESTAURADO; LO QUE HABÍA ANTES SE GUARDA COMO {name}</translation>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>LAMPS</source>
+      <translation>LÁMPARAS</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
-      <source>RETURN DOES</source>
-      <translation>RETURN HACE</translation>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>MACHINE LAMPS</source>
+      <translation>LÁMPARAS DE LA MÁQUINA</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
-      <source>RETURN ON A PLACE BACKS UP, ON A BACKUP RESTORES IT; F4 LOOKS FOR STICKS AGAIN</source>
-      <translation>RETURN SOBRE UN LUGAR RESPALDA, SOBRE UN RESPALDO LO RESTAURA; F4 BUSCA MEMORIAS OTRA VEZ</translation>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>ONLY OUTPUTS CAN BE SWITCHED; F4 SHOWS THEM</source>
+      <translation>SÓLO SE PUEDEN CAMBIAR LAS SALIDAS; F4 LAS MUESTRA</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
-      <source>Restoring …</source>
-      <translation>Restaurando …</translation>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>OUTPUTS</source>
+      <translation>SALIDAS</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
-      <source>What a restore replaces is kept beside it.</source>
-      <translation>Lo que una restauración reemplaza se guarda al lado.</translation>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>OUTPUTS ARE SWITCHED BY HAND ONLY WHILE NO PROGRAM IS UNDER WAY AND NOTHING MOVES</source>
+      <translation>LAS SALIDAS SÓLO SE CAMBIAN A MANO SIN PROGRAMA EN CURSO Y SIN QUE NADA SE MUEVA</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
-      <source>offsets, versions, counts, settings, log</source>
-      <translation>compensaciones, versiones, ajustes</translation>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>PRESS Y TO SWITCH {name} OFF, ESC TO LEAVE IT ON</source>
+      <translation>OPRIMA Y PARA APAGAR {name}, ESC PARA DEJARLA ENCENDIDA</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>PRESS Y TO SWITCH {name} ON, ESC TO LEAVE IT OFF</source>
+      <translation>OPRIMA Y PARA ENCENDER {name}, ESC PARA DEJARLA APAGADA</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>RETURN SWITCHES THE MARKED OUTPUT BY HAND: LOOK AT THE MACHINE FIRST</source>
+      <translation>RETURN CAMBIA A MANO LA SALIDA MARCADA: MIRE PRIMERO LA MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>STATE</source>
+      <translation>ESTADO</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>SWITCHED BY</source>
+      <translation>LA CAMBIA</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>TERMINAL</source>
+      <translation>TERMINAL</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>live state, outputs by hand, lamps</source>
+      <translation>estado, salidas a mano, lámparas</translation>
     </message>
     <message>
       <location filename="app/special/machine_file_acceptance.py" />
@@ -2984,6 +4154,16 @@
       <translation>lo que ha cambiado en él</translation>
     </message>
     <message>
+      <location filename="app/special/part_count.py" />
+      <source>TARGET REACHED: {count} OF {target} PARTS</source>
+      <translation>META ALCANZADA: {count} DE {target} PIEZAS</translation>
+    </message>
+    <message>
+      <location filename="app/special/part_count.py" />
+      <source>THE LAST PART OF THE TARGET: CYCLE REPEAT IS SWITCHED OFF</source>
+      <translation>LA ÚLTIMA PIEZA DE LA META: SE APAGÓ REPETIR CICLO</translation>
+    </message>
+    <message>
       <location filename="app/special/parts_counter.py" />
       <source>%1 is no number of parts; type a whole number from 0 to %2</source>
       <translation>%1 no es un número de piezas; escriba un entero de 0 a %2</translation>
@@ -3002,11 +4182,6 @@
       <location filename="app/special/parts_counter.py" />
       <source>NO COUNT: what runs is a dry run and no part. Nor is a restart that leaves something out.</source>
       <translation>SIN CONT: prueba en vacío, no una pieza. Tampoco lo es un rearranque que omite algo.</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>NO PROGRAM</source>
-      <translation>SIN PROGRAMA</translation>
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
@@ -3047,11 +4222,6 @@
       <location filename="app/special/parts_counter.py" />
       <source>REFUSED: {made} PARTS ARE MADE ALREADY; F4 PUTS THE COUNT TO NOUGHT</source>
       <translation>RECHAZADO: YA SE HICIERON {made} PIEZAS; F4 PONE LA CUENTA EN CERO</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>RESET</source>
-      <translation>RESET</translation>
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
@@ -3179,121 +4349,6 @@
       <translation>ESC REGRESA A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>ALARM</source>
-      <translation>ALARMA</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>ASKED BY</source>
-      <translation>LA LEE</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>AXES HOMED</source>
-      <translation>EJES REFERENCIADOS</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>CYCLE START</source>
-      <translation>INICIO DE CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>DRIVES ON</source>
-      <translation>SERVOS ACTIVOS</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>F4 SHOWS THE NEXT LIST; ESC GOES BACK TO THE LIST OF FUNCTIONS</source>
-      <translation>F4 MUESTRA LA LISTA SIGUIENTE; ESC REGRESA A LA LISTA DE FUNCIONES</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>FEED HOLD</source>
-      <translation>RETENCIÓN DE AVANCE</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>GUARD</source>
-      <translation>GUARDA</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>INPUTS</source>
-      <translation>ENTRADAS</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>INPUTS AND OUTPUTS</source>
-      <translation>ENTRADAS Y SALIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>LAMP</source>
-      <translation>LÁMPARA</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>LAMPS</source>
-      <translation>LÁMPARAS</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>MACHINE LAMPS</source>
-      <translation>LÁMPARAS DE LA MÁQUINA</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>ONLY OUTPUTS CAN BE SWITCHED; F4 SHOWS THEM</source>
-      <translation>SÓLO SE PUEDEN CAMBIAR LAS SALIDAS; F4 LAS MUESTRA</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>OUTPUTS</source>
-      <translation>SALIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>OUTPUTS ARE SWITCHED BY HAND ONLY WHILE NO PROGRAM IS UNDER WAY AND NOTHING MOVES</source>
-      <translation>LAS SALIDAS SÓLO SE CAMBIAN A MANO SIN PROGRAMA EN CURSO Y SIN QUE NADA SE MUEVA</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>PRESS Y TO SWITCH {name} OFF, ESC TO LEAVE IT ON</source>
-      <translation>OPRIMA Y PARA APAGAR {name}, ESC PARA DEJARLA ENCENDIDA</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>PRESS Y TO SWITCH {name} ON, ESC TO LEAVE IT OFF</source>
-      <translation>OPRIMA Y PARA ENCENDER {name}, ESC PARA DEJARLA APAGADA</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>RETURN SWITCHES THE MARKED OUTPUT BY HAND: LOOK AT THE MACHINE FIRST</source>
-      <translation>RETURN CAMBIA A MANO LA SALIDA MARCADA: MIRE PRIMERO LA MÁQUINA</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>STATE</source>
-      <translation>ESTADO</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>SWITCHED BY</source>
-      <translation>LA CAMBIA</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>TERMINAL</source>
-      <translation>TERMINAL</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>live state, outputs by hand, lamps</source>
-      <translation>estado, salidas a mano, lámparas</translation>
-    </message>
-    <message>
       <location filename="app/special/special_functions.py" />
       <source>ARROWS OR A FIGURE CHOOSE A FUNCTION, RETURN OPENS IT; ESC FOR AUTOMATIC</source>
       <translation>FLECHAS O UNA CIFRA ELIGEN UNA FUNCIÓN, RETURN LA ABRE; ESC A AUTOMÁTICO</translation>
@@ -3379,29 +4434,9 @@
       <translation>un tope hasta reiniciar</translation>
     </message>
     <message>
-      <location filename="app/working_plane/plane_drawing.py" />
-      <source>FRONT</source>
-      <translation>FRENTE</translation>
-    </message>
-    <message>
-      <location filename="app/working_plane/plane_drawing.py" />
-      <source>RIGHT</source>
-      <translation>DERECHA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>MACHINE</source>
-      <translation>MÁQUINA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>TILTED PLANE OF LINE {line}</source>
-      <translation>PLANO INCLINADO DE LA LÍNEA {line}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>WORKPIECE</source>
-      <translation>PIEZA</translation>
+      <location filename="app/transfer/received_program.py" />
+      <source>RECEIVED</source>
+      <translation>RECIBIDO</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_settings.py" />
@@ -3460,6 +4495,11 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
+      <source>7 BITS, EVEN PARITY, FOUND OUT</source>
+      <translation>7 BITS, PARIDAD PAR, DETECTADO</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
       <source>A PROGRAM IS UNDER WAY: RETURN STORES IT AS IT IS NAMED; ANOTHER NAME CAN BE TYPED AT REST</source>
       <translation>HAY UN PROGRAMA EN CURSO: RETURN LO GUARDA CON ESE NOMBRE; OTRO SE ESCRIBE EN REPOSO</translation>
     </message>
@@ -3480,86 +4520,6 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
-      <source>CANCEL</source>
-      <translation>CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>DISCARD</source>
-      <translation>DESECHAR</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>F6 GIVES THE TRANSFER UP; IT GOES ON WHILE OTHER PAGES ARE SHOWN</source>
-      <translation>F6 ABANDONA LA TRANSFERENCIA; CONTINÚA MIENTRAS SE VEN OTRAS PÁGINAS</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>NO PORT IS SET: RETURN ON THE FIRST LINE CHOOSES ONE</source>
-      <translation>NO HAY PUERTO: RETURN EN LA PRIMERA LÍNEA ELIGE UNO</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>NO PROGRAM IS ON THE DESK: CHOOSE THE ONE TO SEND FIRST (F2)</source>
-      <translation>NO HAY PROGRAMA CARGADO: ELIJA ANTES EL QUE SE ENVÍA (F2)</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>NOTHING IS KEPT: {why}</source>
-      <translation>NO SE GUARDA NADA: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>PORTS</source>
-      <translation>PUERTOS</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, ESC TO KEEP IT</source>
-      <translation>OPRIMA Y PARA DESECHAR EL PROGRAMA RECIBIDO, ESC PARA CONSERVARLO</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>RECEIVE</source>
-      <translation>RECIBIR</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>RETURN STORES IT AS A NEW PROGRAM AND STARTS NOTHING; F6 THROWS IT AWAY</source>
-      <translation>RETURN LO GUARDA COMO PROGRAMA NUEVO Y NO ARRANCA NADA; F6 LO DESECHA</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>SEND</source>
-      <translation>ENVIAR</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>STORED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED</source>
-      <translation>GUARDADO COMO PROGRAMA NUEVO: {name}. NO SE HA ARRANCADO NADA</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>THE RECEIVED PROGRAM IS THROWN AWAY</source>
-      <translation>EL PROGRAMA RECIBIDO SE HA DESECHADO</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>programs over the serial line</source>
-      <translation>programas por la línea serie</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>{name} IS SENT: {count} BYTES</source>
-      <translation>{name} ENVIADO: {count} BYTES</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>7 BITS, EVEN PARITY, FOUND OUT</source>
-      <translation>7 BITS, PARIDAD PAR, DETECTADO</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
       <source>AS SET</source>
       <translation>COMO SE AJUSTÓ</translation>
     </message>
@@ -3575,8 +4535,18 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
+      <source>CANCEL</source>
+      <translation>CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
       <source>CHARACTERS</source>
       <translation>CARACTERES</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>DISCARD</source>
+      <translation>DESECHAR</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -3587,6 +4557,11 @@
       <location filename="app/transfer/serial_transfer.py" />
       <source>F4 sends: {program}</source>
       <translation>F4 envía: {program}</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>F6 GIVES THE TRANSFER UP; IT GOES ON WHILE OTHER PAGES ARE SHOWN</source>
+      <translation>F6 ABANDONA LA TRANSFERENCIA; CONTINÚA MIENTRAS SE VEN OTRAS PÁGINAS</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -3630,8 +4605,48 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
+      <source>NO PORT IS SET: RETURN ON THE FIRST LINE CHOOSES ONE</source>
+      <translation>NO HAY PUERTO: RETURN EN LA PRIMERA LÍNEA ELIGE UNO</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>NO PROGRAM IS ON THE DESK: CHOOSE THE ONE TO SEND FIRST (F2)</source>
+      <translation>NO HAY PROGRAMA CARGADO: ELIJA ANTES EL QUE SE ENVÍA (F2)</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>NOTHING IS KEPT: {why}</source>
+      <translation>NO SE GUARDA NADA: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>PORTS</source>
+      <translation>PUERTOS</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, ESC TO KEEP IT</source>
+      <translation>OPRIMA Y PARA DESECHAR EL PROGRAMA RECIBIDO, ESC PARA CONSERVARLO</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>RECEIVE</source>
+      <translation>RECIBIR</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
       <source>RECEIVING</source>
       <translation>RECIBIENDO</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>RETURN STORES IT AS A NEW PROGRAM AND STARTS NOTHING; F6 THROWS IT AWAY</source>
+      <translation>RETURN LO GUARDA COMO PROGRAMA NUEVO Y NO ARRANCA NADA; F6 LO DESECHA</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>SEND</source>
+      <translation>ENVIAR</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -3655,6 +4670,16 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
+      <source>STORED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED</source>
+      <translation>GUARDADO COMO PROGRAMA NUEVO: {name}. NO SE HA ARRANCADO NADA</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>THE RECEIVED PROGRAM IS THROWN AWAY</source>
+      <translation>EL PROGRAMA RECIBIDO SE HA DESECHADO</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
       <source>VALUE</source>
       <translation>VALOR</translation>
     </message>
@@ -3665,8 +4690,8 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
-      <source>WHOLE</source>
-      <translation>COMPLETA</translation>
+      <source>programs over the serial line</source>
+      <translation>programas por la línea serie</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -3679,934 +4704,19 @@
       <translation>{count} LÍNEAS</translation>
     </message>
     <message>
-      <location filename="app/transfer/received_program.py" />
-      <source>RECEIVED</source>
-      <translation>RECIBIDO</translation>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>{name} IS SENT: {count} BYTES</source>
+      <translation>{name} ENVIADO: {count} BYTES</translation>
     </message>
     <message>
-      <location filename="app/desk/machine_status.py" />
-      <source>ALARM %1: %2</source>
-      <translation>ALARMA %1: %2</translation>
+      <location filename="app/working_plane/plane_drawing.py" />
+      <source>FRONT</source>
+      <translation>FRENTE</translation>
     </message>
     <message>
-      <location filename="app/desk/machine_status.py" />
-      <source>FEED HOLD %1: %2</source>
-      <translation>RETENCIÓN DE AVANCE %1: %2</translation>
-    </message>
-    <message>
-      <location filename="app/desk/machine_status.py" />
-      <source>PROGRAM STOP</source>
-      <translation>PARO DE PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/machine_status.py" />
-      <source>WAITING: %1</source>
-      <translation>ESPERANDO: %1</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_book.py" />
-      <source>NO ZERO OFFSETS ARE KEPT HERE</source>
-      <translation>AQUÍ NO SE GUARDAN CEROS DE PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets.py" />
-      <source>A PROGRAM IS UNDER WAY: G54 TO G59 CHANGE BETWEEN CYCLES ONLY</source>
-      <translation>HAY UN PROGRAMA EN CURSO: G54 A G59 SÓLO CAMBIAN ENTRE CICLOS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets.py" />
-      <source>C, DEGREES?</source>
-      <translation>¿C, GRADOS?</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets.py" />
-      <source>C: all cleared</source>
-      <translation>C: todo borrado</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets.py" />
-      <source>G{code} IS AS IT WAS</source>
-      <translation>G{code} QUEDA COMO ESTABA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets.py" />
-      <source>PRESS Y TO CLEAR G54 TO G59, ESC TO KEEP THEM</source>
-      <translation>OPRIMA Y PARA BORRAR G54 A G59, ESC PARA CONSERVARLOS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets.py" />
-      <source>THIS MACHINE HAS NO AXIS {axis}</source>
-      <translation>ESTA MÁQUINA NO TIENE EJE {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets.py" />
-      <source>TYPE A VALUE OR A SUM AND PRESS RETURN; ARROWS AND TAB CHOOSE ANOTHER CELL</source>
-      <translation>ESCRIBA UN VALOR O UNA SUMA Y OPRIMA RETURN; FLECHAS Y TAB ELIGEN OTRA CELDA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets.py" />
-      <source>X RADIUS, MM?</source>
-      <translation>¿RADIO X, MM?</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets.py" />
-      <source>Z, MM?</source>
-      <translation>¿Z, MM?</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets.py" />
-      <source>reads {value}</source>
-      <translation>lee {value}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets.py" />
-      <source>{axis} DOES NOT KNOW ITS POSITION: HOME IT FIRST</source>
-      <translation>{axis} NO CONOCE SU POSICIÓN: REFERÉNCIELO PRIMERO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>degrees</source>
-      <translation>grados</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>mm</source>
-      <translation>mm</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_bars.py" />
-      <source>STARTING</source>
-      <translation>ARRANCANDO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/station_dock.py" />
-      <source>CYCLE START: BOTH PALMS</source>
-      <translation>INICIO DE CICLO: DOS PALMAS</translation>
-    </message>
-    <message>
-      <location filename="app/screen/station_dock.py" />
-      <source>FEED RATE</source>
-      <translation>AVANCE</translation>
-    </message>
-    <message>
-      <location filename="app/screen/station_dock.py" />
-      <source>IS IN</source>
-      <translation>OPRIMIDO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/station_dock.py" />
-      <source>OPERATOR STATION</source>
-      <translation>ESTACIÓN DEL OPERADOR</translation>
-    </message>
-    <message>
-      <location filename="app/screen/station_dock.py" />
-      <source>OUT</source>
-      <translation>AFUERA</translation>
-    </message>
-    <message>
-      <location filename="app/screen/station_dock.py" />
-      <source>PAUSE</source>
-      <translation>PAUSA</translation>
-    </message>
-    <message>
-      <location filename="app/screen/station_dock.py" />
-      <source>SCR LOCK</source>
-      <translation>BLOQ DES</translation>
-    </message>
-    <message>
-      <location filename="app/screen/station_dock.py" />
-      <source>SPINDLE SPEED</source>
-      <translation>VELOC DE HUSILLO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/station_dock.py" />
-      <source>SPINDLE SWITCH</source>
-      <translation>INTERRUPTOR HUSILLO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/station_dock.py" />
-      <source>STOP</source>
-      <translation>PARO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/station_dock.py" />
-      <source>TWIST</source>
-      <translation>GIRE</translation>
-    </message>
-    <message>
-      <location filename="app/editor/question_view.py" />
-      <source>A NUMBER FROM 1 TO %1</source>
-      <translation>UN NÚMERO DE 1 A %1</translation>
-    </message>
-    <message>
-      <location filename="app/editor/question_view.py" />
-      <source>GO TO LINE</source>
-      <translation>IR A LA LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/question_view.py" />
-      <source>REPLACE BY</source>
-      <translation>CAMBIAR POR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/question_view.py" />
-      <source>SAVE AS</source>
-      <translation>GUARDAR COMO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>ABORT</source>
-      <translation>CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>BACK</source>
-      <translation>ATRÁS</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>BEFORE</source>
-      <translation>ANTERIOR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>CREATE</source>
-      <translation>CREAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>DOWN</source>
-      <translation>ABAJO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>FARTHER</source>
-      <translation>ALEJAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>FIT</source>
-      <translation>TODO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>GO</source>
-      <translation>IR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>GO TO</source>
-      <translation>IR A</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>HISTORY</source>
-      <translation>HISTORIA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>HOLD</source>
-      <translation>RETENER</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>LEAVE</source>
-      <translation>SALIR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>MENU</source>
-      <translation>MENÚ</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>NEARER</source>
-      <translation>ACERCAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>NEWER</source>
-      <translation>MÁS NVA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>NEXT</source>
-      <translation>SIGUE</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>NEXT ERR</source>
-      <translation>SIG ERR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>NO SAVE</source>
-      <translation>NO GUARD</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>OLDER</source>
-      <translation>MÁS ANT</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>REDO</source>
-      <translation>REHACER</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>REPLACE</source>
-      <translation>CAMBIAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>SAVE</source>
-      <translation>GUARDAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>TO LINE</source>
-      <translation>A LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>UNDO</source>
-      <translation>DESHACER</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>UP</source>
-      <translation>ARRIBA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>VIEW</source>
-      <translation>VISTA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>go to</source>
-      <translation>ir a</translation>
-    </message>
-    <message>
-      <location filename="app/editor/text_view.py" />
-      <source>SAMPLE, CHANGED</source>
-      <translation>MUESTRA, CAMBIADA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/edited_path_view.py" />
-      <source>PATH TO THE CURSOR</source>
-      <translation>TRAYECTORIA HASTA EL CURSOR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/edited_path_view.py" />
-      <source>THE CROSS STANDS ON NO LINE OF THE PATH: AN ARROW TAKES IT TO ONE</source>
-      <translation>LA CRUZ NO ESTÁ SOBRE NINGUNA LÍNEA DE LA TRAYECTORIA: UNA FLECHA LA LLEVA A UNA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/question_view.py" />
-      <source>%1 REPLACED</source>
-      <translation>%1 CAMBIADOS</translation>
-    </message>
-    <message>
-      <location filename="app/editor/findings_view.py" />
-      <source>ERROR</source>
-      <translation>ERROR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/findings_view.py" />
-      <source>FILE</source>
-      <translation>ARCHIVO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/findings_view.py" />
-      <source>FINDINGS  ·  %1  ·  %2</source>
-      <translation>HALLAZGOS  ·  %1  ·  %2</translation>
-    </message>
-    <message>
-      <location filename="app/editor/findings_view.py" />
-      <source>PROVED  ·  %1 BLOCKS  ·  CYCLE %2</source>
-      <translation>COMPROBADO  ·  %1 BLOQUES  ·  CICLO %2</translation>
-    </message>
-    <message>
-      <location filename="app/editor/findings_view.py" />
-      <source>WARNING</source>
-      <translation>AVISO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/heading_view.py" />
-      <source>KEYBOARD</source>
-      <translation>TECLADO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_view.py" />
-      <source>NOTHING WAS FOUND THAT IS WRONG</source>
-      <translation>NO SE HALLÓ NADA MAL</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_view.py" />
-      <source>LINE %1 OF %2  ·  %3</source>
-      <translation>LÍNEA %1 DE %2  ·  %3</translation>
-    </message>
-    <message>
-      <location filename="app/editor/versions_view.py" />
-      <source>%1 bytes</source>
-      <translation>%1 bytes</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_prompt_view.py" />
-      <source>%1 programs</source>
-      <translation>%1 programas</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_prompt_view.py" />
-      <source>RETURN takes the marked program   ESC keeps the present one   F2 shows the list</source>
-      <translation>RETURN toma el programa marcado   ESC conserva el actual   F2 muestra la lista</translation>
-    </message>
-    <message>
-      <location filename="app/programs/programs_view.py" />
-      <source>DRAWING …</source>
-      <translation>DIBUJANDO …</translation>
-    </message>
-    <message>
-      <location filename="app/programs/programs_view.py" />
-      <source>PREVIEW</source>
-      <translation>VISTA PREVIA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/programs_view.py" />
-      <source>RECORD</source>
-      <translation>REGISTRO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_frame.py" />
-      <source>%1 TO GO ON</source>
-      <translation>%1 PARA SEGUIR</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_frame.py" />
-      <source>CYCLE</source>
-      <translation>CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_frame.py" />
-      <source>HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: {what}</source>
-      <translation>EN MEMORIA, SE ESCRIBE CUANDO HAYA ESPACIO: {what}</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_frame.py" />
-      <source>LAST</source>
-      <translation>ÚLTIMO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_frame.py" />
-      <source>LEFT</source>
-      <translation>FALTA</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_frame.py" />
-      <source>NOT KEPT</source>
-      <translation>SIN GUARDAR</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_frame.py" />
-      <source>NOT KEPT: {why}</source>
-      <translation>SIN GUARDAR: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_frame.py" />
-      <source>PARTS  ·  TIME</source>
-      <translation>PIEZAS  ·  TIEMPO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_frame.py" />
-      <source>TOOL  ·  OFFSET</source>
-      <translation>HERRAMIENTA  ·  COMPENSACIÓN</translation>
-    </message>
-    <message>
-      <location filename="app/screen/readout_panels.py" />
-      <source>SWITCH OFF</source>
-      <translation>APAGADO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/readout_panels.py" />
-      <source>FEED %1</source>
-      <translation>AVANCE %1</translation>
-    </message>
-    <message>
-      <location filename="app/screen/readout_panels.py" />
-      <source>SPINDLE %1</source>
-      <translation>HUSILLO %1</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_pad_view.py" />
-      <source>CONT</source>
-      <translation>CONT</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_pad_view.py" />
-      <source>HELD</source>
-      <translation>SOSTENIDO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_pad_view.py" />
-      <source>IN/MIN</source>
-      <translation>PULG/MIN</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_pad_view.py" />
-      <source>JOG  ·  HOLD TO MOVE</source>
-      <translation>MANUAL  ·  SOSTENGA PARA MOVER</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_pad_view.py" />
-      <source>MM/MIN</source>
-      <translation>MM/MIN</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_pad_view.py" />
-      <source>STEP</source>
-      <translation>PASO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_pad_view.py" />
-      <source>STEP IN</source>
-      <translation>PASO PLG</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_pad_view.py" />
-      <source>STEP MM</source>
-      <translation>PASO MM</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_pad_view.py" />
-      <source>WHEEL</source>
-      <translation>VOLANTE</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_pad_view.py" />
-      <source>WHEEL {axis}</source>
-      <translation>VOLANTE {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_pad_view.py" />
-      <source>in</source>
-      <translation>pulg</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_view.py" />
-      <source>ALONE</source>
-      <translation>SOLA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_view.py" />
-      <source>NUM LOCK IS OFF: THE ARROWS OF THE NUMBER PAD MOVE NOTHING</source>
-      <translation>BLOQ NUM ESTÁ DESACTIVADO: LAS FLECHAS DEL TECLADO NUMÉRICO NO MUEVEN NADA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_view.py" />
-      <source>READOUT</source>
-      <translation>LECTURA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_view.py" />
-      <source>Return enters it, Esc leaves it as it was</source>
-      <translation>Return lo pone, Esc lo deja como estaba</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_view.py" />
-      <source>T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo</source>
-      <translation>T herr · X Z tocar · W desgaste · N punta · Q cuadrante · K nota · M maestra · F10 deshacer</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting_view.py" />
-      <source>ITS TIP IS NOW AT</source>
-      <translation>SU PUNTA ESTÁ AHORA EN</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting_view.py" />
-      <source>THIS ONE</source>
-      <translation>ÉSTA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting_view.py" />
-      <source>TOOL SETTING</source>
-      <translation>AJUSTE DE HERRAMIENTA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting_view.py" />
-      <source>TOUCH X</source>
-      <translation>TOCAR X</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting_view.py" />
-      <source>TOUCH Z</source>
-      <translation>TOCAR Z</translation>
-    </message>
-    <message>
-      <location filename="app/screen/language.py" />
-      <source>there is no catalogue turndesk_%1.qm in %2</source>
-      <translation>no hay catálogo turndesk_%1.qm en %2</translation>
-    </message>
-    <message>
-      <location filename="app/screen/letter_keys.py" />
-      <source>DEL</source>
-      <translation>BORRAR</translation>
-    </message>
-    <message>
-      <location filename="app/screen/letter_keys.py" />
-      <source>RETURN</source>
-      <translation>RETURN</translation>
-    </message>
-    <message>
-      <location filename="app/screen/letter_keys.py" />
-      <source>SPACE</source>
-      <translation>ESPACIO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/program_listing.py" />
-      <source>%1  ·  HOME FOLLOWS AGAIN</source>
-      <translation>%1  ·  INICIO VUELVE A SEGUIR</translation>
-    </message>
-    <message>
-      <location filename="app/screen/program_listing.py" />
-      <source>BLOCK</source>
-      <translation>BLOQUE</translation>
-    </message>
-    <message>
-      <location filename="app/screen/program_listing.py" />
-      <source>No program.</source>
-      <translation>Sin programa.</translation>
-    </message>
-    <message>
-      <location filename="app/screen/program_listing.py" />
-      <source>PROGRAM  ·  %1 LINES</source>
-      <translation>PROGRAMA  ·  %1 LÍNEAS</translation>
-    </message>
-    <message>
-      <location filename="app/screen/run_screen.py" />
-      <source>A MISTAKE OF THE SCREEN; THE MACHINE IS NOT CONCERNED: %1: %2</source>
-      <translation>UN ERROR DE LA PANTALLA; LA MÁQUINA NO TIENE QUE VER: %1: %2</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_view.py" />
-      <source>HISTORY  ·  ARROW UP AND DOWN</source>
-      <translation>HISTORIA  ·  FLECHA ARRIBA Y ABAJO</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_view.py" />
-      <source>No line was run yet.</source>
-      <translation>Todavía no se corre ninguna línea.</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_view.py" />
-      <source>IN FORCE</source>
-      <translation>VIGENTE</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_view.py" />
-      <source>LINE  ·  READY, CYCLE START RUNS IT</source>
-      <translation>LÍNEA  ·  LISTA, INICIO DE CICLO LA CORRE</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_view.py" />
-      <source>DRIVES</source>
-      <translation>SERVOS</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_view.py" />
-      <source>SPN STOP</source>
-      <translation>PARO HUS</translation>
-    </message>
-    <message>
-      <location filename="app/screen/main_menu.py" />
-      <source>PRESS A FUNCTION KEY OR TOUCH A PAGE; ESC FOR AUTOMATIC</source>
-      <translation>OPRIMA UNA TECLA DE FUNCIÓN O TOQUE UNA PÁGINA; ESC A AUTOMÁTICO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets_view.py" />
-      <source>X AND Z FROM THE MASTER T{number}</source>
-      <translation>X Y Z DESDE LA MAESTRA T{number}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history_view.py" />
-      <source>HISTORY  ·  NEWEST ON TOP</source>
-      <translation>HISTORIA  ·  LO NUEVO ARRIBA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history_view.py" />
-      <source>No offset was changed yet.</source>
-      <translation>Todavía no se cambia ninguna compensación.</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_offsets_view.py" />
-      <source>EFFECT</source>
-      <translation>EFECTO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_offsets_view.py" />
-      <source>Secondary offset number:</source>
-      <translation>Número de compensación secundaria:</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_offsets_view.py" />
-      <source>ALL 32 OFFSETS</source>
-      <translation>LAS 32 COMPENSACIONES</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_offsets_view.py" />
-      <source>SECONDARY OFFSETS  ·  X STORED AS A RADIUS</source>
-      <translation>COMPENSACIONES SECUNDARIAS  ·  X SE GUARDA COMO RADIO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets_view.py" />
-      <source>ADD</source>
-      <translation>SUMAR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets_view.py" />
-      <source>F2 adds what is typed; F3 shows X and Z from the master; Esc leaves</source>
-      <translation>F2 suma lo escrito; F3 muestra X y Z desde la maestra; Esc sale</translation>
-    </message>
-    <message>
-      <location filename="app/screen/alarm_panels.py" />
-      <source>ALARMS AND STOPS  ·  ESC CLOSES  ·  PAGE DOWN: OLDER</source>
-      <translation>ALARMAS Y PAROS  ·  ESC CIERRA  ·  AV PÁG: ANTERIORES</translation>
-    </message>
-    <message>
-      <location filename="app/screen/alarm_panels.py" />
-      <source>ALSO: %1</source>
-      <translation>TAMBIÉN: %1</translation>
-    </message>
-    <message>
-      <location filename="app/screen/alarm_panels.py" />
-      <source>CAUSE, THE LIKELIEST FIRST</source>
-      <translation>CAUSA, LA MÁS PROBABLE PRIMERO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/alarm_panels.py" />
-      <source>LINE %1</source>
-      <translation>LÍNEA %1</translation>
-    </message>
-    <message>
-      <location filename="app/screen/alarm_panels.py" />
-      <source>No alarm and no stop yet.</source>
-      <translation>Todavía ninguna alarma ni paro.</translation>
-    </message>
-    <message>
-      <location filename="app/screen/alarm_panels.py" />
-      <source>WHAT TO DO</source>
-      <translation>QUÉ HACER</translation>
-    </message>
-    <message>
-      <location filename="app/screen/alarm_panels.py" />
-      <source>line %1</source>
-      <translation>línea %1</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_aspects.py" />
-      <source>FACE</source>
-      <translation>CARA</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_aspects.py" />
-      <source>PATH</source>
-      <translation>TRAYECTORIA</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_aspects.py" />
-      <source>SIDE</source>
-      <translation>LADO</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_marks_view.py" />
-      <source>after</source>
-      <translation>después</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_marks_view.py" />
-      <source>before</source>
-      <translation>antes</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_marks_view.py" />
-      <source>done</source>
-      <translation>hecho</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_marks_view.py" />
-      <source>rapid</source>
-      <translation>rápido</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_marks_view.py" />
-      <source>to come</source>
-      <translation>por hacer</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_marks_view.py" />
-      <source>AT MOST {length} {unit} APART  ·  AT THE CIRCLE</source>
-      <translation>A LO MÁS {length} {unit} DE DIFERENCIA  ·  EN EL CÍRCULO</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_marks_view.py" />
-      <source>FACE  ·  SEEN FROM THE TAILSTOCK</source>
-      <translation>CARA  ·  VISTA DESDE EL CONTRAPUNTO</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_marks_view.py" />
-      <source>MEAS</source>
-      <translation>MEDIR</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_marks_view.py" />
-      <source>NOTHING THAT IS CUT HAS CHANGED</source>
-      <translation>NO CAMBIÓ NADA DE LO QUE SE CORTA</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_marks_view.py" />
-      <source>SIDE  ·  UNROLLED AT Ø {diameter}</source>
-      <translation>LADO  ·  DESARROLLADO EN Ø {diameter}</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_marks_view.py" />
-      <source>The path is shown when a program is loaded.</source>
-      <translation>La trayectoria se muestra cuando hay un programa cargado.</translation>
-    </message>
-    <message>
-      <location filename="app/screen/readout_panels.py" />
-      <source>STOP %1: %2</source>
-      <translation>PARO %1: %2</translation>
-    </message>
-    <message>
-      <location filename="app/screen/pictures.py" />
-      <source>%1 cannot be written</source>
-      <translation>no se puede escribir %1</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>LINE OR TEXT?</source>
-      <translation>¿LÍNEA O TEXTO?</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_state_view.py" />
-      <source>AT THE LINE</source>
-      <translation>EN LA LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_state_view.py" />
-      <source>NOW</source>
-      <translation>AHORA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_state_view.py" />
-      <source>Pass after</source>
-      <translation>Pasada sig.</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_state_view.py" />
-      <source>Pass before</source>
-      <translation>Pasada ant.</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>AFTER</source>
-      <translation>DESPUÉS</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>CONFIRM</source>
-      <translation>CONFIRMA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>ENTER REBUILDS THE STATE OF LINE {line}</source>
-      <translation>ENTER RECONSTRUYE EL ESTADO DE LA LÍNEA {line}</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>F5: WITH COOLANT</source>
-      <translation>F5: CON REFRIGERANTE</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>F5: WITHOUT COOLANT</source>
-      <translation>F5: SIN REFRIGERANTE</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>GOING THROUGH THE PROGRAM TO LINE {line}</source>
-      <translation>RECORRIENDO EL PROGRAMA HASTA LA LÍNEA {line}</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>GOOD AFTER</source>
-      <translation>BUENA DESPUÉS</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>GOOD BEFORE</source>
-      <translation>BUENA ANTES</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>H HOLDS IT ON ITS WAY</source>
-      <translation>H LA RETIENE EN SU CAMINO</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>LINE {line} IS NOT GOOD</source>
-      <translation>LA LÍNEA {line} NO ES BUENA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>NOTHING BUT THE SLIDES</source>
-      <translation>NADA MÁS LOS CARROS</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>PASS {number} OF {count}</source>
-      <translation>PASADA {number} DE {count}</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>PREVIOUS</source>
-      <translation>PREVIA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>STATE AT LINE {line}</source>
-      <translation>ESTADO EN LA LÍNEA {line}</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>THE TOOL LEAVES THE PART AT {feed}</source>
-      <translation>LA HERRAMIENTA SALE DE LA PIEZA A {feed}</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>THE WAY OUT OF THE PART</source>
-      <translation>CAMINO DE SALIDA DE LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>{which}: LINE {line}</source>
-      <translation>{which}: LÍNEA {line}</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>{which}: NONE</source>
-      <translation>{which}: NINGUNA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>CONFIRMED: CYCLE START BEGINS IT</source>
-      <translation>CONFIRMADO: INICIO DE CICLO LO ARRANCA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>WILL START</source>
-      <translation>ARRANCARÁ</translation>
+      <location filename="app/working_plane/plane_drawing.py" />
+      <source>RIGHT</source>
+      <translation>DERECHA</translation>
     </message>
     <message>
       <location filename="app/working_plane/working_plane_view.py" />
@@ -4614,39 +4724,49 @@
       <translation>MESA Y PLANO</translation>
     </message>
     <message>
-      <location filename="app/screen/main_window.py" />
-      <source>A PROGRAM IS UNDER WAY: STOP IT AND PRESS R BEFORE LEAVING</source>
-      <translation>HAY UN PROGRAMA EN CURSO: PÁRELO Y OPRIMA R ANTES DE SALIR</translation>
+      <location filename="core/alarms/__init__.py" />
+      <source>Bus, feeder and controller</source>
+      <translation>Bus, alimentador y controlador</translation>
     </message>
     <message>
-      <location filename="app/screen/main_window.py" />
-      <source>AN ENTRY HAS THE KEYBOARD, AND DOES NOT TAKE {key} HERE</source>
-      <translation>UN CAMPO TIENE EL TECLADO, Y NO ADMITE {key} AQUÍ</translation>
+      <location filename="core/alarms/__init__.py" />
+      <source>Operator station and stops</source>
+      <translation>Estación del operador y paros</translation>
     </message>
     <message>
-      <location filename="app/screen/main_window.py" />
-      <source>THE SCREEN STOOD STILL FOR {seconds} S: WHAT WAS PRESSED MEANWHILE WAS FORGOTTEN</source>
-      <translation>LA PANTALLA ESTUVO DETENIDA {seconds} S: LO OPRIMIDO MIENTRAS TANTO SE OLVIDÓ</translation>
+      <location filename="core/alarms/__init__.py" />
+      <source>Slides and axis drives</source>
+      <translation>Carros y servos</translation>
     </message>
     <message>
-      <location filename="app/screen/main_window.py" />
-      <source>{key} HAS NO FUNCTION ON THIS PAGE</source>
-      <translation>{key} NO TIENE FUNCIÓN EN ESTA PÁGINA</translation>
+      <location filename="core/alarms/__init__.py" />
+      <source>Spindle, C axis and threads</source>
+      <translation>Husillo, eje C y roscas</translation>
     </message>
     <message>
-      <location filename="app/offsets/zero_offsets_view.py" />
-      <source>F2: where the machine stands reads what is typed        C: clear G54 to G59        Esc: exit</source>
-      <translation>F2: donde está la máquina lee lo que se escribe        C: borra G54 a G59        Esc: sale</translation>
+      <location filename="core/alarms/__init__.py" />
+      <source>The control</source>
+      <translation>El control</translation>
     </message>
     <message>
-      <location filename="app/offsets/zero_offsets_view.py" />
-      <source>HERE</source>
-      <translation>AQUÍ</translation>
+      <location filename="core/alarms/alarm_entry.py" />
+      <source>the slides brake and hold, spindle off, outputs safe; Reset acknowledges</source>
+      <translation>los carros frenan y se sostienen, husillo apagado, salidas seguras; Reset reconoce</translation>
     </message>
     <message>
-      <location filename="app/offsets/zero_offsets_view.py" />
-      <source>SETTABLE OFFSETS  ·  X IS A RADIUS  ·  MM AND DEGREES</source>
-      <translation>CEROS AJUSTABLES  ·  X ES RADIO  ·  MM Y GRADOS</translation>
+      <location filename="core/alarms/alarm_entry.py" />
+      <source>the slides brake and lose power, spindle off, outputs safe; Reset acknowledges</source>
+      <translation>los carros frenan y pierden potencia, husillo apagado, salidas seguras; Reset reconoce</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/alarm_entry.py" />
+      <source>the slides stop on the path, the spindle goes on turning; Cycle Start goes on</source>
+      <translation>los carros paran sobre la trayectoria, el husillo sigue girando; inicio de ciclo continúa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/alarm_entry.py" />
+      <source>what was asked for: a stop that somebody pressed or programmed</source>
+      <translation>lo que se pidió: un paro que alguien oprimió o programó</translation>
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
@@ -5049,29 +5169,259 @@
       <translation>la ventana de posición en el archivo de máquina es demasiado angosta</translation>
     </message>
     <message>
-      <location filename="core/alarms/catalogue.py" />
-      <source>Bus, feeder and controller</source>
-      <translation>Bus, alimentador y controlador</translation>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>E-stop at the controller</source>
+      <translation>paro de emergencia en el controlador</translation>
     </message>
     <message>
-      <location filename="core/alarms/catalogue.py" />
-      <source>Operator station and stops</source>
-      <translation>Estación del operador y paros</translation>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>PRESS E-STOP; check cable, terminators and interface, then start the control again</source>
+      <translation>OPRIMA EL PARO DE EMERGENCIA; revise cable, terminadores e interfaz y luego arranque otra vez el control</translation>
     </message>
     <message>
-      <location filename="core/alarms/catalogue.py" />
-      <source>Slides and axis drives</source>
-      <translation>Carros y servos</translation>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>PRESS E-STOP; it moves what it has and then rests. Check cable and power, start the control again</source>
+      <translation>OPRIMA EL PARO DE EMERGENCIA; mueve lo que tiene y luego para. Revise cable y alimentación, arranque otra vez el control</translation>
     </message>
     <message>
-      <location filename="core/alarms/catalogue.py" />
-      <source>Spindle, C axis and threads</source>
-      <translation>Husillo, eje C y roscas</translation>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>PRESS E-STOP; look where the tool stands, end TurnDesk and start it again</source>
+      <translation>OPRIMA EL PARO DE EMERGENCIA; vea dónde está la herramienta, cierre TurnDesk y ábralo otra vez</translation>
     </message>
     <message>
-      <location filename="core/alarms/catalogue.py" />
-      <source>The control</source>
-      <translation>El control</translation>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>PRESS E-STOP; look where the tool stands, end TurnDesk and start it again, home where asked</source>
+      <translation>OPRIMA EL PARO DE EMERGENCIA; vea dónde está la herramienta, cierre TurnDesk y ábralo otra vez, referencia donde se pida</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>Reset, Drives On; compare its settings with the machine file ('turndesk machine check')</source>
+      <translation>Reset, encienda servos; compare sus ajustes con el archivo de máquina ('turndesk machine check')</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>a line was damaged on its way</source>
+      <translation>una línea se dañó en el camino</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>alarm of the controller</source>
+      <translation>alarma del controlador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>an I/O module does not answer</source>
+      <translation>un módulo de E/S no responde</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>an output cannot be switched</source>
+      <translation>una salida no se puede conmutar</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>another master is on the bus</source>
+      <translation>hay otro maestro en el bus</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>another program has written to the controller</source>
+      <translation>otro programa escribió al controlador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>check the cable, Reset; switch the controller off and on when it does not answer</source>
+      <translation>revise el cable, Reset; apague y encienda el controlador si no responde</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>check the module's power and cable, Reset, Drives On; look what the outputs have let go</source>
+      <translation>revise alimentación y cable del módulo, Reset, encienda servos; vea qué soltaron las salidas</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>check the output in the machine file, Reset</source>
+      <translation>revise la salida en el archivo de máquina, Reset</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>end whatever else talks to the controller, Reset, Drives On</source>
+      <translation>cierre lo demás que hable con el controlador, Reset, encienda servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>it has restarted: its outputs have fallen</source>
+      <translation>se reinició: sus salidas cayeron</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>it was reset unseen</source>
+      <translation>se reinició sin que se viera</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>its E-stop or reset input is on</source>
+      <translation>su entrada de paro de emergencia o de reset está activa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>its bus cable or power</source>
+      <translation>su cable de bus o alimentación</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>its cable, or its line is disturbed</source>
+      <translation>su cable, o su línea tiene interferencias</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>its module has failed</source>
+      <translation>su módulo se averió</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>its reset button or input</source>
+      <translation>su botón o entrada de reset</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>its settings forbid what the program asks for: travel, speed, spindle</source>
+      <translation>sus ajustes prohíben lo que pide el programa: recorrido, velocidad, husillo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>its supply broke down for a moment</source>
+      <translation>su alimentación falló por un momento</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>put right what is named, Reset, Drives On; home where asked</source>
+      <translation>corrija lo que se nombra, Reset, encienda servos; referencia donde se pida</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>release the E-stop, Reset, Drives On</source>
+      <translation>suelte el paro de emergencia, Reset, encienda servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>spindle and coolant are off: close the door, Reset, Drives On</source>
+      <translation>husillo y refrigerante están apagados: cierre la puerta, Reset, encienda servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the CAN cable is off, or a terminator is missing</source>
+      <translation>el cable CAN está suelto, o falta un terminador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the CAN interface was unplugged</source>
+      <translation>se desconectó la interfaz CAN</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the cable to the controller was pulled or damaged</source>
+      <translation>el cable al controlador se jaló o se dañó</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the computer is overloaded: the slides stop at the end of what they have</source>
+      <translation>la computadora está sobrecargada: los carros paran al final de lo que tienen</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the computer ran out of memory</source>
+      <translation>la computadora se quedó sin memoria</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the connection to the controller is lost</source>
+      <translation>se perdió la conexión con el controlador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the controller does not answer</source>
+      <translation>el controlador no responde</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the controller hangs</source>
+      <translation>el controlador se trabó</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the controller has lost its modes</source>
+      <translation>el controlador perdió sus modos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the controller refuses a block</source>
+      <translation>el controlador rechaza un bloque</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the controller was reset</source>
+      <translation>el controlador se reinició</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the controller's power is off</source>
+      <translation>el controlador no tiene alimentación</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the door was opened in the cycle</source>
+      <translation>la puerta se abrió en el ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the door's switch or cable</source>
+      <translation>el interruptor de la puerta o su cable</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the drive bus has failed</source>
+      <translation>falló el bus de los servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the feeder does not answer</source>
+      <translation>el alimentador no responde</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the feeder has ended</source>
+      <translation>el alimentador terminó</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the feeder has failed</source>
+      <translation>el alimentador se averió</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the feeder process was ended or has failed: slides, spindle and outputs are off</source>
+      <translation>el proceso alimentador se terminó o falló: carros, husillo y salidas están apagados</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the machine file does not name it, or the controller does not have it</source>
+      <translation>el archivo de máquina no la nombra, o el controlador no la tiene</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the program is given up: look where the tool stands, Reset, Drives On, home</source>
+      <translation>el programa se abandonó: vea dónde está la herramienta, Reset, encienda servos, referencia</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the safety door is open</source>
+      <translation>la puerta de seguridad está abierta</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>what the controller's number says</source>
+      <translation>lo que dice el número del controlador</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -5115,6 +5465,11 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>an input or a counter led to a line that was never run before</source>
+      <translation>una entrada o un contador llevó a una línea que nunca se había corrido</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>an output is not as commanded</source>
       <translation>una salida no está como se ordenó</translation>
     </message>
@@ -5122,6 +5477,26 @@
       <location filename="core/alarms/control_alarms.py" />
       <source>another program, a backup or an update keeps this computer busy</source>
       <translation>otro programa, un respaldo o una actualización ocupa esta computadora</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>check the tool's offset and where the slides stood at the start; Reset</source>
+      <translation>revise la compensación de la herramienta y dónde estaban los carros al arrancar; Reset</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>compare the end of the program with the original, add M30, load it again</source>
+      <translation>compare el final del programa con el original, agregue M30, cárguelo otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>correct the line in the editor (F3), load the program again</source>
+      <translation>corrija la línea en el editor (F3), cargue el programa otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>end of travel</source>
+      <translation>fin de carrera</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -5137,6 +5512,11 @@
       <location filename="core/alarms/control_alarms.py" />
       <source>look why; read what is switched again, then Cycle Start; measure the part, it is not counted</source>
       <translation>busque por qué; lea qué se conmuta otra vez y luego inicio de ciclo; mida la pieza, no se cuenta</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>program error</source>
+      <translation>error de programa</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -5175,93 +5555,23 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>the machine could not be made safe</source>
-      <translation>no se pudo poner la máquina en estado seguro</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/control_alarms.py" />
-      <source>the planned path does not fit together</source>
-      <translation>la trayectoria planeada no empalma</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/control_alarms.py" />
-      <source>the screen was locked or the computer asleep</source>
-      <translation>la pantalla estaba bloqueada o la computadora dormida</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/control_alarms.py" />
-      <source>the slides have stopped on the path; end other programs, then Cycle Start</source>
-      <translation>los carros pararon sobre la trayectoria; cierre otros programas y luego inicio de ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/document.py" />
-      <source>Likely: %1.  </source>
-      <translation>Probable: %1.  </translation>
-    </message>
-    <message>
-      <location filename="core/alarms/document.py" />
-      <source>alarm, drives off</source>
-      <translation>alarma, servos apagados</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/alarm_entry.py" />
-      <source>the slides brake and hold, spindle off, outputs safe; Reset acknowledges</source>
-      <translation>los carros frenan y se sostienen, husillo apagado, salidas seguras; Reset reconoce</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/alarm_entry.py" />
-      <source>the slides brake and lose power, spindle off, outputs safe; Reset acknowledges</source>
-      <translation>los carros frenan y pierden potencia, husillo apagado, salidas seguras; Reset reconoce</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/alarm_entry.py" />
-      <source>the slides stop on the path, the spindle goes on turning; Cycle Start goes on</source>
-      <translation>los carros paran sobre la trayectoria, el husillo sigue girando; inicio de ciclo continúa</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/alarm_entry.py" />
-      <source>what was asked for: a stop that somebody pressed or programmed</source>
-      <translation>lo que se pidió: un paro que alguien oprimió o programó</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/control_alarms.py" />
-      <source>an input or a counter led to a line that was never run before</source>
-      <translation>una entrada o un contador llevó a una línea que nunca se había corrido</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/control_alarms.py" />
-      <source>check the tool's offset and where the slides stood at the start; Reset</source>
-      <translation>revise la compensación de la herramienta y dónde estaban los carros al arrancar; Reset</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/control_alarms.py" />
-      <source>compare the end of the program with the original, add M30, load it again</source>
-      <translation>compare el final del programa con el original, agregue M30, cárguelo otra vez</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/control_alarms.py" />
-      <source>correct the line in the editor (F3), load the program again</source>
-      <translation>corrija la línea en el editor (F3), cargue el programa otra vez</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/control_alarms.py" />
-      <source>end of travel</source>
-      <translation>fin de carrera</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/control_alarms.py" />
-      <source>program error</source>
-      <translation>error de programa</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/control_alarms.py" />
       <source>the last line is missing: cut off when it was sent or copied</source>
       <translation>falta la última línea: se cortó al enviarlo o copiarlo</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>the machine could not be made safe</source>
+      <translation>no se pudo poner la máquina en estado seguro</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>the offset of the tool, or the zero of the part, is wrong</source>
       <translation>la compensación de la herramienta o el cero de la pieza está mal</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>the planned path does not fit together</source>
+      <translation>la trayectoria planeada no empalma</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -5275,8 +5585,28 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>the screen was locked or the computer asleep</source>
+      <translation>la pantalla estaba bloqueada o la computadora dormida</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>the slides have stopped on the path; end other programs, then Cycle Start</source>
+      <translation>los carros pararon sobre la trayectoria; cierre otros programas y luego inicio de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>this line cannot be run as it stands</source>
       <translation>esta línea no se puede correr como está</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/document.py" />
+      <source>Likely: %1.  </source>
+      <translation>Probable: %1.  </translation>
+    </message>
+    <message>
+      <location filename="core/alarms/document.py" />
+      <source>alarm, drives off</source>
+      <translation>alarma, servos apagados</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
@@ -5904,274 +6234,184 @@
       <translation>lo que se dice aquí</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>E-stop at the controller</source>
-      <translation>paro de emergencia en el controlador</translation>
+      <location filename="core/executor/changed_offsets.py" />
+      <source>another program is under way: new offsets are taken by the same program only</source>
+      <translation>hay otro programa en marcha: las compensaciones nuevas sólo las toma el mismo programa</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>PRESS E-STOP; check cable, terminators and interface, then start the control again</source>
-      <translation>OPRIMA EL PARO DE EMERGENCIA; revise cable, terminadores e interfaz y luego arranque otra vez el control</translation>
+      <location filename="core/executor/changed_offsets.py" />
+      <source>the changed offsets are in force</source>
+      <translation>las compensaciones cambiadas están en vigor</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>PRESS E-STOP; it moves what it has and then rests. Check cable and power, start the control again</source>
-      <translation>OPRIMA EL PARO DE EMERGENCIA; mueve lo que tiene y luego para. Revise cable y alimentación, arranque otra vez el control</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>%1 %2 by hand</source>
+      <translation>%1 %2 a mano</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>PRESS E-STOP; look where the tool stands, end TurnDesk and start it again</source>
-      <translation>OPRIMA EL PARO DE EMERGENCIA; vea dónde está la herramienta, cierre TurnDesk y ábralo otra vez</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>%1: outputs are switched by hand only at rest, not in state %2</source>
+      <translation>%1: las salidas sólo se cambian a mano en reposo, no en el estado %2</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>PRESS E-STOP; look where the tool stands, end TurnDesk and start it again, home where asked</source>
-      <translation>OPRIMA EL PARO DE EMERGENCIA; vea dónde está la herramienta, cierre TurnDesk y ábralo otra vez, referencia donde se pida</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>a program is under way: it keeps the offsets that it was proved with</source>
+      <translation>hay un programa en curso: conserva las compensaciones con que se comprobó</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>Reset, Drives On; compare its settings with the machine file ('turndesk machine check')</source>
-      <translation>Reset, encienda servos; compare sus ajustes con el archivo de máquina ('turndesk machine check')</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>a program is under way: it must end or be reset before another is loaded</source>
+      <translation>hay un programa en curso: debe terminar o abandonarse antes de cargar otro</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>a line was damaged on its way</source>
-      <translation>una línea se dañó en el camino</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>a program is under way: its spindle is stopped by feed hold and reset</source>
+      <translation>hay un programa en curso: su husillo se para con retención de avance y reset</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>alarm of the controller</source>
-      <translation>alarma del controlador</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>a start at the first line is meant</source>
+      <translation>se quiere arrancar en la primera línea</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>an I/O module does not answer</source>
-      <translation>un módulo de E/S no responde</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>an alarm stands: press Reset first</source>
+      <translation>hay una alarma: oprima primero Reset</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>an output cannot be switched</source>
-      <translation>una salida no se puede conmutar</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>drives cannot be switched on in state %1</source>
+      <translation>los servos no se pueden encender en el estado %1</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>another master is on the bus</source>
-      <translation>hay otro maestro en el bus</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>feed override %1 is not between 0 and 1.5</source>
+      <translation>la perilla de avance %1 no está entre 0 y 1.5</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>another program has written to the controller</source>
-      <translation>otro programa escribió al controlador</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>homing: %1</source>
+      <translation>referencia: %1</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>check the cable, Reset; switch the controller off and on when it does not answer</source>
-      <translation>revise el cable, Reset; apague y encienda el controlador si no responde</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>jog: %1</source>
+      <translation>mover a mano: %1</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>check the module's power and cable, Reset, Drives On; look what the outputs have let go</source>
-      <translation>revise alimentación y cable del módulo, Reset, encienda servos; vea qué soltaron las salidas</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>no jog in state %1</source>
+      <translation>no se mueve a mano en el estado %1</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>check the output in the machine file, Reset</source>
-      <translation>revise la salida en el archivo de máquina, Reset</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>press both palm buttons</source>
+      <translation>oprima los dos botones de palma</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>end whatever else talks to the controller, Reset, Drives On</source>
-      <translation>cierre lo demás que hable con el controlador, Reset, encienda servos</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>spindle limit %1 is not between 0 and %2 rpm</source>
+      <translation>el tope del husillo %1 no está entre 0 y %2 rpm</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>it has restarted: its outputs have fallen</source>
-      <translation>se reinició: sus salidas cayeron</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>spindle limit %1 rpm</source>
+      <translation>tope del husillo %1 rpm</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>it was reset unseen</source>
-      <translation>se reinició sin que se viera</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>state %1</source>
+      <translation>estado %1</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>its E-stop or reset input is on</source>
-      <translation>su entrada de paro de emergencia o de reset está activa</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>the collet is not opened by hand while the spindle turns</source>
+      <translation>la boquilla no se abre a mano mientras gira el husillo</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>its bus cable or power</source>
-      <translation>su cable de bus o alimentación</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>the offsets of the tables are in force</source>
+      <translation>las compensaciones de las tablas están vigentes</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>its cable, or its line is disturbed</source>
-      <translation>su cable, o su línea tiene interferencias</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>the spindle limit is raised only while the spindle stands</source>
+      <translation>el tope del husillo sólo se sube con el husillo parado</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>its module has failed</source>
-      <translation>su módulo se averió</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>there is no switch %1</source>
+      <translation>no hay interruptor %1</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>its reset button or input</source>
-      <translation>su botón o entrada de reset</translation>
+      <location filename="core/executor/command_handler.py" />
+      <source>this machine has no output %1</source>
+      <translation>esta máquina no tiene la salida %1</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>its settings forbid what the program asks for: travel, speed, spindle</source>
-      <translation>sus ajustes prohíben lo que pide el programa: recorrido, velocidad, husillo</translation>
+      <location filename="core/executor/commanded_outputs.py" />
+      <source>%1 HAS COME ON</source>
+      <translation>SE ENCENDIÓ %1</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>its supply broke down for a moment</source>
-      <translation>su alimentación falló por un momento</translation>
+      <location filename="core/executor/commanded_outputs.py" />
+      <source>%1 HAS GONE OFF</source>
+      <translation>SE APAGÓ %1</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>put right what is named, Reset, Drives On; home where asked</source>
-      <translation>corrija lo que se nombra, Reset, encienda servos; referencia donde se pida</translation>
+      <location filename="core/executor/controller_motion.py" />
+      <source>line %1 has no feed</source>
+      <translation>la línea %1 no tiene avance</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>release the E-stop, Reset, Drives On</source>
-      <translation>suelte el paro de emergencia, Reset, encienda servos</translation>
+      <location filename="core/executor/controller_motion.py" />
+      <source>this controller moves X and Z only</source>
+      <translation>este controlador mueve sólo X y Z</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>spindle and coolant are off: close the door, Reset, Drives On</source>
-      <translation>husillo y refrigerante están apagados: cierre la puerta, Reset, encienda servos</translation>
+      <location filename="core/executor/cycle.py" />
+      <source>FEED OVERRIDE AT 0</source>
+      <translation>AVANCE EN 0 POR LA PERILLA</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the CAN cable is off, or a terminator is missing</source>
-      <translation>el cable CAN está suelto, o falta un terminador</translation>
+      <location filename="core/executor/cycle.py" />
+      <source>SPINDLE BELOW HALF ITS SPEED</source>
+      <translation>HUSILLO A MENOS DE LA MITAD DE SU VELOCIDAD</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the CAN interface was unplugged</source>
-      <translation>se desconectó la interfaz CAN</translation>
+      <location filename="core/executor/cycle.py" />
+      <source>SPINDLE NOT AT ITS SPEED</source>
+      <translation>EL HUSILLO NO ESTÁ A SU VELOCIDAD</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the cable to the controller was pulled or damaged</source>
-      <translation>el cable al controlador se jaló o se dañó</translation>
+      <location filename="core/executor/cycle.py" />
+      <source>THE CONTROLLER HOLDS</source>
+      <translation>EL CONTROLADOR RETIENE</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the computer is overloaded: the slides stop at the end of what they have</source>
-      <translation>la computadora está sobrecargada: los carros paran al final de lo que tienen</translation>
+      <location filename="core/executor/executor.py" />
+      <source>%1 came too late to be obeyed</source>
+      <translation>%1 llegó demasiado tarde para obedecerse</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the computer ran out of memory</source>
-      <translation>la computadora se quedó sin memoria</translation>
+      <location filename="core/executor/executor.py" />
+      <source>GUARD OPEN</source>
+      <translation>GUARDA ABIERTA</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the connection to the controller is lost</source>
-      <translation>se perdió la conexión con el controlador</translation>
+      <location filename="core/executor/executor.py" />
+      <source>feed %1 %</source>
+      <translation>avance %1 %</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the controller does not answer</source>
-      <translation>el controlador no responde</translation>
+      <location filename="core/executor/executor.py" />
+      <source>the button at the station</source>
+      <translation>el botón de la estación</translation>
     </message>
     <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the controller hangs</source>
-      <translation>el controlador se trabó</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the controller has lost its modes</source>
-      <translation>el controlador perdió sus modos</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the controller refuses a block</source>
-      <translation>el controlador rechaza un bloque</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the controller was reset</source>
-      <translation>el controlador se reinició</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the controller's power is off</source>
-      <translation>el controlador no tiene alimentación</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the door was opened in the cycle</source>
-      <translation>la puerta se abrió en el ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the door's switch or cable</source>
-      <translation>el interruptor de la puerta o su cable</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the drive bus has failed</source>
-      <translation>falló el bus de los servos</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the feeder does not answer</source>
-      <translation>el alimentador no responde</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the feeder has ended</source>
-      <translation>el alimentador terminó</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the feeder has failed</source>
-      <translation>el alimentador se averió</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the feeder process was ended or has failed: slides, spindle and outputs are off</source>
-      <translation>el proceso alimentador se terminó o falló: carros, husillo y salidas están apagados</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the machine file does not name it, or the controller does not have it</source>
-      <translation>el archivo de máquina no la nombra, o el controlador no la tiene</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the program is given up: look where the tool stands, Reset, Drives On, home</source>
-      <translation>el programa se abandonó: vea dónde está la herramienta, Reset, encienda servos, referencia</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>the safety door is open</source>
-      <translation>la puerta de seguridad está abierta</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>what the controller's number says</source>
-      <translation>lo que dice el número del controlador</translation>
-    </message>
-    <message>
-      <location filename="core/executor/raised_alarm.py" />
-      <source> line %1</source>
-      <translation> línea %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/raised_alarm.py" />
-      <source>asked for by %1</source>
-      <translation>pedido por %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>look first: %1; then start again</source>
-      <translation>vea primero: %1; luego arranque otra vez</translation>
+      <location filename="core/executor/executor.py" />
+      <source>the control was away for %1 s</source>
+      <translation>el control estuvo ausente %1 s</translation>
     </message>
     <message>
       <location filename="core/executor/following_error.py" />
@@ -6202,266 +6442,6 @@
       <location filename="core/executor/following_error.py" />
       <source>%1 was sent %2, its encoder stands</source>
       <translation>%1 recibió %2, su encoder no se mueve</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>the controller is still moving</source>
-      <translation>el controlador todavía se mueve</translation>
-    </message>
-    <message>
-      <location filename="core/executor/controller_motion.py" />
-      <source>line %1 has no feed</source>
-      <translation>la línea %1 no tiene avance</translation>
-    </message>
-    <message>
-      <location filename="core/executor/controller_motion.py" />
-      <source>this controller moves X and Z only</source>
-      <translation>este controlador mueve sólo X y Z</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>%1 %2 by hand</source>
-      <translation>%1 %2 a mano</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>%1: outputs are switched by hand only at rest, not in state %2</source>
-      <translation>%1: las salidas sólo se cambian a mano en reposo, no en el estado %2</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>a program is under way: it keeps the offsets that it was proved with</source>
-      <translation>hay un programa en curso: conserva las compensaciones con que se comprobó</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>a program is under way: its spindle is stopped by feed hold and reset</source>
-      <translation>hay un programa en curso: su husillo se para con retención de avance y reset</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>the collet is not opened by hand while the spindle turns</source>
-      <translation>la boquilla no se abre a mano mientras gira el husillo</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>the offsets of the tables are in force</source>
-      <translation>las compensaciones de las tablas están vigentes</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>this machine has no output %1</source>
-      <translation>esta máquina no tiene la salida %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/commanded_outputs.py" />
-      <source>%1 HAS COME ON</source>
-      <translation>SE ENCENDIÓ %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/commanded_outputs.py" />
-      <source>%1 HAS GONE OFF</source>
-      <translation>SE APAGÓ %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
-      <source>%1 was given up</source>
-      <translation>%1 se abandonó</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
-      <source>FORWARD</source>
-      <translation>ADELANTE</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
-      <source>REVERSE</source>
-      <translation>EN REVERSA</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
-      <source>SWITCH TO AUTO: %1</source>
-      <translation>INTERRUPTOR EN AUTO: %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
-      <source>THE SPINDLE STARTS AT %1 RPM %2</source>
-      <translation>EL HUSILLO ARRANCA A %1 RPM %2</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
-      <source>a driver does not obey: %1</source>
-      <translation>un controlador de equipo no obedece: %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
-      <source>reset: wait until the slides are at rest</source>
-      <translation>reset: espere a que los carros estén en reposo</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
-      <source>setpoints ran low; the slides stop on the path</source>
-      <translation>las consignas se agotaban; los carros paran sobre la trayectoria</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
-      <source>while giving the program up: %1</source>
-      <translation>al abandonar el programa: %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/cycle.py" />
-      <source>FEED OVERRIDE AT 0</source>
-      <translation>AVANCE EN 0 POR LA PERILLA</translation>
-    </message>
-    <message>
-      <location filename="core/executor/cycle.py" />
-      <source>SPINDLE BELOW HALF ITS SPEED</source>
-      <translation>HUSILLO A MENOS DE LA MITAD DE SU VELOCIDAD</translation>
-    </message>
-    <message>
-      <location filename="core/executor/cycle.py" />
-      <source>SPINDLE NOT AT ITS SPEED</source>
-      <translation>EL HUSILLO NO ESTÁ A SU VELOCIDAD</translation>
-    </message>
-    <message>
-      <location filename="core/executor/cycle.py" />
-      <source>THE CONTROLLER HOLDS</source>
-      <translation>EL CONTROLADOR RETIENE</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>%1 BY ITSELF</source>
-      <translation>%1 POR SÍ SOLO</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>COMES ON</source>
-      <translation>SE ENCIENDE</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>CONTROL WAS SILENT FOR %1 S, SWITCHED OFF: %2</source>
-      <translation>EL CONTROL CALLÓ %1 S, SE APAGÓ: %2</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>GOES OFF</source>
-      <translation>SE APAGA</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>THE FEEDER HAS SWITCHED OFF</source>
-      <translation>EL ALIMENTADOR APAGÓ</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>output %1</source>
-      <translation>la salida %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/executor.py" />
-      <source>%1 came too late to be obeyed</source>
-      <translation>%1 llegó demasiado tarde para obedecerse</translation>
-    </message>
-    <message>
-      <location filename="core/executor/executor.py" />
-      <source>GUARD OPEN</source>
-      <translation>GUARDA ABIERTA</translation>
-    </message>
-    <message>
-      <location filename="core/executor/executor.py" />
-      <source>feed %1 %</source>
-      <translation>avance %1 %</translation>
-    </message>
-    <message>
-      <location filename="core/executor/executor.py" />
-      <source>the button at the station</source>
-      <translation>el botón de la estación</translation>
-    </message>
-    <message>
-      <location filename="core/executor/executor.py" />
-      <source>the control was away for %1 s</source>
-      <translation>el control estuvo ausente %1 s</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>%1 must be homed first</source>
-      <translation>%1 necesita primero su referencia</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>E-stop is pressed: release it</source>
-      <translation>el paro de emergencia está oprimido: suéltelo</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>an alarm stands: clear its cause and press Reset</source>
-      <translation>hay una alarma: elimine su causa y oprima Reset</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>feed hold is pressed</source>
-      <translation>la retención de avance está oprimida</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>line %1: a thread needs an encoder on the spindle, and there is none</source>
-      <translation>línea %1: una rosca necesita un encoder en el husillo, y no lo hay</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>line %1: this controller cannot do %2</source>
-      <translation>línea %1: este controlador no puede hacer %2</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>no program is loaded</source>
-      <translation>no hay programa cargado</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>the drives are off: switch them on</source>
-      <translation>los servos están apagados: enciéndalos</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>the guard is open: close it</source>
-      <translation>la guarda está abierta: ciérrela</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>the machine is being jogged</source>
-      <translation>la máquina se mueve a mano</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>the machine is homing</source>
-      <translation>la máquina busca su referencia</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>the program has errors: %1</source>
-      <translation>el programa tiene errores: %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>the program is not proved yet</source>
-      <translation>el programa aún no está comprobado</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>the proof belongs to another program or to other offsets: load it again</source>
-      <translation>la comprobación es de otro programa o de otras compensaciones: cárguelo de nuevo</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>the spindle is not started with the collet open: close it first</source>
-      <translation>el husillo no arranca con la boquilla abierta: ciérrela primero</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>tool offset %1 has never been set</source>
-      <translation>la compensación de herramienta %1 nunca se puso</translation>
     </message>
     <message>
       <location filename="core/executor/geared_thread_pass.py" />
@@ -6650,6 +6630,16 @@
     </message>
     <message>
       <location filename="core/executor/jogging.py" />
+      <source>feed hold is pressed</source>
+      <translation>la retención de avance está oprimida</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jogging.py" />
+      <source>the controller is still moving</source>
+      <translation>el controlador todavía se mueve</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jogging.py" />
       <source>the spindle's drive becomes C: let go, and begin again in two seconds</source>
       <translation>el variador del husillo pasa a ser C: suelte y empiece de nuevo en dos segundos</translation>
     </message>
@@ -6659,34 +6649,79 @@
       <translation>esta máquina no tiene eje %1 que mover a mano</translation>
     </message>
     <message>
-      <location filename="core/executor/read_ahead.py" />
-      <source>line %1 feeds by the revolution</source>
-      <translation>la línea %1 avanza por vuelta</translation>
+      <location filename="core/executor/machine_control.py" />
+      <source>%1 was given up</source>
+      <translation>%1 se abandonó</translation>
     </message>
     <message>
-      <location filename="core/executor/read_ahead.py" />
-      <source>line %1 moves %2 to %3 %4 from home</source>
-      <translation>la línea %1 lleva %2 a %3 %4 de la referencia</translation>
+      <location filename="core/executor/machine_control.py" />
+      <source>FORWARD</source>
+      <translation>ADELANTE</translation>
     </message>
     <message>
-      <location filename="core/executor/read_ahead.py" />
-      <source>line %1 moves C while the spindle turns</source>
-      <translation>la línea %1 mueve C mientras gira el husillo</translation>
+      <location filename="core/executor/machine_control.py" />
+      <source>REVERSE</source>
+      <translation>EN REVERSA</translation>
     </message>
     <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>a program is under way: it must end or be reset before another is loaded</source>
-      <translation>hay un programa en curso: debe terminar o abandonarse antes de cargar otro</translation>
+      <location filename="core/executor/machine_control.py" />
+      <source>SWITCH TO AUTO: %1</source>
+      <translation>INTERRUPTOR EN AUTO: %1</translation>
     </message>
     <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>a start at the first line is meant</source>
-      <translation>se quiere arrancar en la primera línea</translation>
+      <location filename="core/executor/machine_control.py" />
+      <source>THE SPINDLE STARTS AT %1 RPM %2</source>
+      <translation>EL HUSILLO ARRANCA A %1 RPM %2</translation>
     </message>
     <message>
-      <location filename="core/executor/setpoint_motion.py" />
-      <source>the spindle changed its speed faster than the slides could follow: check the thread</source>
-      <translation>el husillo cambió de velocidad más rápido de lo que los carros podían seguir: revise la rosca</translation>
+      <location filename="core/executor/machine_control.py" />
+      <source>a driver does not obey: %1</source>
+      <translation>un controlador de equipo no obedece: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/machine_control.py" />
+      <source>reset: wait until the slides are at rest</source>
+      <translation>reset: espere a que los carros estén en reposo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/machine_control.py" />
+      <source>setpoints ran low; the slides stop on the path</source>
+      <translation>las consignas se agotaban; los carros paran sobre la trayectoria</translation>
+    </message>
+    <message>
+      <location filename="core/executor/machine_control.py" />
+      <source>while giving the program up: %1</source>
+      <translation>al abandonar el programa: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/operator_station.py" />
+      <source>OPERATOR STATION SILENT</source>
+      <translation>LA ESTACIÓN DEL OPERADOR NO RESPONDE</translation>
+    </message>
+    <message>
+      <location filename="core/executor/operator_station.py" />
+      <source>OVERRIDE POT JUMPS</source>
+      <translation>LA PERILLA SALTA</translation>
+    </message>
+    <message>
+      <location filename="core/executor/part_count.py" />
+      <source>NO COUNT is on</source>
+      <translation>SIN CONT está puesto</translation>
+    </message>
+    <message>
+      <location filename="core/executor/part_count.py" />
+      <source>a restart left something of it out</source>
+      <translation>un rearranque omitió algo de ella</translation>
+    </message>
+    <message>
+      <location filename="core/executor/part_count.py" />
+      <source>its cycle was disturbed (%1): measure it, and add it on F10 if it is good</source>
+      <translation>su ciclo fue perturbado (%1): mídala, y súmela en F10 si es buena</translation>
+    </message>
+    <message>
+      <location filename="core/executor/part_count.py" />
+      <source>part %1, %2 s</source>
+      <translation>pieza %1, %2 s</translation>
     </message>
     <message>
       <location filename="core/executor/path_section.py" />
@@ -6712,166 +6747,6 @@
       <location filename="core/executor/path_section.py" />
       <source>there is none, or it has come to its end</source>
       <translation>no hay ninguno, o llegó a su final</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>an alarm stands: press Reset first</source>
-      <translation>hay una alarma: oprima primero Reset</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>drives cannot be switched on in state %1</source>
-      <translation>los servos no se pueden encender en el estado %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>feed override %1 is not between 0 and 1.5</source>
-      <translation>la perilla de avance %1 no está entre 0 y 1.5</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>homing: %1</source>
-      <translation>referencia: %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>jog: %1</source>
-      <translation>mover a mano: %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>no jog in state %1</source>
-      <translation>no se mueve a mano en el estado %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>press both palm buttons</source>
-      <translation>oprima los dos botones de palma</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>spindle limit %1 is not between 0 and %2 rpm</source>
-      <translation>el tope del husillo %1 no está entre 0 y %2 rpm</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>spindle limit %1 rpm</source>
-      <translation>tope del husillo %1 rpm</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>state %1</source>
-      <translation>estado %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>the spindle limit is raised only while the spindle stands</source>
-      <translation>el tope del husillo sólo se sube con el husillo parado</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>there is no switch %1</source>
-      <translation>no hay interruptor %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/part_count.py" />
-      <source>NO COUNT is on</source>
-      <translation>SIN CONT está puesto</translation>
-    </message>
-    <message>
-      <location filename="core/executor/part_count.py" />
-      <source>a restart left something of it out</source>
-      <translation>un rearranque omitió algo de ella</translation>
-    </message>
-    <message>
-      <location filename="core/executor/part_count.py" />
-      <source>its cycle was disturbed (%1): measure it, and add it on F10 if it is good</source>
-      <translation>su ciclo fue perturbado (%1): mídala, y súmela en F10 si es buena</translation>
-    </message>
-    <message>
-      <location filename="core/executor/part_count.py" />
-      <source>part %1, %2 s</source>
-      <translation>pieza %1, %2 s</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>%1, and the program says nothing of it: load it again</source>
-      <translation>%1, y el programa no dice nada de eso: cárguelo de nuevo</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>ask for the way out again</source>
-      <translation>pida otra vez la salida</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>no line is ready: type one and press Enter</source>
-      <translation>no hay línea lista: escriba una y oprima Enter</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>no restart is ready: search a line and confirm it</source>
-      <translation>no hay rearranque listo: busque una línea y confírmela</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>press Enter again</source>
-      <translation>oprima Enter otra vez</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>search for the line again</source>
-      <translation>busque la línea otra vez</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>the collet is %1 and must be %2 at line %3: use MDI</source>
-      <translation>la boquilla está %1 y debe estar %2 en la línea %3: use MDI</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>the program was loaded anew: search for the line again</source>
-      <translation>el programa se cargó de nuevo: busque la línea otra vez</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>the slides have moved since this was proved: %1</source>
-      <translation>los carros se movieron desde la comprobación: %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>the state has changed since the line was proved: %1</source>
-      <translation>el estado cambió desde que se comprobó la línea: %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/changed_offsets.py" />
-      <source>another program is under way: new offsets are taken by the same program only</source>
-      <translation>hay otro programa en marcha: las compensaciones nuevas sólo las toma el mismo programa</translation>
-    </message>
-    <message>
-      <location filename="core/executor/changed_offsets.py" />
-      <source>the changed offsets are in force</source>
-      <translation>las compensaciones cambiadas están en vigor</translation>
-    </message>
-    <message>
-      <location filename="core/executor/setpoint_motion.py" />
-      <source>%1 in the pull-out: the thread is cut, its end runs out short</source>
-      <translation>%1 en la salida: la rosca está cortada, su final sale corto</translation>
-    </message>
-    <message>
-      <location filename="core/executor/setpoint_motion.py" />
-      <source>%1: the tool left the thread at Z%2, behind it this pass is not cut</source>
-      <translation>%1: la herramienta salió de la rosca en Z%2, más allá esta pasada no se cortó</translation>
-    </message>
-    <message>
-      <location filename="core/executor/setpoint_motion.py" />
-      <source>the spindle fell to %1 of %2 rpm</source>
-      <translation>el husillo cayó a %1 de %2 rpm</translation>
-    </message>
-    <message>
-      <location filename="core/executor/setpoint_motion.py" />
-      <source>the spindle turned the wrong way, at %1 rpm</source>
-      <translation>el husillo giró al revés, a %1 rpm</translation>
     </message>
     <message>
       <location filename="core/executor/program_run.py" />
@@ -6909,6 +6784,31 @@
       <translation>la línea se abandonó con reset</translation>
     </message>
     <message>
+      <location filename="core/executor/raised_alarm.py" />
+      <source> line %1</source>
+      <translation> línea %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/raised_alarm.py" />
+      <source>asked for by %1</source>
+      <translation>pedido por %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/read_ahead.py" />
+      <source>line %1 feeds by the revolution</source>
+      <translation>la línea %1 avanza por vuelta</translation>
+    </message>
+    <message>
+      <location filename="core/executor/read_ahead.py" />
+      <source>line %1 moves %2 to %3 %4 from home</source>
+      <translation>la línea %1 lleva %2 a %3 %4 de la referencia</translation>
+    </message>
+    <message>
+      <location filename="core/executor/read_ahead.py" />
+      <source>line %1 moves C while the spindle turns</source>
+      <translation>la línea %1 mueve C mientras gira el husillo</translation>
+    </message>
+    <message>
       <location filename="core/executor/safe_stop.py" />
       <source>the outputs</source>
       <translation>las salidas</translation>
@@ -6922,6 +6822,11 @@
       <location filename="core/executor/safe_stop.py" />
       <source>while stopping %1: %2</source>
       <translation>al parar %1: %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/setpoint_motion.py" />
+      <source>the spindle changed its speed faster than the slides could follow: check the thread</source>
+      <translation>el husillo cambió de velocidad más rápido de lo que los carros podían seguir: revise la rosca</translation>
     </message>
     <message>
       <location filename="core/executor/snapshot.py" />
@@ -6942,6 +6847,11 @@
       <location filename="core/executor/snapshot.py" />
       <source>WAITING</source>
       <translation>ESPERANDO</translation>
+    </message>
+    <message>
+      <location filename="core/executor/snapshot.py" />
+      <source>state %1 cannot become %2</source>
+      <translation>el estado %1 no puede pasar a %2</translation>
     </message>
     <message>
       <location filename="core/executor/spindle_control.py" />
@@ -6970,48 +6880,23 @@
     </message>
     <message>
       <location filename="core/executor/spindle_control.py" />
-      <source>the spindle</source>
-      <translation>el husillo</translation>
-    </message>
-    <message>
-      <location filename="core/executor/spindle_control.py" />
-      <source>the spindle's drive tells a speed that is no number</source>
-      <translation>el variador del husillo da una velocidad que no es un número</translation>
-    </message>
-    <message>
-      <location filename="core/executor/snapshot.py" />
-      <source>state %1 cannot become %2</source>
-      <translation>el estado %1 no puede pasar a %2</translation>
-    </message>
-    <message>
-      <location filename="core/executor/operator_station.py" />
-      <source>OPERATOR STATION SILENT</source>
-      <translation>LA ESTACIÓN DEL OPERADOR NO RESPONDE</translation>
-    </message>
-    <message>
-      <location filename="core/executor/operator_station.py" />
-      <source>OVERRIDE POT JUMPS</source>
-      <translation>LA PERILLA SALTA</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>%1: its drive tells a position that is no number</source>
-      <translation>%1: su servo da una posición que no es un número</translation>
-    </message>
-    <message>
-      <location filename="core/executor/thread_path.py" />
-      <source>a thread has no length or no lead</source>
-      <translation>una rosca no tiene largo o no tiene paso</translation>
-    </message>
-    <message>
-      <location filename="core/executor/spindle_control.py" />
       <source>the encoder on the spindle counts nothing</source>
       <translation>el encoder del husillo no cuenta nada</translation>
     </message>
     <message>
       <location filename="core/executor/spindle_control.py" />
+      <source>the spindle</source>
+      <translation>el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/spindle_control.py" />
       <source>the spindle does not turn</source>
       <translation>el husillo no gira</translation>
+    </message>
+    <message>
+      <location filename="core/executor/spindle_control.py" />
+      <source>the spindle's drive tells a speed that is no number</source>
+      <translation>el variador del husillo da una velocidad que no es un número</translation>
     </message>
     <message>
       <location filename="core/executor/standstill.py" />
@@ -7039,6 +6924,196 @@
       <translation>el husillo gira a %1 rpm</translation>
     </message>
     <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>%1 must be homed first</source>
+      <translation>%1 necesita primero su referencia</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>%1, and the program says nothing of it: load it again</source>
+      <translation>%1, y el programa no dice nada de eso: cárguelo de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>E-stop is pressed: release it</source>
+      <translation>el paro de emergencia está oprimido: suéltelo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>an alarm stands: clear its cause and press Reset</source>
+      <translation>hay una alarma: elimine su causa y oprima Reset</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>ask for the way out again</source>
+      <translation>pida otra vez la salida</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>line %1: a thread needs an encoder on the spindle, and there is none</source>
+      <translation>línea %1: una rosca necesita un encoder en el husillo, y no lo hay</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>line %1: this controller cannot do %2</source>
+      <translation>línea %1: este controlador no puede hacer %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>look first: %1; then start again</source>
+      <translation>vea primero: %1; luego arranque otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>no line is ready: type one and press Enter</source>
+      <translation>no hay línea lista: escriba una y oprima Enter</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>no program is loaded</source>
+      <translation>no hay programa cargado</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>no restart is ready: search a line and confirm it</source>
+      <translation>no hay rearranque listo: busque una línea y confírmela</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>press Enter again</source>
+      <translation>oprima Enter otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>search for the line again</source>
+      <translation>busque la línea otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>the collet is %1 and must be %2 at line %3: use MDI</source>
+      <translation>la boquilla está %1 y debe estar %2 en la línea %3: use MDI</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>the drives are off: switch them on</source>
+      <translation>los servos están apagados: enciéndalos</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>the guard is open: close it</source>
+      <translation>la guarda está abierta: ciérrela</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>the machine is being jogged</source>
+      <translation>la máquina se mueve a mano</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>the machine is homing</source>
+      <translation>la máquina busca su referencia</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>the program has errors: %1</source>
+      <translation>el programa tiene errores: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>the program is not proved yet</source>
+      <translation>el programa aún no está comprobado</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>the program was loaded anew: search for the line again</source>
+      <translation>el programa se cargó de nuevo: busque la línea otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>the proof belongs to another program or to other offsets: load it again</source>
+      <translation>la comprobación es de otro programa o de otras compensaciones: cárguelo de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>the slides have moved since this was proved: %1</source>
+      <translation>los carros se movieron desde la comprobación: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>the spindle is not started with the collet open: close it first</source>
+      <translation>el husillo no arranca con la boquilla abierta: ciérrela primero</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>the state has changed since the line was proved: %1</source>
+      <translation>el estado cambió desde que se comprobó la línea: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>tool offset %1 has never been set</source>
+      <translation>la compensación de herramienta %1 nunca se puso</translation>
+    </message>
+    <message>
+      <location filename="core/executor/supervision.py" />
+      <source>%1 BY ITSELF</source>
+      <translation>%1 POR SÍ SOLO</translation>
+    </message>
+    <message>
+      <location filename="core/executor/supervision.py" />
+      <source>%1: its drive tells a position that is no number</source>
+      <translation>%1: su servo da una posición que no es un número</translation>
+    </message>
+    <message>
+      <location filename="core/executor/supervision.py" />
+      <source>COMES ON</source>
+      <translation>SE ENCIENDE</translation>
+    </message>
+    <message>
+      <location filename="core/executor/supervision.py" />
+      <source>CONTROL WAS SILENT FOR %1 S, SWITCHED OFF: %2</source>
+      <translation>EL CONTROL CALLÓ %1 S, SE APAGÓ: %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/supervision.py" />
+      <source>GOES OFF</source>
+      <translation>SE APAGA</translation>
+    </message>
+    <message>
+      <location filename="core/executor/supervision.py" />
+      <source>THE FEEDER HAS SWITCHED OFF</source>
+      <translation>EL ALIMENTADOR APAGÓ</translation>
+    </message>
+    <message>
+      <location filename="core/executor/supervision.py" />
+      <source>output %1</source>
+      <translation>la salida %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/thread_path.py" />
+      <source>%1 in the pull-out: the thread is cut, its end runs out short</source>
+      <translation>%1 en la salida: la rosca está cortada, su final sale corto</translation>
+    </message>
+    <message>
+      <location filename="core/executor/thread_path.py" />
+      <source>%1: the tool left the thread at Z%2, behind it this pass is not cut</source>
+      <translation>%1: la herramienta salió de la rosca en Z%2, más allá esta pasada no se cortó</translation>
+    </message>
+    <message>
+      <location filename="core/executor/thread_path.py" />
+      <source>a thread has no length or no lead</source>
+      <translation>una rosca no tiene largo o no tiene paso</translation>
+    </message>
+    <message>
+      <location filename="core/executor/thread_path.py" />
+      <source>the spindle fell to %1 of %2 rpm</source>
+      <translation>el husillo cayó a %1 de %2 rpm</translation>
+    </message>
+    <message>
+      <location filename="core/executor/thread_path.py" />
+      <source>the spindle turned the wrong way, at %1 rpm</source>
+      <translation>el husillo giró al revés, a %1 rpm</translation>
+    </message>
+    <message>
       <location filename="core/executor/watchdog.py" />
       <source>its thread has ended</source>
       <translation>su hilo terminó</translation>
@@ -7047,26 +7122,6 @@
       <location filename="core/executor/watchdog.py" />
       <source>its thread is stuck</source>
       <translation>su hilo está atorado</translation>
-    </message>
-    <message>
-      <location filename="core/geometry/chamfer_and_rounding.py" />
-      <source>the chamfer would cross one of them</source>
-      <translation>el chaflán cruzaría uno de ellos</translation>
-    </message>
-    <message>
-      <location filename="core/geometry/chamfer_and_rounding.py" />
-      <source>the next one runs straight back</source>
-      <translation>el siguiente vuelve directamente atrás</translation>
-    </message>
-    <message>
-      <location filename="core/geometry/chamfer_and_rounding.py" />
-      <source>they are too short for a chamfer of that length</source>
-      <translation>son demasiado cortos para un chaflán de esa longitud</translation>
-    </message>
-    <message>
-      <location filename="core/geometry/chamfer_and_rounding.py" />
-      <source>they go on in one direction</source>
-      <translation>siguen en una misma dirección</translation>
     </message>
     <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />
@@ -7095,6 +7150,11 @@
     </message>
     <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />
+      <source>the chamfer would cross one of them</source>
+      <translation>el chaflán cruzaría uno de ellos</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>the lines go on in one direction</source>
       <translation>las líneas siguen en una misma dirección</translation>
     </message>
@@ -7104,19 +7164,19 @@
       <translation>la línea siguiente regresa sobre sí misma</translation>
     </message>
     <message>
-      <location filename="core/geometry/rotation_frames.py" />
-      <source>the first and the second point are the same</source>
-      <translation>el primer punto y el segundo son el mismo</translation>
+      <location filename="core/geometry/chamfer_and_rounding.py" />
+      <source>the next one runs straight back</source>
+      <translation>el siguiente vuelve directamente atrás</translation>
     </message>
     <message>
-      <location filename="core/geometry/rotation_frames.py" />
-      <source>the first and the third point are the same</source>
-      <translation>el primer punto y el tercero son el mismo</translation>
+      <location filename="core/geometry/chamfer_and_rounding.py" />
+      <source>they are too short for a chamfer of that length</source>
+      <translation>son demasiado cortos para un chaflán de esa longitud</translation>
     </message>
     <message>
-      <location filename="core/geometry/rotation_frames.py" />
-      <source>the three points lie on one line</source>
-      <translation>los tres puntos están en una línea</translation>
+      <location filename="core/geometry/chamfer_and_rounding.py" />
+      <source>they go on in one direction</source>
+      <translation>siguen en una misma dirección</translation>
     </message>
     <message>
       <location filename="core/geometry/contour_offset.py" />
@@ -7142,6 +7202,426 @@
       <location filename="core/geometry/contour_offset.py" />
       <source>the path beside it would cut into another one</source>
       <translation>la trayectoria junto a él cortaría a otro</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/rotation_frames.py" />
+      <source>the first and the second point are the same</source>
+      <translation>el primer punto y el segundo son el mismo</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/rotation_frames.py" />
+      <source>the first and the third point are the same</source>
+      <translation>el primer punto y el tercero son el mismo</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/rotation_frames.py" />
+      <source>the three points lie on one line</source>
+      <translation>los tres puntos están en una línea</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/diagnostic_log.py" />
+      <source>The program makes more than %1 blocks or %2 executed lines.</source>
+      <translation>El programa hace más de %1 bloques o %2 líneas ejecutadas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/dialects.py" />
+      <source>A %1 program begins with its first block.</source>
+      <translation>Un programa %1 empieza por su primer bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/dialects.py" />
+      <source>A Klartext program needs a mill with X, Y and Z, and its [kinematics]; this machine is none.</source>
+      <translation>Un programa Klartext necesita una fresadora con X, Y y Z, y su [kinematics]; esta máquina no lo es.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/dialects.py" />
+      <source>A SINUMERIK turning program needs a lathe with X and Z; this machine has other axes.</source>
+      <translation>Un programa SINUMERIK de torno necesita un torno con X y Z; esta máquina tiene otros ejes.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/dialects.py" />
+      <source>An OmniTurn program needs a lathe with X, Z and C; this machine has other axes.</source>
+      <translation>Un programa OmniTurn necesita un torno con X, Z y C; esta máquina tiene otros ejes.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/dialects.py" />
+      <source>Choose the machine file of a lathe.</source>
+      <translation>Elija el archivo de máquina de un torno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/dialects.py" />
+      <source>Choose the machine file of a mill: --machine ac-table-mill.</source>
+      <translation>Elija el archivo de máquina de una fresadora: --machine ac-table-mill.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/dialects.py" />
+      <source>Start it from the beginning.</source>
+      <translation>Empiécelo desde el principio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
+      <source>Lower the counts of the repeats.</source>
+      <translation>Baje los números de las repeticiones.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>A file holds one program.</source>
+      <translation>Un archivo contiene un solo programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>A subprogram must not call itself.</source>
+      <translation>Un subprograma no debe llamarse a sí mismo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>Calls are nested more than %1 deep at LBL %2.</source>
+      <translation>Las llamadas se anidan a más de %1 niveles en LBL %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>Correct the number, or write the label.</source>
+      <translation>Corrija el número, o escriba la etiqueta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>END PGM is missing.</source>
+      <translation>Falta END PGM.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>Give it another number.</source>
+      <translation>Déle otro número.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>LBL %1 is nowhere in the program.</source>
+      <translation>LBL %1 no está en ninguna parte del programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>LBL %1 stands on line %2 too.</source>
+      <translation>LBL %1 está también en la línea %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>Look whether the file is whole.</source>
+      <translation>Vea si el archivo está completo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>Move it before END PGM.</source>
+      <translation>Muévalo antes de END PGM.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>The first block names program and unit.</source>
+      <translation>El primer bloque nombra programa y unidad.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>The program begins as %1 and ends as %2.</source>
+      <translation>El programa empieza como %1 y termina como %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>The subprogram LBL %1 has no LBL 0.</source>
+      <translation>El subprograma LBL %1 no tiene LBL 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>This block stands behind END PGM.</source>
+      <translation>Este bloque está después de END PGM.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>Write LBL 0 behind it.</source>
+      <translation>Escriba LBL 0 después.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>Write the unit of the program in both.</source>
+      <translation>Escriba en ambos la unidad del programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/l_moves.py" />
+      <source>%1 stand elsewhere than the plane of line %2 asks.</source>
+      <translation>%1 están en otra posición que la que pide el plano de la línea %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/l_moves.py" />
+      <source>A move of %1 with M128</source>
+      <translation>Un movimiento de %1 con M128</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/l_moves.py" />
+      <source>A move with M128 and %1 swivelled</source>
+      <translation>Un movimiento con M128 y %1 inclinado</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/l_moves.py" />
+      <source>Position them before the cut: L A+Q120 C+Q122 R0 FMAX, or TURN in the PLANE block.</source>
+      <translation>Posiciónelos antes del corte: L A+Q120 C+Q122 R0 FMAX, o TURN en el bloque PLANE.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/l_moves.py" />
+      <source>Start it with M3 or M4.</source>
+      <translation>Arránquelo con M3 o M4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/l_moves.py" />
+      <source>Take the word out.</source>
+      <translation>Quite la palabra.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/l_moves.py" />
+      <source>This feed move runs with the spindle at rest.</source>
+      <translation>Este movimiento de avance corre con el husillo parado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/l_moves.py" />
+      <source>This machine has no axis %1.</source>
+      <translation>Esta máquina no tiene eje %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/m_functions.py" />
+      <source>M%1 stands twice in the block.</source>
+      <translation>M%1 está dos veces en el bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/m_functions.py" />
+      <source>M%1 starts the spindle, and no TOOL CALL has given S.</source>
+      <translation>M%1 arranca el husillo, y ningún TOOL CALL dio S.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/m_functions.py" />
+      <source>M%1 while M128 is on.</source>
+      <translation>M%1 con M128 activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/m_functions.py" />
+      <source>More than one M function of the block steers the spindle.</source>
+      <translation>Más de una función M del bloque manda el husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/m_functions.py" />
+      <source>Switch it off with M129 before.</source>
+      <translation>Apáguelo antes con M129.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/m_functions.py" />
+      <source>TOOL %1</source>
+      <translation>TOOL %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/m_functions.py" />
+      <source>Take one out.</source>
+      <translation>Quite una.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/m_functions.py" />
+      <source>Write S behind TOOL CALL.</source>
+      <translation>Escriba S tras TOOL CALL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source> with %1</source>
+      <translation> con %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>%1 %2 is not between %3 and %4.</source>
+      <translation>%1 %2 no está entre %3 y %4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>Correct the angle.</source>
+      <translation>Corrija el ángulo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>Correct the points.</source>
+      <translation>Corrija los puntos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>Look at points, angles and SYM.</source>
+      <translation>Vea los puntos, los ángulos y SYM.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>M128 is on.</source>
+      <translation>M128 está activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>MB MAX needs a software limit, and this machine has none along the tool.</source>
+      <translation>MB MAX necesita un límite por programa, y esta máquina no lo tiene en el eje de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>No TOOL CALL has named a tool axis.</source>
+      <translation>Ningún TOOL CALL nombró un eje de herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>No position of the rotary axes inside their ranges gives this plane%1.</source>
+      <translation>Ninguna posición de los ejes giratorios dentro de su alcance da este plano%1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>TABLE ROT</source>
+      <translation>TABLE ROT</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>The datum was shifted in the tilted system of line %1.</source>
+      <translation>El origen se desplazó en el sistema inclinado de la línea %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>This machine has no rotary axis %1.</source>
+      <translation>Esta máquina no tiene eje giratorio %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>Where it was meant in the workpiece's system, write PLANE RESET STAY before TRANS DATUM.</source>
+      <translation>Si era en el sistema de la pieza, escriba PLANE RESET STAY antes de TRANS DATUM.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>Where the table stands at the start decides which of two ways it swivels.</source>
+      <translation>De dónde está la mesa al arrancar depende en cuál de dos sentidos bascula.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>Write MB with a length.</source>
+      <translation>Escriba MB con una longitud.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>Write SYM+ or SYM-, or position the table before.</source>
+      <translation>Escriba SYM+ o SYM-, o posicione antes la mesa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>Write TOOL CALL n Z before.</source>
+      <translation>Escriba antes TOOL CALL n Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/tool_call.py" />
+      <source>A tool by its name</source>
+      <translation>Una herramienta por su nombre</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/tool_call.py" />
+      <source>S%1 is over the spindle's %2 rpm.</source>
+      <translation>S%1 pasa de las %2 rpm del husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/tool_call.py" />
+      <source>Set the tool's offset.</source>
+      <translation>Ponga la compensación de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/tool_call.py" />
+      <source>TOOL CALL while M128 is on.</source>
+      <translation>TOOL CALL con M128 activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/tool_call.py" />
+      <source>The tool axis %1</source>
+      <translation>El eje de herramienta %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/tool_call.py" />
+      <source>Tool %1 has no offset; 0 is used, and the machine will refuse to start.</source>
+      <translation>La herramienta %1 no tiene compensación; se usa 0, y la máquina se negará a arrancar.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/word_values.py" />
+      <source>Correct the value.</source>
+      <translation>Corrija el valor.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/word_values.py" />
+      <source>F must be above zero.</source>
+      <translation>F debe ser mayor que cero.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/word_values.py" />
+      <source>No feed is in force.</source>
+      <translation>No hay avance vigente.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/word_values.py" />
+      <source>Q%1 has no value yet.</source>
+      <translation>Q%1 todavía no tiene valor.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/word_values.py" />
+      <source>The last TOOL CALL has no F.</source>
+      <translation>El último TOOL CALL no tiene F.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/word_values.py" />
+      <source>Write F behind TOOL CALL.</source>
+      <translation>Escriba F tras TOOL CALL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/word_values.py" />
+      <source>Write F or FMAX.</source>
+      <translation>Escriba F o FMAX.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/word_values.py" />
+      <source>Write Q%1 = … before.</source>
+      <translation>Escriba antes Q%1 = …</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/word_values.py" />
+      <source>Write a feed.</source>
+      <translation>Escriba un avance.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/machine_requirements.py" />
+      <source>a thread that pulls out in step with the spindle; end it in a groove</source>
+      <translation>una rosca que sale en paso con el husillo; termínela en una ranura</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/machine_requirements.py" />
+      <source>constant surface speed; program the spindle in rpm with G97</source>
+      <translation>velocidad superficial constante; programe el husillo en rpm con G97</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/machine_requirements.py" />
+      <source>input %1</source>
+      <translation>la entrada %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/machine_requirements.py" />
+      <source>milling in a switched plane</source>
+      <translation>fresado en un plano cambiado</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/machine_requirements.py" />
+      <source>more axes than X and Z</source>
+      <translation>más ejes que X y Z</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/machine_requirements.py" />
+      <source>output collet</source>
+      <translation>la salida de la boquilla</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/machine_requirements.py" />
+      <source>output coolant</source>
+      <translation>la salida del refrigerante</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/machine_requirements.py" />
+      <source>the C axis</source>
+      <translation>el eje C</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
@@ -7239,44 +7719,164 @@
       <translation>Use G90 o G73 para el arco.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/dwell.py" />
-      <source>The drive of C does not tell of its arrival, which takes %1 s from here.</source>
-      <translation>El servo de C no avisa su llegada, que desde aquí tarda %1 s.</translation>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>%1 has no number.</source>
+      <translation>%1 no tiene número.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/dwell.py" />
-      <source>Write G04F%1 after it, or longer.</source>
-      <translation>Escriba después G04F%1, o más.</translation>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>%1 is finer than the step of %2 degrees; %3 is used.</source>
+      <translation>%1 es más fino que el paso de %2 grados; se usa %3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>%1 leaves nothing of the box to cut.</source>
-      <translation>%1 no deja nada de la caja por cortar.</translation>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>%1 needs a C axis, and the machine file switches it off.</source>
+      <translation>%1 necesita un eje C, y el archivo de máquina lo apaga.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>%1 needs %2 of the corner opposite to the start point.</source>
-      <translation>%1 necesita %2 de la esquina opuesta al punto de inicio.</translation>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>%1 turns the spindle, which is not locked.</source>
+      <translation>%1 gira el husillo, que no está bloqueado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>Correct %1 or the start point.</source>
-      <translation>Corrija %1 o el punto de inicio.</translation>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>%1: C turns at more than 0 and at most %2 rpm.</source>
+      <translation>%1: C gira a más de 0 y a lo más %2 rpm.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>The box has no size along %1: its corner lies at the start point.</source>
-      <translation>La caja no tiene medida en %1: su esquina está en el punto de inicio.</translation>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>At %1 rpm of C this feed is %2; %3 is the most.</source>
+      <translation>A %1 rpm de C este avance es %2; lo más es %3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>U is less than the way from the start to X.</source>
-      <translation>U es menor que el camino del inicio a X.</translation>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>C turns %1 degrees; the way of the slide at this feed needs %2.</source>
+      <translation>C gira %1 grados; el camino del carro a este avance necesita %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>the greatest depth of cut</source>
-      <translation>la mayor profundidad de corte</translation>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>G89 locks the spindle and stands without M codes.</source>
+      <translation>G89 bloquea el husillo y va sin códigos M.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>Keep one of them.</source>
+      <translation>Deje uno de ellos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>Lower F or S.</source>
+      <translation>Baje F o S.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>Round the number.</source>
+      <translation>Redondee el número.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>Set axis.C.enabled.</source>
+      <translation>Ponga axis.C.enabled.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>Split the line.</source>
+      <translation>Divida la línea.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>The line holds %1 and %2.</source>
+      <translation>La línea contiene %1 y %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>The slide is fed by the turns of C, and no S has said how fast it turns.</source>
+      <translation>El carro avanza por las vueltas de C, y ninguna S dijo qué tan rápido gira.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>Turn C further, or raise F: the slide would stop on its way.</source>
+      <translation>Gire más C, o suba F: el carro se detendría en el camino.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>Write M19 or M89 before.</source>
+      <translation>Escriba antes M19 o M89.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>Write S on the line.</source>
+      <translation>Escriba S en la línea.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <source>Write the degrees.</source>
+      <translation>Escriba los grados.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/canned_cycles.py" />
+      <source>%1 cannot run while nose compensation is active.</source>
+      <translation>%1 no puede correr con la compensación de punta activa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/canned_cycles.py" />
+      <source>%1 has no feed: none for cutting is in force.</source>
+      <translation>%1 no tiene avance: no hay ninguno de corte vigente.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/canned_cycles.py" />
+      <source>%1 is the first move after the T on line %2: its start point is not known.</source>
+      <translation>%1 es el primer movimiento tras la T de la línea %2: no se conoce su punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/canned_cycles.py" />
+      <source>%1 needs %2, %3.</source>
+      <translation>%1 necesita %2, %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/canned_cycles.py" />
+      <source>%1 would make %2 %3; %4 are the most.</source>
+      <translation>%1 haría %2 %3; lo más son %4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/canned_cycles.py" />
+      <source>%1: %2, %3, must be over 0.</source>
+      <translation>%1: %2, %3, debe ser mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/canned_cycles.py" />
+      <source>%1: U is what the cycle leaves on a side, which is never negative.</source>
+      <translation>%1: U es lo que el ciclo deja por lado, y nunca es negativo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/canned_cycles.py" />
+      <source>Correct %1.</source>
+      <translation>Corrija %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/canned_cycles.py" />
+      <source>Look for a lost decimal point in %1.</source>
+      <translation>Busque un punto decimal perdido en %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/canned_cycles.py" />
+      <source>Move to X and Z of the start point before it.</source>
+      <translation>Muévase antes a la X y la Z del punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/canned_cycles.py" />
+      <source>Put G40 and a departure before it.</source>
+      <translation>Ponga antes G40 y una salida.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/canned_cycles.py" />
+      <source>Take the sign out.</source>
+      <translation>Quite el signo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/canned_cycles.py" />
+      <source>Write F on the %1 line.</source>
+      <translation>Escriba F en la línea de %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/coarse_feeds.py" />
@@ -7349,74 +7949,9 @@
       <translation>Escriba en la línea siguiente G92 con la X y la Z actuales.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/code_table.py" />
-      <source>coarse feed</source>
-      <translation>avance burdo</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/code_table.py" />
-      <source>nose compensation</source>
-      <translation>compensación de punta</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/code_table.py" />
-      <source>speed limits</source>
-      <translation>topes de velocidad</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/code_table.py" />
-      <source>spindle mode</source>
-      <translation>modo de husillo</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>%1 cannot follow this move.</source>
-      <translation>%1 no puede seguir este movimiento.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>%1 with a nose radius of %2 cannot follow this move: %3.</source>
-      <translation>%1 con radio de punta %2 no puede seguir este movimiento: %3.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>Move off the part on a straight line.</source>
-      <translation>Salga de la pieza en línea recta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>Move off the part.</source>
-      <translation>Salga de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>No move follows the contour between the approach and the departure of %1.</source>
-      <translation>Ningún movimiento sigue el contorno entre la entrada y la salida de %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>Take a smaller nose, or change the contour.</source>
-      <translation>Use una punta menor, o cambie el contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>The departure, the last move before G40, has no length.</source>
-      <translation>La salida, el último movimiento antes de G40, no tiene largo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>The departure, the move before G40, is no straight line.</source>
-      <translation>La salida, el movimiento antes de G40, no es una recta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>Write G40 before it.</source>
-      <translation>Escriba G40 antes.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>Write the contour between them.</source>
-      <translation>Escriba el contorno entre ellos.</translation>
+      <location filename="core/interpreter/omniturn/corners.py" />
+      <source>%1 (line %2)</source>
+      <translation>%1 (línea %2)</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
@@ -7425,8 +7960,28 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
+      <source>%1 makes a corner at the end of a straight move, and the line has none.</source>
+      <translation>%1 hace una esquina al final de una recta, y la línea no tiene ninguna.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
+      <source>%1 on line %2 is no straight move</source>
+      <translation>%1 en la línea %2 no es una recta</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
+      <source>%1: a corner's size must be a number over 0.</source>
+      <translation>%1: el tamaño de una esquina debe ser mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>A corner needs two straight moves in a row.</source>
       <translation>Una esquina necesita dos rectas seguidas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
+      <source>Lines %1 and %2 run in one direction: there is no corner to cut.</source>
+      <translation>Las líneas %1 y %2 van en una misma dirección: no hay esquina que cortar.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
@@ -7435,8 +7990,18 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
+      <source>Put it on the line with X or Z.</source>
+      <translation>Póngalo en la línea con X o Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>Take C or R out.</source>
       <translation>Quite C o R.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
+      <source>The line has both C and R.</source>
+      <translation>La línea tiene C y R a la vez.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
@@ -7445,13 +8010,58 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
+      <source>Write the size in full.</source>
+      <translation>Escriba el tamaño completo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
+      <source>an arc</source>
+      <translation>un arco</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
+      <source>another motion</source>
+      <translation>otro movimiento</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>it takes %1 of %2, which has %3 left</source>
       <translation>ocupa %1 de %2, al que le quedan %3</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
+      <source>it takes %1 of the move on line %2, which has %3 left</source>
+      <translation>ocupa %1 del movimiento de la línea %2, al que le quedan %3</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
+      <source>no move follows</source>
+      <translation>no sigue ningún movimiento</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
+      <source>no move follows before %1</source>
+      <translation>no sigue ningún movimiento antes de %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
+      <source>no straight line</source>
+      <translation>ninguna recta</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
+      <source>nose compensation ends before the next move</source>
+      <translation>la compensación de punta termina antes del movimiento siguiente</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>the contour ends here</source>
       <translation>el contorno termina aquí</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
+      <source>the move on line %1 has no length</source>
+      <translation>el movimiento de la línea %1 no tiene largo</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
@@ -7465,103 +8075,13 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
+      <source>the next move, on line %1, is %2</source>
+      <translation>el movimiento siguiente, en la línea %1, es %2</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>this move</source>
       <translation>este movimiento</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>%1 finds no unbroken way along the contour at the distance U.</source>
-      <translation>%1 no halla un camino continuo junto al contorno a la distancia U.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>%1 passes beside a contour of %2 lines and arcs are too many to work out.</source>
-      <translation>%1 pasadas junto a un contorno de %2 líneas y arcos son demasiadas para calcular.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>Both ends of the contour have the %1 of the start point: there is no area to cut.</source>
-      <translation>Los dos extremos del contorno tienen la %1 del punto de inicio: no hay área que cortar.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>Look whether the tool can do so.</source>
-      <translation>Vea si la herramienta puede hacerlo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>Look whether the tool fits.</source>
-      <translation>Vea si la herramienta cabe.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>Lower U, or open the narrow place.</source>
-      <translation>Baje U, o abra el paso estrecho.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>Move the start point away from the contour.</source>
-      <translation>Aleje del contorno el punto de inicio.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>Move the start point beyond both ends.</source>
-      <translation>Ponga el punto de inicio más allá de ambos extremos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>On the way from the start point to the contour and back the tool comes nearer to it than U.</source>
-      <translation>En el camino del punto de inicio al contorno y de regreso la herramienta se acerca a menos de U.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>P does not say which subroutine describes the contour.</source>
-      <translation>P no dice qué subrutina describe el contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>Raise I, or describe the contour in fewer moves.</source>
-      <translation>Suba I, o describa el contorno en menos movimientos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>Run it with fewer, longer moves.</source>
-      <translation>Córralo con menos movimientos, más largos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>Start farther from the contour in X.</source>
-      <translation>Empiece más lejos del contorno en X.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>The contour has %1 lines and arcs; %2 are the most.</source>
-      <translation>El contorno tiene %1 líneas y arcos; lo más son %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>The contour leaves nothing to cut between it and the start point.</source>
-      <translation>El contorno no deja nada que cortar entre él y el punto de inicio.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>The contour rises and falls again: the tool plunges into the material behind the rise.</source>
-      <translation>El contorno sube y vuelve a bajar: la herramienta se hunde en el material detrás de la subida.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>The contour runs back along Z: behind that edge the pass along it cuts all that is there.</source>
-      <translation>El contorno regresa en Z: detrás de ese filo la pasada corta todo lo que hay.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>The start point lies between the ends of the contour in %1, not outside of both.</source>
-      <translation>El punto de inicio está entre los extremos del contorno en %1, no fuera de ambos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>Write its number after P.</source>
-      <translation>Escriba su número tras P.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycle_contour.py" />
@@ -7572,11 +8092,6 @@
       <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>%1 cannot stand in a contour</source>
       <translation>%1 no puede estar en un contorno</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
-      <source>%1: a corner's size must be a number over 0.</source>
-      <translation>%1: el tamaño de una esquina debe ser mayor que 0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycle_contour.py" />
@@ -7597,11 +8112,6 @@
       <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>G%1 cannot stand in a contour</source>
       <translation>G%1 no puede estar en un contorno</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
-      <source>Keep one of them.</source>
-      <translation>Deje uno de ellos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycle_contour.py" />
@@ -7635,11 +8145,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycle_contour.py" />
-      <source>The line has both C and R.</source>
-      <translation>La línea tiene C y R a la vez.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>Write X and Z of the point alone.</source>
       <translation>Escriba sólo la X y la Z del punto.</translation>
     </message>
@@ -7647,201 +8152,6 @@
       <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>Write its points.</source>
       <translation>Escriba sus puntos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
-      <source>Write the size in full.</source>
-      <translation>Escriba el tamaño completo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>%1 (line %2)</source>
-      <translation>%1 (línea %2)</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>%1 makes a corner at the end of a straight move, and the line has none.</source>
-      <translation>%1 hace una esquina al final de una recta, y la línea no tiene ninguna.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>%1 on line %2 is no straight move</source>
-      <translation>%1 en la línea %2 no es una recta</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>Lines %1 and %2 run in one direction: there is no corner to cut.</source>
-      <translation>Las líneas %1 y %2 van en una misma dirección: no hay esquina que cortar.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>Put it on the line with X or Z.</source>
-      <translation>Póngalo en la línea con X o Z.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>an arc</source>
-      <translation>un arco</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>another motion</source>
-      <translation>otro movimiento</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>it takes %1 of the move on line %2, which has %3 left</source>
-      <translation>ocupa %1 del movimiento de la línea %2, al que le quedan %3</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>no move follows</source>
-      <translation>no sigue ningún movimiento</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>no move follows before %1</source>
-      <translation>no sigue ningún movimiento antes de %1</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>no straight line</source>
-      <translation>ninguna recta</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>nose compensation ends before the next move</source>
-      <translation>la compensación de punta termina antes del movimiento siguiente</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>the move on line %1 has no length</source>
-      <translation>el movimiento de la línea %1 no tiene largo</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>the next move, on line %1, is %2</source>
-      <translation>el movimiento siguiente, en la línea %1, es %2</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/program_size.py" />
-      <source>Lower the counts of the loops.</source>
-      <translation>Baje las cuentas de los lazos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/program_size.py" />
-      <source>The program executes %1 lines; %2 are the most.</source>
-      <translation>El programa ejecuta %1 líneas; lo más son %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/program_size.py" />
-      <source>The program makes %1 blocks; %2 are the most.</source>
-      <translation>El programa hace %1 bloques; lo más son %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/program_size.py" />
-      <source>about 10^%1</source>
-      <translation>cerca de 10^%1</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_motions.py" />
-      <source>%1 cannot run while nose compensation is active.</source>
-      <translation>%1 no puede correr con la compensación de punta activa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_motions.py" />
-      <source>%1 has no feed: none for cutting is in force.</source>
-      <translation>%1 no tiene avance: no hay ninguno de corte vigente.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_motions.py" />
-      <source>%1 is the first move after the T on line %2: its start point is not known.</source>
-      <translation>%1 es el primer movimiento tras la T de la línea %2: no se conoce su punto de inicio.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_motions.py" />
-      <source>%1 needs %2, %3.</source>
-      <translation>%1 necesita %2, %3.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_motions.py" />
-      <source>%1 would make %2 %3; %4 are the most.</source>
-      <translation>%1 haría %2 %3; lo más son %4.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_motions.py" />
-      <source>%1: %2, %3, must be over 0.</source>
-      <translation>%1: %2, %3, debe ser mayor que 0.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_motions.py" />
-      <source>%1: U is what the cycle leaves on a side, which is never negative.</source>
-      <translation>%1: U es lo que el ciclo deja por lado, y nunca es negativo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_motions.py" />
-      <source>Correct %1.</source>
-      <translation>Corrija %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_motions.py" />
-      <source>Look for a lost decimal point in %1.</source>
-      <translation>Busque un punto decimal perdido en %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_motions.py" />
-      <source>Move to X and Z of the start point before it.</source>
-      <translation>Muévase antes a la X y la Z del punto de inicio.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_motions.py" />
-      <source>Put G40 and a departure before it.</source>
-      <translation>Ponga antes G40 y una salida.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_motions.py" />
-      <source>Take the sign out.</source>
-      <translation>Quite el signo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_motions.py" />
-      <source>Write F on the %1 line.</source>
-      <translation>Escriba F en la línea de %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/dialects.py" />
-      <source>A %1 program begins with its first block.</source>
-      <translation>Un programa %1 empieza por su primer bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/dialects.py" />
-      <source>A Klartext program needs a mill with X, Y and Z, and its [kinematics]; this machine is none.</source>
-      <translation>Un programa Klartext necesita una fresadora con X, Y y Z, y su [kinematics]; esta máquina no lo es.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/dialects.py" />
-      <source>A SINUMERIK turning program needs a lathe with X and Z; this machine has other axes.</source>
-      <translation>Un programa SINUMERIK de torno necesita un torno con X y Z; esta máquina tiene otros ejes.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/dialects.py" />
-      <source>An OmniTurn program needs a lathe with X, Z and C; this machine has other axes.</source>
-      <translation>Un programa OmniTurn necesita un torno con X, Z y C; esta máquina tiene otros ejes.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/dialects.py" />
-      <source>Choose the machine file of a lathe.</source>
-      <translation>Elija el archivo de máquina de un torno.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/dialects.py" />
-      <source>Choose the machine file of a mill: --machine ac-table-mill.</source>
-      <translation>Elija el archivo de máquina de una fresadora: --machine ac-table-mill.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/dialects.py" />
-      <source>Start it from the beginning.</source>
-      <translation>Empiécelo desde el principio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/drilling_cycles.py" />
@@ -7884,17 +8194,27 @@
       <translation>la distancia antes del corte en que empieza el avance</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/block_execution.py" />
+      <location filename="core/interpreter/omniturn/dwell.py" />
       <source>A dwell of %1 s is out of range: 0.1 s to an hour.</source>
       <translation>Una espera de %1 s está fuera de rango: de 0.1 s a una hora.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/block_execution.py" />
+      <location filename="core/interpreter/omniturn/dwell.py" />
       <source>G04 does not say how long.</source>
       <translation>G04 no dice cuánto.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/block_execution.py" />
+      <location filename="core/interpreter/omniturn/dwell.py" />
+      <source>The drive of C does not tell of its arrival, which takes %1 s from here.</source>
+      <translation>El servo de C no avisa su llegada, que desde aquí tarda %1 s.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/dwell.py" />
+      <source>Write G04F%1 after it, or longer.</source>
+      <translation>Escriba después G04F%1, o más.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/dwell.py" />
       <source>Write G04Fn, n in seconds.</source>
       <translation>Escriba G04Fn, n en segundos.</translation>
     </message>
@@ -7950,18 +8270,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/feeds.py" />
-      <source>Lower F or S.</source>
-      <translation>Baje F o S.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Set one with G95Fn or G94Fn.</source>
       <translation>Ponga uno con G95Fn o G94Fn.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
-      <source>Split the line.</source>
-      <translation>Divida la línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/feeds.py" />
@@ -8005,8 +8315,73 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>%1 has no LF.</source>
+      <translation>%1 no tiene LF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>A subroutine must not call itself.</source>
       <translation>Una subrutina no debe llamarse a sí misma.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>Add G75 or G78, or take it out.</source>
+      <translation>Agregue G75 o G78, o quítelo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>Add LF where the loop ends.</source>
+      <translation>Agregue LF donde termina el lazo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>Add LS with a count, or take it out.</source>
+      <translation>Agregue LS con una cuenta, o quítelo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>Add M99 at its end.</source>
+      <translation>Agregue M99 a su final.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>LF ends no loop.</source>
+      <translation>LF no termina ningún lazo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>M30 goes before the subroutines.</source>
+      <translation>M30 va antes de las subrutinas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>M99 ends no subroutine here.</source>
+      <translation>M99 no termina aquí ninguna subrutina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>Move it before M30, or start a subroutine with }n.</source>
+      <translation>Muévalo antes de M30, o empiece una subrutina con }n.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>RF ends no contour here.</source>
+      <translation>RF no termina aquí ningún contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>Subroutine %1 begins on line %2 already.</source>
+      <translation>La subrutina %1 ya empieza en la línea %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>Subroutine %1 has no M99.</source>
+      <translation>La subrutina %1 no tiene M99.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>Subroutine %1 is called, and no }%2 begins it.</source>
+      <translation>Se llama la subrutina %1, y ningún }%2 la empieza.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
@@ -8014,369 +8389,34 @@
       <translation>Las subrutinas se llaman unas a otras a más de %1 niveles.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>A subprogram must not call itself.</source>
-      <translation>Un subprograma no debe llamarse a sí mismo.</translation>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>The contour of G%1 has no RF.</source>
+      <translation>El contorno de G%1 no tiene RF.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>Calls are nested more than %1 deep at LBL %2.</source>
-      <translation>Las llamadas se anidan a más de %1 niveles en LBL %2.</translation>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>The main program ends without M30 or M02.</source>
+      <translation>El programa principal termina sin M30 ni M02.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source> with %1</source>
-      <translation> con %1</translation>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>This line stands after the end of the program and is in no subroutine.</source>
+      <translation>Esta línea está después del final del programa y en ninguna subrutina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>%1 %2 is not between %3 and %4.</source>
-      <translation>%1 %2 no está entre %3 y %4.</translation>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>Write RF alone on the line after it, or P with the number of a subroutine.</source>
+      <translation>Escriba RF solo en la línea que sigue, o P con el número de una subrutina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>Correct the angle.</source>
-      <translation>Corrija el ángulo.</translation>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>Write it after M30.</source>
+      <translation>Escríbalo después de M30.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>Correct the points.</source>
-      <translation>Corrija los puntos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>Look at points, angles and SYM.</source>
-      <translation>Vea los puntos, los ángulos y SYM.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>No position of the rotary axes inside their ranges gives this plane%1.</source>
-      <translation>Ninguna posición de los ejes giratorios dentro de su alcance da este plano%1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>TABLE ROT</source>
-      <translation>TABLE ROT</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>Take the word out.</source>
-      <translation>Quite la palabra.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>This machine has no rotary axis %1.</source>
-      <translation>Esta máquina no tiene eje giratorio %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>Where the table stands at the start decides which of two ways it swivels.</source>
-      <translation>De dónde está la mesa al arrancar depende en cuál de dos sentidos bascula.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>Write SYM+ or SYM-, or position the table before.</source>
-      <translation>Escriba SYM+ o SYM-, o posicione antes la mesa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
-      <source>M%1 stands twice in the block.</source>
-      <translation>M%1 está dos veces en el bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
-      <source>M%1 starts the spindle, and no TOOL CALL has given S.</source>
-      <translation>M%1 arranca el husillo, y ningún TOOL CALL dio S.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
-      <source>M%1 while M128 is on.</source>
-      <translation>M%1 con M128 activo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
-      <source>More than one M function of the block steers the spindle.</source>
-      <translation>Más de una función M del bloque manda el husillo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
-      <source>Switch it off with M129 before.</source>
-      <translation>Apáguelo antes con M129.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
-      <source>TOOL %1</source>
-      <translation>TOOL %1</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
-      <source>Take one out.</source>
-      <translation>Quite una.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
-      <source>Write S behind TOOL CALL.</source>
-      <translation>Escriba S tras TOOL CALL.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/l_moves.py" />
-      <source>%1 stand elsewhere than the plane of line %2 asks.</source>
-      <translation>%1 están en otra posición que la que pide el plano de la línea %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/l_moves.py" />
-      <source>A move of %1 with M128</source>
-      <translation>Un movimiento de %1 con M128</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/l_moves.py" />
-      <source>A move with M128 and %1 swivelled</source>
-      <translation>Un movimiento con M128 y %1 inclinado</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/l_moves.py" />
-      <source>Position them before the cut: L A+Q120 C+Q122 R0 FMAX, or TURN in the PLANE block.</source>
-      <translation>Posiciónelos antes del corte: L A+Q120 C+Q122 R0 FMAX, o TURN en el bloque PLANE.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/l_moves.py" />
-      <source>Start it with M3 or M4.</source>
-      <translation>Arránquelo con M3 o M4.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/l_moves.py" />
-      <source>This feed move runs with the spindle at rest.</source>
-      <translation>Este movimiento de avance corre con el husillo parado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/l_moves.py" />
-      <source>This machine has no axis %1.</source>
-      <translation>Esta máquina no tiene eje %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>M128 is on.</source>
-      <translation>M128 está activo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>MB MAX needs a software limit, and this machine has none along the tool.</source>
-      <translation>MB MAX necesita un límite por programa, y esta máquina no lo tiene en el eje de la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>No TOOL CALL has named a tool axis.</source>
-      <translation>Ningún TOOL CALL nombró un eje de herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>The datum was shifted in the tilted system of line %1.</source>
-      <translation>El origen se desplazó en el sistema inclinado de la línea %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>Where it was meant in the workpiece's system, write PLANE RESET STAY before TRANS DATUM.</source>
-      <translation>Si era en el sistema de la pieza, escriba PLANE RESET STAY antes de TRANS DATUM.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>Write MB with a length.</source>
-      <translation>Escriba MB con una longitud.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>Write TOOL CALL n Z before.</source>
-      <translation>Escriba antes TOOL CALL n Z.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>A file holds one program.</source>
-      <translation>Un archivo contiene un solo programa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>Correct the number, or write the label.</source>
-      <translation>Corrija el número, o escriba la etiqueta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>END PGM is missing.</source>
-      <translation>Falta END PGM.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>Give it another number.</source>
-      <translation>Déle otro número.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>LBL %1 is nowhere in the program.</source>
-      <translation>LBL %1 no está en ninguna parte del programa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>LBL %1 stands on line %2 too.</source>
-      <translation>LBL %1 está también en la línea %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>Look whether the file is whole.</source>
-      <translation>Vea si el archivo está completo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>Move it before END PGM.</source>
-      <translation>Muévalo antes de END PGM.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>The first block names program and unit.</source>
-      <translation>El primer bloque nombra programa y unidad.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>The program begins as %1 and ends as %2.</source>
-      <translation>El programa empieza como %1 y termina como %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>The subprogram LBL %1 has no LBL 0.</source>
-      <translation>El subprograma LBL %1 no tiene LBL 0.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>This block stands behind END PGM.</source>
-      <translation>Este bloque está después de END PGM.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>Write LBL 0 behind it.</source>
-      <translation>Escriba LBL 0 después.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>Write the unit of the program in both.</source>
-      <translation>Escriba en ambos la unidad del programa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
-      <source>Lower the counts of the repeats.</source>
-      <translation>Baje los números de las repeticiones.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/tool_call.py" />
-      <source>A tool by its name</source>
-      <translation>Una herramienta por su nombre</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/tool_call.py" />
-      <source>S%1 is over the spindle's %2 rpm.</source>
-      <translation>S%1 pasa de las %2 rpm del husillo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/tool_call.py" />
-      <source>Set the tool's offset.</source>
-      <translation>Ponga la compensación de la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/tool_call.py" />
-      <source>TOOL CALL while M128 is on.</source>
-      <translation>TOOL CALL con M128 activo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/tool_call.py" />
-      <source>The tool axis %1</source>
-      <translation>El eje de herramienta %1</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/tool_call.py" />
-      <source>Tool %1 has no offset; 0 is used, and the machine will refuse to start.</source>
-      <translation>La herramienta %1 no tiene compensación; se usa 0, y la máquina se negará a arrancar.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
-      <source>Correct the value.</source>
-      <translation>Corrija el valor.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
-      <source>F must be above zero.</source>
-      <translation>F debe ser mayor que cero.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
-      <source>No feed is in force.</source>
-      <translation>No hay avance vigente.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
-      <source>Q%1 has no value yet.</source>
-      <translation>Q%1 todavía no tiene valor.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
-      <source>The last TOOL CALL has no F.</source>
-      <translation>El último TOOL CALL no tiene F.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
-      <source>Write F behind TOOL CALL.</source>
-      <translation>Escriba F tras TOOL CALL.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
-      <source>Write F or FMAX.</source>
-      <translation>Escriba F o FMAX.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
-      <source>Write Q%1 = … before.</source>
-      <translation>Escriba antes Q%1 = …</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
-      <source>Write a feed.</source>
-      <translation>Escriba un avance.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>%1, less than the nose radius %2.</source>
-      <translation>%1, menos que el radio de punta %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>%1, less than twice the nose radius %2.</source>
-      <translation>%1, menos que el doble del radio de punta %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>Choose another way for the %1, or the other side.</source>
-      <translation>Elija otro camino para la %1, o el otro lado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>Keep twice the nose radius off the part.</source>
-      <translation>Quede a dos veces el radio de punta de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>Move farther off the part.</source>
-      <translation>Aléjese más de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>On the %1 the nose of G%2 cuts into the part.</source>
-      <translation>En la %1 la punta de G%2 corta la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>The %1 %2 %3 off the part</source>
-      <translation>La %1 %2 %3 de la pieza</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>The %1 is %2 long, less than the nose radius %3.</source>
-      <translation>La %1 mide %2, menos que el radio de punta %3.</translation>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>}%1 has no M99 before this line.</source>
+      <translation>}%1 no tiene M99 antes de esta línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/m_codes.py" />
@@ -8409,89 +8449,44 @@
       <translation>El archivo de máquina asigna las salidas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/straight_moves.py" />
-      <source>%1 is finer than the step of %2 %3; %4 is used.</source>
-      <translation>%1 es más fino que el paso de %2 %3; se usa %4.</translation>
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
+      <source>%1 rounds the corner with the next move</source>
+      <translation>%1 redondea la esquina con el movimiento siguiente</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/straight_moves.py" />
-      <source>%1 is finer than the step; %2 is used.</source>
-      <translation>%1 es más fino que el paso; se usa %2.</translation>
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
+      <source>/ leaves a line of a program out, and there is nothing to leave out</source>
+      <translation>/ salta una línea de un programa, y no hay nada que saltar</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/straight_moves.py" />
-      <source>Round the number.</source>
-      <translation>Redondee el número.</translation>
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
+      <source>Write it in a program.</source>
+      <translation>Escríbalo en un programa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/straight_moves.py" />
-      <source>The first move after %1 lacks %2.</source>
-      <translation>Al primer movimiento tras %1 le falta %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/straight_moves.py" />
-      <source>This move is a rapid because of the G00 beside the comment on line %1.</source>
-      <translation>Este movimiento es rápido por el G00 junto al comentario de la línea %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/straight_moves.py" />
-      <source>Write G01 if it is meant to cut.</source>
-      <translation>Escriba G01 si debe cortar.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/straight_moves.py" />
-      <source>Write both X and Z, or G92 before it.</source>
-      <translation>Escriba X y Z, o G92 antes.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/straight_moves.py" />
-      <source>the T on line %1</source>
-      <translation>la T de la línea %1</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/machine_requirements.py" />
-      <source>a thread that pulls out in step with the spindle; end it in a groove</source>
-      <translation>una rosca que sale en paso con el husillo; termínela en una ranura</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/machine_requirements.py" />
-      <source>constant surface speed; program the spindle in rpm with G97</source>
-      <translation>velocidad superficial constante; programe el husillo en rpm con G97</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/machine_requirements.py" />
-      <source>input %1</source>
-      <translation>la entrada %1</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/machine_requirements.py" />
-      <source>milling in a switched plane</source>
-      <translation>fresado en un plano cambiado</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/machine_requirements.py" />
-      <source>more axes than X and Z</source>
-      <translation>más ejes que X y Z</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/machine_requirements.py" />
-      <source>output collet</source>
-      <translation>la salida de la boquilla</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/machine_requirements.py" />
-      <source>output coolant</source>
-      <translation>la salida del refrigerante</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/machine_requirements.py" />
-      <source>the C axis</source>
-      <translation>el eje C</translation>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>%1 cannot follow this move.</source>
+      <translation>%1 no puede seguir este movimiento.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>%1 stands while G%2 is on.</source>
       <translation>%1 está con G%2 activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>%1 with a nose radius of %2 cannot follow this move: %3.</source>
+      <translation>%1 con radio de punta %2 no puede seguir este movimiento: %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>%1, less than the nose radius %2.</source>
+      <translation>%1, menos que el radio de punta %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>%1, less than twice the nose radius %2.</source>
+      <translation>%1, menos que el doble del radio de punta %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
@@ -8502,6 +8497,11 @@
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Approach on a straight line with D.</source>
       <translation>Entre en línea recta con D.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>Choose another way for the %1, or the other side.</source>
+      <translation>Elija otro camino para la %1, o el otro lado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
@@ -8545,8 +8545,38 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>Keep twice the nose radius off the part.</source>
+      <translation>Quede a dos veces el radio de punta de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>Move farther off the part.</source>
+      <translation>Aléjese más de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Move off the part and write G40 before it.</source>
       <translation>Salga de la pieza y escriba G40 antes.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>Move off the part on a straight line.</source>
+      <translation>Salga de la pieza en línea recta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>Move off the part.</source>
+      <translation>Salga de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>No move follows the contour between the approach and the departure of %1.</source>
+      <translation>Ningún movimiento sigue el contorno entre la entrada y la salida de %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>On the %1 the nose of G%2 cuts into the part.</source>
+      <translation>En la %1 la punta de G%2 corta la pieza.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
@@ -8562,6 +8592,31 @@
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>R of D%1 is negative.</source>
       <translation>La R de D%1 es negativa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>Take a smaller nose, or change the contour.</source>
+      <translation>Use una punta menor, o cambie el contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>The %1 %2 %3 off the part</source>
+      <translation>La %1 %2 %3 de la pieza</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>The %1 is %2 long, less than the nose radius %3.</source>
+      <translation>La %1 mide %2, menos que el radio de punta %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>The departure, the last move before G40, has no length.</source>
+      <translation>La salida, el último movimiento antes de G40, no tiene largo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>The departure, the move before G40, is no straight line.</source>
+      <translation>La salida, el movimiento antes de G40, no es una recta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
@@ -8585,13 +8640,28 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>Write G40 before it.</source>
+      <translation>Escriba G40 antes.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Write the compensated contour in the main program.</source>
       <translation>Escriba el contorno compensado en el programa principal.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>Write the contour between them.</source>
+      <translation>Escriba el contorno entre ellos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_interpreter.py" />
       <source>Begin with G90G94F300.</source>
       <translation>Empiece con G90G94F300.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_interpreter.py" />
+      <source>Lower the counts of the loops.</source>
+      <translation>Baje las cuentas de los lazos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_interpreter.py" />
@@ -8619,201 +8689,6 @@
       <translation>Escriba G70 o G71 en la primera línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>(~%1) needs the tool on the negative X side, and X is %2.</source>
-      <translation>(~%1) necesita la herramienta del lado X negativo, y X es %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>(~%1) turns C, which is not locked.</source>
-      <translation>(~%1) gira C, que no está bloqueado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>(~%1) under G95: a plane is fed in inches a minute.</source>
-      <translation>(~%1) con G95: un plano avanza en pulgadas por minuto.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>(~%1) with nose compensation on.</source>
-      <translation>(~%1) con compensación de punta activa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Correct it.</source>
-      <translation>Corríjalo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>D belongs to (~PLZC).</source>
-      <translation>D pertenece a (~PLZC).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>D comes where Y is %1: it would move Y.</source>
-      <translation>D viene donde Y es %1: movería Y.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>D must be a diameter over 0.</source>
-      <translation>D debe ser un diámetro mayor que 0.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>H belongs to (~PLXC).</source>
-      <translation>H pertenece a (~PLXC).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>H comes after a move or F.</source>
-      <translation>H viene después de un movimiento o F.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Move there before the plane.</source>
-      <translation>Muévase ahí antes del plano.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Move to X- before it.</source>
-      <translation>Muévase antes a X-.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>The T on line %1 has not been moved to X and Z.</source>
-      <translation>La T de la línea %1 no se ha movido a X y Z.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Write G40 before.</source>
-      <translation>Escriba antes G40.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Write G94 with F before.</source>
-      <translation>Escriba antes G94 con F.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Write M19 before.</source>
-      <translation>Escriba antes M19.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Write it first.</source>
-      <translation>Escríbalo primero.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Write it where Y is 0.</source>
-      <translation>Escríbalo donde Y es 0.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>I and J are the centre's coordinates.</source>
-      <translation>I y J son las coordenadas del centro.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>The tool stands meanwhile; lead it past the axis.</source>
-      <translation>La herramienta se detiene entretanto; llévela al lado del eje.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>The tool's centre line stands H beside the axis.</source>
-      <translation>La línea central de la herramienta está a H del eje.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>The way comes within %1 of the axis; with this H the tool reaches %2.</source>
-      <translation>El camino pasa a %1 del eje; con esta H la herramienta alcanza %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>The way leads through the axis: C turns by %1 degrees there.</source>
-      <translation>El camino pasa por el eje: ahí C gira %1 grados.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Z%1 lies beyond the centre: Z is the diameter that the tip touches.</source>
-      <translation>Z%1 está más allá del centro: Z es el diámetro que toca la punta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>%1 has no number.</source>
-      <translation>%1 no tiene número.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>%1 is finer than the step of %2 degrees; %3 is used.</source>
-      <translation>%1 es más fino que el paso de %2 grados; se usa %3.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>%1 needs a C axis, and the machine file switches it off.</source>
-      <translation>%1 necesita un eje C, y el archivo de máquina lo apaga.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>%1 turns the spindle, which is not locked.</source>
-      <translation>%1 gira el husillo, que no está bloqueado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>%1: C turns at more than 0 and at most %2 rpm.</source>
-      <translation>%1: C gira a más de 0 y a lo más %2 rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>At %1 rpm of C this feed is %2; %3 is the most.</source>
-      <translation>A %1 rpm de C este avance es %2; lo más es %3.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>C turns %1 degrees; the way of the slide at this feed needs %2.</source>
-      <translation>C gira %1 grados; el camino del carro a este avance necesita %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>G89 locks the spindle and stands without M codes.</source>
-      <translation>G89 bloquea el husillo y va sin códigos M.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>Set axis.C.enabled.</source>
-      <translation>Ponga axis.C.enabled.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>The line holds %1 and %2.</source>
-      <translation>La línea contiene %1 y %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>The slide is fed by the turns of C, and no S has said how fast it turns.</source>
-      <translation>El carro avanza por las vueltas de C, y ninguna S dijo qué tan rápido gira.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>Turn C further, or raise F: the slide would stop on its way.</source>
-      <translation>Gire más C, o suba F: el carro se detendría en el camino.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>Write M19 or M89 before.</source>
-      <translation>Escriba antes M19 o M89.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>Write S on the line.</source>
-      <translation>Escriba S en la línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>Write the degrees.</source>
-      <translation>Escriba los grados.</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>%1 is a comment without its ~, and so are the lines up to (END): nothing is milled.</source>
       <translation>%1 es un comentario sin su ~, y también las líneas hasta (END): no se fresa nada.</translation>
@@ -8825,13 +8700,23 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
+      <source>A comment stands on a line by itself.</source>
+      <translation>Hay un comentario solo en una línea.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
+      <source>A comment stands on the line that starts a subroutine.</source>
+      <translation>Hay un comentario en la línea que empieza una subrutina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Move it before LS.</source>
       <translation>Muévalo antes de LS.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>Move it before M30, or start a subroutine with }n.</source>
-      <translation>Muévalo antes de M30, o empiece una subrutina con }n.</translation>
+      <source>Move it down a line.</source>
+      <translation>Bájelo una línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
@@ -8840,13 +8725,58 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
+      <source>Press Return after it.</source>
+      <translation>Oprima Return después.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
+      <source>Put it on a line with a command.</source>
+      <translation>Póngalo en una línea con una orden.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
+      <source>Save the file with the line ends of this machine.</source>
+      <translation>Guarde el archivo con los finales de línea de esta máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
+      <source>Take it out for the original control.</source>
+      <translation>Quítelo para el control original.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
+      <source>The comment holds more than letters, digits and blanks.</source>
+      <translation>El comentario contiene más que letras, números y espacios.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
+      <source>The last line has no line end.</source>
+      <translation>La última línea no tiene final de línea.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
+      <source>The line is blank.</source>
+      <translation>La línea está en blanco.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
+      <source>The lines end in a carriage return.</source>
+      <translation>Las líneas terminan en retorno de carro.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>The program is empty.</source>
       <translation>El programa está vacío.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>This line stands after the end of the program and is in no subroutine.</source>
-      <translation>Esta línea está después del final del programa y en ninguna subrutina.</translation>
+      <source>The tool number has a leading zero.</source>
+      <translation>El número de herramienta lleva un cero delante.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
+      <source>Use plain text.</source>
+      <translation>Use texto simple.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
@@ -8862,6 +8792,11 @@
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Write G90 and M30.</source>
       <translation>Escriba G90 y M30.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
+      <source>Write T1 for T01.</source>
+      <translation>Escriba T1 en vez de T01.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
@@ -8972,6 +8907,601 @@
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>holds two codes of one group (%1)</source>
       <translation>contiene dos códigos de un grupo (%1)</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>(~%1) needs the tool on the negative X side, and X is %2.</source>
+      <translation>(~%1) necesita la herramienta del lado X negativo, y X es %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>(~%1) turns C, which is not locked.</source>
+      <translation>(~%1) gira C, que no está bloqueado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>(~%1) under G95: a plane is fed in inches a minute.</source>
+      <translation>(~%1) con G95: un plano avanza en pulgadas por minuto.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>(~%1) with nose compensation on.</source>
+      <translation>(~%1) con compensación de punta activa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>Correct it.</source>
+      <translation>Corríjalo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>D belongs to (~PLZC).</source>
+      <translation>D pertenece a (~PLZC).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>D comes where Y is %1: it would move Y.</source>
+      <translation>D viene donde Y es %1: movería Y.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>D must be a diameter over 0.</source>
+      <translation>D debe ser un diámetro mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>H belongs to (~PLXC).</source>
+      <translation>H pertenece a (~PLXC).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>H comes after a move or F.</source>
+      <translation>H viene después de un movimiento o F.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>I and J are the centre's coordinates.</source>
+      <translation>I y J son las coordenadas del centro.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>Move there before the plane.</source>
+      <translation>Muévase ahí antes del plano.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>Move to X- before it.</source>
+      <translation>Muévase antes a X-.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>The T on line %1 has not been moved to X and Z.</source>
+      <translation>La T de la línea %1 no se ha movido a X y Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>The tool stands meanwhile; lead it past the axis.</source>
+      <translation>La herramienta se detiene entretanto; llévela al lado del eje.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>The tool's centre line stands H beside the axis.</source>
+      <translation>La línea central de la herramienta está a H del eje.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>The way comes within %1 of the axis; with this H the tool reaches %2.</source>
+      <translation>El camino pasa a %1 del eje; con esta H la herramienta alcanza %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>The way leads through the axis: C turns by %1 degrees there.</source>
+      <translation>El camino pasa por el eje: ahí C gira %1 grados.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>Write G40 before.</source>
+      <translation>Escriba antes G40.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>Write G94 with F before.</source>
+      <translation>Escriba antes G94 con F.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>Write M19 before.</source>
+      <translation>Escriba antes M19.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>Write it first.</source>
+      <translation>Escríbalo primero.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>Write it where Y is 0.</source>
+      <translation>Escríbalo donde Y es 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <source>Z%1 lies beyond the centre: Z is the diameter that the tip touches.</source>
+      <translation>Z%1 está más allá del centro: Z es el diámetro que toca la punta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/program_size.py" />
+      <source>The program executes %1 lines; %2 are the most.</source>
+      <translation>El programa ejecuta %1 líneas; lo más son %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/program_size.py" />
+      <source>The program makes %1 blocks; %2 are the most.</source>
+      <translation>El programa hace %1 bloques; lo más son %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/program_size.py" />
+      <source>about 10^%1</source>
+      <translation>cerca de 10^%1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>%1 finds no unbroken way along the contour at the distance U.</source>
+      <translation>%1 no halla un camino continuo junto al contorno a la distancia U.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>%1 leaves nothing of the box to cut.</source>
+      <translation>%1 no deja nada de la caja por cortar.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>%1 needs %2 of the corner opposite to the start point.</source>
+      <translation>%1 necesita %2 de la esquina opuesta al punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>%1 passes beside a contour of %2 lines and arcs are too many to work out.</source>
+      <translation>%1 pasadas junto a un contorno de %2 líneas y arcos son demasiadas para calcular.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>Both ends of the contour have the %1 of the start point: there is no area to cut.</source>
+      <translation>Los dos extremos del contorno tienen la %1 del punto de inicio: no hay área que cortar.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>Correct %1 or the start point.</source>
+      <translation>Corrija %1 o el punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>Look whether the tool can do so.</source>
+      <translation>Vea si la herramienta puede hacerlo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>Look whether the tool fits.</source>
+      <translation>Vea si la herramienta cabe.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>Lower U, or open the narrow place.</source>
+      <translation>Baje U, o abra el paso estrecho.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>Move the start point away from the contour.</source>
+      <translation>Aleje del contorno el punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>Move the start point beyond both ends.</source>
+      <translation>Ponga el punto de inicio más allá de ambos extremos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>On the way from the start point to the contour and back the tool comes nearer to it than U.</source>
+      <translation>En el camino del punto de inicio al contorno y de regreso la herramienta se acerca a menos de U.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>P does not say which subroutine describes the contour.</source>
+      <translation>P no dice qué subrutina describe el contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>Raise I, or describe the contour in fewer moves.</source>
+      <translation>Suba I, o describa el contorno en menos movimientos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>Run it with fewer, longer moves.</source>
+      <translation>Córralo con menos movimientos, más largos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>Start farther from the contour in X.</source>
+      <translation>Empiece más lejos del contorno en X.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>The box has no size along %1: its corner lies at the start point.</source>
+      <translation>La caja no tiene medida en %1: su esquina está en el punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>The contour has %1 lines and arcs; %2 are the most.</source>
+      <translation>El contorno tiene %1 líneas y arcos; lo más son %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>The contour leaves nothing to cut between it and the start point.</source>
+      <translation>El contorno no deja nada que cortar entre él y el punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>The contour rises and falls again: the tool plunges into the material behind the rise.</source>
+      <translation>El contorno sube y vuelve a bajar: la herramienta se hunde en el material detrás de la subida.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>The contour runs back along Z: behind that edge the pass along it cuts all that is there.</source>
+      <translation>El contorno regresa en Z: detrás de ese filo la pasada corta todo lo que hay.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>The start point lies between the ends of the contour in %1, not outside of both.</source>
+      <translation>El punto de inicio está entre los extremos del contorno en %1, no fuera de ambos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>U is less than the way from the start to X.</source>
+      <translation>U es menor que el camino del inicio a X.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>Write its number after P.</source>
+      <translation>Escriba su número tras P.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>the greatest depth of cut</source>
+      <translation>la mayor profundidad de corte</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
+      <source>%1 is no surface speed that a tool can stand.</source>
+      <translation>%1 no es velocidad superficial que aguante una herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
+      <source>%1 is over the spindle's %2 rpm.</source>
+      <translation>%1 pasa de las %2 rpm del husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
+      <source>%1: the speed has no sign; M03 and M04 say the direction.</source>
+      <translation>%1: la velocidad no lleva signo; M03 y M04 dicen el sentido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
+      <source>Close it with M12 first.</source>
+      <translation>Ciérrela primero con M12.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
+      <source>Correct one of them.</source>
+      <translation>Corrija uno de ellos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
+      <source>G%1 needs S, a speed in rpm.</source>
+      <translation>G%1 necesita S, una velocidad en rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
+      <source>G76 (%1 rpm) is over G77 (%2 rpm).</source>
+      <translation>G76 (%1 rpm) pasa de G77 (%2 rpm).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
+      <source>G97 makes S rpm.</source>
+      <translation>G97 hace de S rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
+      <source>M%1 starts the spindle and no S has said how fast.</source>
+      <translation>M%1 arranca el husillo y ninguna S dijo qué tan rápido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
+      <source>M%1 starts the spindle with the collet open.</source>
+      <translation>M%1 arranca el husillo con la boquilla abierta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
+      <source>M%1 starts the spindle, which is locked as the axis C.</source>
+      <translation>M%1 arranca el husillo, que está bloqueado como eje C.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
+      <source>Release it with M05 first.</source>
+      <translation>Libérelo primero con M05.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
+      <source>Write G%1Sn.</source>
+      <translation>Escriba G%1Sn.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/straight_moves.py" />
+      <source>%1 is finer than the step of %2 %3; %4 is used.</source>
+      <translation>%1 es más fino que el paso de %2 %3; se usa %4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/straight_moves.py" />
+      <source>%1 is finer than the step; %2 is used.</source>
+      <translation>%1 es más fino que el paso; se usa %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/straight_moves.py" />
+      <source>The first move after %1 lacks %2.</source>
+      <translation>Al primer movimiento tras %1 le falta %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/straight_moves.py" />
+      <source>This move is a rapid because of the G00 beside the comment on line %1.</source>
+      <translation>Este movimiento es rápido por el G00 junto al comentario de la línea %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/straight_moves.py" />
+      <source>Write G01 if it is meant to cut.</source>
+      <translation>Escriba G01 si debe cortar.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/straight_moves.py" />
+      <source>Write both X and Z, or G92 before it.</source>
+      <translation>Escriba X y Z, o G92 antes.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/straight_moves.py" />
+      <source>the T on line %1</source>
+      <translation>la T de la línea %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>%1 leaves nothing to cut: %2.</source>
+      <translation>%1 no deja nada que cortar: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>%1 lies on the other side of the spindle axis: %2.</source>
+      <translation>%1 está del otro lado del eje del husillo: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>%1: %2 stands without a number here.</source>
+      <translation>%1: aquí %2 está sin número.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>%1: the angle of infeed goes from 0 to 30 degrees.</source>
+      <translation>%1: el ángulo de entrada va de 0 a 30 grados.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>%1: the lead must be above 0 and at most %2.</source>
+      <translation>%1: el paso debe ser mayor que 0 y a lo más %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>A larger I takes fewer; look at I and at the X where the tool starts.</source>
+      <translation>Una I mayor hace menos; vea I y la X en que empieza la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>At %1 rpm this lead is %2; %3 is the most.</source>
+      <translation>A %1 rpm este paso es %2; lo más es %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>Correct C; bare C is 29 degrees.</source>
+      <translation>Corrija C; C sola es 29 grados.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>Correct Z, or move away before the G33.</source>
+      <translation>Corrija Z, o aléjese antes del G33.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>G%1 is active, and a thread is cut without nose compensation.</source>
+      <translation>G%1 está activo, y una rosca se corta sin compensación de punta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>G35 allows more.</source>
+      <translation>G35 permite más.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>G35F2 allows more.</source>
+      <translation>G35F2 permite más.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>G96 is active, and a thread needs one speed from first pass to last.</source>
+      <translation>G96 está activo, y una rosca necesita una sola velocidad de la primera a la última pasada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>I is missing.</source>
+      <translation>Falta I.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>I, the depth of the first pass, must be above 0.</source>
+      <translation>I, la profundidad de la primera pasada, debe ser mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>K is missing, and %1 is there.</source>
+      <translation>Falta K, y está %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>K, the lead, is missing.</source>
+      <translation>Falta K, el paso.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>Look at the sign of X and at where the tool starts.</source>
+      <translation>Vea el signo de X y dónde empieza la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>Start at the depth of the first pass.</source>
+      <translation>Empiece a la profundidad de la primera pasada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>Start farther away from Z.</source>
+      <translation>Empiece más lejos de Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>Start farther away, or lower S.</source>
+      <translation>Empiece más lejos, o baje S.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>Start it with M03 or M04.</source>
+      <translation>Arránquelo con M03 o M04.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>The flank angle moves the start of the last pass beyond its end.</source>
+      <translation>El ángulo de flanco lleva el inicio de la última pasada más allá de su final.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>The run-up is %1; the slide needs %2 to reach the speed of the lead.</source>
+      <translation>La carrera de arranque es %1; el carro necesita %2 para llegar a la velocidad del paso.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>The spindle stands, and a thread is cut by its turns.</source>
+      <translation>El husillo está parado, y una rosca se corta por sus vueltas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>The thread ends at the Z where it starts.</source>
+      <translation>La rosca termina en la Z en que empieza.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>The thread takes %1 passes.</source>
+      <translation>La rosca hace %1 pasadas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>The thread would take %1 passes; %2 are the most.</source>
+      <translation>La rosca haría %1 pasadas; lo más son %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>Was K%1 meant?</source>
+      <translation>¿Se quiso decir K%1?</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>Write %1 alone.</source>
+      <translation>Escriba sólo %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>Write G97S before it.</source>
+      <translation>Escriba antes G97S.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>Write I, the depth of the first pass.</source>
+      <translation>Escriba I, la profundidad de la primera pasada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>Write K, the lead per revolution.</source>
+      <translation>Escriba K, el paso por vuelta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>X of the last pass is missing.</source>
+      <translation>Falta la X de la última pasada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>Z, the end of the thread, is missing.</source>
+      <translation>Falta Z, el final de la rosca.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>the tool stands at radius %1</source>
+      <translation>la herramienta está en radio %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <source>%1 have no offset; 0 is used, and the machine will refuse to start.</source>
+      <translation>%1 no tienen compensación; se usa 0 y la máquina no arrancará.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <source>G%1 needs X or Z.</source>
+      <translation>G%1 necesita X o Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <source>G96 is active at a tool change: the spindle drive has to follow every jump of X.</source>
+      <translation>G96 está activo en un cambio de herramienta: el husillo tiene que seguir cada salto de X.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <source>No T follows this G10, so the work shift never takes effect.</source>
+      <translation>Ninguna T sigue a este G10, así que el desplazamiento nunca actúa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <source>Put G97 before the T.</source>
+      <translation>Ponga G97 antes de la T.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <source>Put it before a T.</source>
+      <translation>Póngalo antes de una T.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <source>Set their offsets.</source>
+      <translation>Ponga sus compensaciones.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <source>Write the coordinates.</source>
+      <translation>Escriba las coordenadas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/loop_passes.py" />
+      <source>Line %1 is run %2 times; there is no pass %3.</source>
+      <translation>La línea %1 corre %2 veces; no hay pasada %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/loop_passes.py" />
+      <source>Line %1 is run more than %2 times: choose the line that begins the loop.</source>
+      <translation>La línea %1 corre más de %2 veces: elija la línea que empieza el lazo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/loop_passes.py" />
+      <source>The program never comes to line %1.</source>
+      <translation>El programa nunca llega a la línea %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/restart_approach.py" />
@@ -9114,89 +9644,164 @@
       <translation>no se sabe qué respondió la entrada de la línea %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/loop_passes.py" />
-      <source>Line %1 is run %2 times; there is no pass %3.</source>
-      <translation>La línea %1 corre %2 veces; no hay pasada %3.</translation>
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <source>A corner needs two moves in a row.</source>
+      <translation>Una esquina necesita dos movimientos seguidos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/loop_passes.py" />
-      <source>Line %1 is run more than %2 times: choose the line that begins the loop.</source>
-      <translation>La línea %1 corre más de %2 veces: elija la línea que empieza el lazo.</translation>
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <source>CHF, CHR and RND take G1, G2 and G3.</source>
+      <translation>CHF, CHR y RND admiten G1, G2 y G3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/loop_passes.py" />
-      <source>The program never comes to line %1.</source>
-      <translation>El programa nunca llega a la línea %1.</translation>
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <source>Give another end point.</source>
+      <translation>Dé otro punto final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>%1 cuts a contour, and its lines would have to follow</source>
-      <translation>%1 corta un contorno, y sus líneas tendrían que seguir</translation>
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <source>Write G18 before it.</source>
+      <translation>Escriba antes G18.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>%1 rounds the corner with the next move</source>
-      <translation>%1 redondea la esquina con el movimiento siguiente</translation>
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <source>corners of X and Z need G18</source>
+      <translation>las esquinas de X y Z necesitan G18</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>/ leaves a line of a program out, and there is nothing to leave out</source>
-      <translation>/ salta una línea de un programa, y no hay nada que saltar</translation>
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <source>it takes %1 mm of the move on line %2, which has %3 mm</source>
+      <translation>ocupa %1 mm del movimiento de la línea %2, que tiene %3 mm</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>Write it in a program.</source>
-      <translation>Escríbalo en un programa.</translation>
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <source>lines %1 and %2 run in one direction: there is no corner to cut.</source>
+      <translation>las líneas %1 y %2 van en una misma dirección: no hay esquina que cortar.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>begins a loop, and its lines and LF would have to follow</source>
-      <translation>empieza un lazo, y sus líneas y LF tendrían que seguir</translation>
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <source>the block is no line or arc</source>
+      <translation>el bloque no es recta ni arco</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>begins a subroutine, and those stand in programs</source>
-      <translation>empieza una subrutina, y ésas van en programas</translation>
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <source>the next move, on line %1, is no line or arc of X and Z</source>
+      <translation>el próximo movimiento, en la línea %1, no es recta ni arco de X y Z</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>begins nose compensation, which looks at the lines that follow</source>
-      <translation>empieza compensación de punta, que mira las líneas que siguen</translation>
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <source>the size of a corner</source>
+      <translation>el tamaño de una esquina</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>belongs to plane switching, whose lines would have to follow</source>
-      <translation>pertenece a un cambio de plano, cuyas líneas tendrían que seguir</translation>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>%1 belongs to an arc, and G%2 is in force.</source>
+      <translation>%1 pertenece a un arco, y está vigente G%2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>calls a subroutine, and those stand in programs</source>
-      <translation>llama una subrutina, y ésas van en programas</translation>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>%1: %2 needs a rotary axis.</source>
+      <translation>%1: %2 necesita un eje giratorio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>ends a contour, and there is none</source>
-      <translation>termina un contorno, y no hay ninguno</translation>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>C of this machine counts -360 to +360; write AC( ) or IC( ).</source>
+      <translation>El C de esta máquina cuenta de -360 a +360; escriba AC( ) o IC( ).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>ends a loop, and there is none</source>
-      <translation>termina un lazo, y no hay ninguno</translation>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>Correct the target or the offset of C.</source>
+      <translation>Corrija el destino o el desplazamiento de C.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>ends a subroutine, and there is none</source>
-      <translation>termina una subrutina, y no hay ninguna</translation>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>G96 is in force and no S has given a surface speed.</source>
+      <translation>G96 está vigente y ninguna S dio una velocidad superficial.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>ends nose compensation, which looks at the lines around it</source>
-      <translation>termina compensación de punta, que mira las líneas alrededor</translation>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>Start it with S and M3 or M4, or use G94.</source>
+      <translation>Arránquelo con S y M3 o M4, o use G94.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>needs a G92 on the next line</source>
-      <translation>necesita un G92 en la línea siguiente</translation>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>Write %1=AC( ) or %2=IC( ).</source>
+      <translation>Escriba %1=AC( ) o %2=IC( ).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>Write F. Between G94 and G95 the old value is forgotten.</source>
+      <translation>Escriba F. Entre G94 y G95 se olvida el valor anterior.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>Write G2 or G3, or take it out.</source>
+      <translation>Escriba G2 o G3, o quítelo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>Write an angle from 0 to 359.999, or IC( ) for a distance.</source>
+      <translation>Escriba un ángulo de 0 a 359.999, o IC( ) para una distancia.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>kind of feed</source>
+      <translation>clase de avance</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>no feedrate is programmed.</source>
+      <translation>no hay avance programado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>no spindle speed for G95: the spindle stands.</source>
+      <translation>no hay velocidad de husillo para G95: el husillo está parado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>suppression of offsets</source>
+      <translation>supresión de desplazamientos</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>the feed</source>
+      <translation>el avance</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>%1: an offset is a plain number.</source>
+      <translation>%1: un desplazamiento es un número simple.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>Take C out, or choose a machine file that has it.</source>
+      <translation>Quite C, o elija un archivo de máquina que lo tenga.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>Write %1 with its number.</source>
+      <translation>Escriba %1 con su número.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>absolute or incremental</source>
+      <translation>absoluto o incremental</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>settable offset</source>
+      <translation>cero ajustable</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>unit of length</source>
+      <translation>unidad de longitud</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>unknown axis: this machine has no third axis.</source>
+      <translation>eje desconocido: esta máquina no tiene tercer eje.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
@@ -9235,11 +9840,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
-      <source>Write G18 before it.</source>
-      <translation>Escriba antes G18.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>arcs of X and Z need G18.</source>
       <translation>los arcos de X y Z necesitan G18.</translation>
     </message>
@@ -9274,156 +9874,6 @@
       <translation>el centro del arco es su punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
-      <source>A corner needs two moves in a row.</source>
-      <translation>Una esquina necesita dos movimientos seguidos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
-      <source>CHF, CHR and RND take G1, G2 and G3.</source>
-      <translation>CHF, CHR y RND admiten G1, G2 y G3.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
-      <source>Give another end point.</source>
-      <translation>Dé otro punto final.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
-      <source>corners of X and Z need G18</source>
-      <translation>las esquinas de X y Z necesitan G18</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
-      <source>it takes %1 mm of the move on line %2, which has %3 mm</source>
-      <translation>ocupa %1 mm del movimiento de la línea %2, que tiene %3 mm</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
-      <source>lines %1 and %2 run in one direction: there is no corner to cut.</source>
-      <translation>las líneas %1 y %2 van en una misma dirección: no hay esquina que cortar.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
-      <source>the block is no line or arc</source>
-      <translation>el bloque no es recta ni arco</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
-      <source>the next move, on line %1, is no line or arc of X and Z</source>
-      <translation>el próximo movimiento, en la línea %1, no es recta ni arco de X y Z</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
-      <source>the size of a corner</source>
-      <translation>el tamaño de una esquina</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>G96 is in force and no S has given a surface speed.</source>
-      <translation>G96 está vigente y ninguna S dio una velocidad superficial.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>Start it with S and M3 or M4, or use G94.</source>
-      <translation>Arránquelo con S y M3 o M4, o use G94.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>Write F. Between G94 and G95 the old value is forgotten.</source>
-      <translation>Escriba F. Entre G94 y G95 se olvida el valor anterior.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>kind of feed</source>
-      <translation>clase de avance</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>no feedrate is programmed.</source>
-      <translation>no hay avance programado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>no spindle speed for G95: the spindle stands.</source>
-      <translation>no hay velocidad de husillo para G95: el husillo está parado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>the feed</source>
-      <translation>el avance</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
-      <source>%1 line %2: %3</source>
-      <translation>%1 línea %2: %3</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
-      <source>M%1 ends a main program, and this is a subprogram.</source>
-      <translation>M%1 termina un programa principal, y éste es un subprograma.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
-      <source>Put %1.spf beside the main program, or %_N_%2_SPF into its file.</source>
-      <translation>Ponga %1.spf junto al programa principal, o %_N_%2_SPF en su archivo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
-      <source>subprograms call each other more than %1 deep.</source>
-      <translation>los subprogramas se llaman unos a otros a más de %1 niveles.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
-      <source>the subprogram %1 does not exist.</source>
-      <translation>el subprograma %1 no existe.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
-      <source>absolute or incremental</source>
-      <translation>absoluto o incremental</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
-      <source>unit of length</source>
-      <translation>unidad de longitud</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>%1 belongs to an arc, and G%2 is in force.</source>
-      <translation>%1 pertenece a un arco, y está vigente G%2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>Write G2 or G3, or take it out.</source>
-      <translation>Escriba G2 o G3, o quítelo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
-      <source>%1: an offset is a plain number.</source>
-      <translation>%1: un desplazamiento es un número simple.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
-      <source>Take C out, or choose a machine file that has it.</source>
-      <translation>Quite C, o elija un archivo de máquina que lo tenga.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
-      <source>Write %1 with its number.</source>
-      <translation>Escriba %1 con su número.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
-      <source>settable offset</source>
-      <translation>cero ajustable</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
-      <source>unknown axis: this machine has no third axis.</source>
-      <translation>eje desconocido: esta máquina no tiene tercer eje.</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>Add the axes.</source>
       <translation>Agregue los ejes.</translation>
@@ -9445,98 +9895,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>suppression of offsets</source>
-      <translation>supresión de desplazamientos</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>the program makes more than %1 blocks or %2 executed lines.</source>
       <translation>el programa hace más de %1 bloques o %2 líneas ejecutadas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>%1 is a dwell of %2 s; %3 are the most.</source>
-      <translation>%1 es una espera de %2 s; lo más son %3.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>%1 is over the spindle's %2 rpm.</source>
-      <translation>%1 pasa de las %2 rpm del husillo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>%1 m/min is no surface speed that a tool can stand.</source>
-      <translation>%1 m/min no es velocidad superficial que aguante una herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>%1 needs a controlled spindle, which this machine does not have.</source>
-      <translation>%1 necesita un husillo controlado, que esta máquina no tiene.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>%1 starts the spindle and no S has said how fast.</source>
-      <translation>%1 arranca el husillo y ninguna S dijo qué tan rápido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>%1 starts the spindle with the collet open.</source>
-      <translation>%1 arranca el husillo con la boquilla abierta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>%1: a dwell is 0 or longer.</source>
-      <translation>%1: una espera es 0 o más.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>%1: the speed has no sign; M3 and M4 say the direction.</source>
-      <translation>%1: la velocidad no lleva signo; M3 y M4 dicen el sentido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>Close it.</source>
-      <translation>Ciérrela.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>F counts in seconds, S in revolutions.</source>
-      <translation>F cuenta en segundos, S en vueltas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>G4 %1 waits for revolutions of a spindle that stands.</source>
-      <translation>G4 %1 espera vueltas de un husillo parado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>G96 is in force and F counts in mm/min (G94).</source>
-      <translation>G96 está vigente y F cuenta en mm/min (G94).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>G97 makes S rpm.</source>
-      <translation>G97 hace de S rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>Start it with M3 or M4, or write G4 F.</source>
-      <translation>Arránquelo con M3 o M4, o escriba G4 F.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>Write G95 where F is meant as mm a revolution.</source>
-      <translation>Escriba G95 donde F signifique mm por vuelta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>Write S in the block.</source>
-      <translation>Escriba S en el bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>the limit of the speed</source>
-      <translation>el tope de la velocidad</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
@@ -9624,6 +9984,106 @@
       <translation>el bloque contiene %1 códigos M.</translation>
     </message>
     <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>%1 is a dwell of %2 s; %3 are the most.</source>
+      <translation>%1 es una espera de %2 s; lo más son %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>%1 m/min is no surface speed that a tool can stand.</source>
+      <translation>%1 m/min no es velocidad superficial que aguante una herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>%1 needs a controlled spindle, which this machine does not have.</source>
+      <translation>%1 necesita un husillo controlado, que esta máquina no tiene.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>%1 starts the spindle and no S has said how fast.</source>
+      <translation>%1 arranca el husillo y ninguna S dijo qué tan rápido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>%1 starts the spindle with the collet open.</source>
+      <translation>%1 arranca el husillo con la boquilla abierta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>%1: a dwell is 0 or longer.</source>
+      <translation>%1: una espera es 0 o más.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>%1: the speed has no sign; M3 and M4 say the direction.</source>
+      <translation>%1: la velocidad no lleva signo; M3 y M4 dicen el sentido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>Close it.</source>
+      <translation>Ciérrela.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>F counts in seconds, S in revolutions.</source>
+      <translation>F cuenta en segundos, S en vueltas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>G4 %1 waits for revolutions of a spindle that stands.</source>
+      <translation>G4 %1 espera vueltas de un husillo parado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>G96 is in force and F counts in mm/min (G94).</source>
+      <translation>G96 está vigente y F cuenta en mm/min (G94).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>Start it with M3 or M4, or write G4 F.</source>
+      <translation>Arránquelo con M3 o M4, o escriba G4 F.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>Write G95 where F is meant as mm a revolution.</source>
+      <translation>Escriba G95 donde F signifique mm por vuelta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>Write S in the block.</source>
+      <translation>Escriba S en el bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>the limit of the speed</source>
+      <translation>el tope de la velocidad</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <source>%1 line %2: %3</source>
+      <translation>%1 línea %2: %3</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <source>M%1 ends a main program, and this is a subprogram.</source>
+      <translation>M%1 termina un programa principal, y éste es un subprograma.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <source>Put %1.spf beside the main program, or %_N_%2_SPF into its file.</source>
+      <translation>Ponga %1.spf junto al programa principal, o %_N_%2_SPF en su archivo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <source>subprograms call each other more than %1 deep.</source>
+      <translation>los subprogramas se llaman unos a otros a más de %1 niveles.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <source>the subprogram %1 does not exist.</source>
+      <translation>el subprograma %1 no existe.</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/sinumerik/third_axis.py" />
       <source>%1 is no position of a modulo axis, which has 0 to &lt;360</source>
       <translation>%1 no es posición de un eje módulo, que tiene de 0 a &lt;360</translation>
@@ -9639,539 +10099,59 @@
       <translation>el punto final %1 está fuera de -360 a +360 de la máquina</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>%1: %2 needs a rotary axis.</source>
-      <translation>%1: %2 necesita un eje giratorio.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>C of this machine counts -360 to +360; write AC( ) or IC( ).</source>
-      <translation>El C de esta máquina cuenta de -360 a +360; escriba AC( ) o IC( ).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>Correct the target or the offset of C.</source>
-      <translation>Corrija el destino o el desplazamiento de C.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>Write %1=AC( ) or %2=IC( ).</source>
-      <translation>Escriba %1=AC( ) o %2=IC( ).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>Write an angle from 0 to 359.999, or IC( ) for a distance.</source>
-      <translation>Escriba un ángulo de 0 a 359.999, o IC( ) para una distancia.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>%1 is no surface speed that a tool can stand.</source>
-      <translation>%1 no es velocidad superficial que aguante una herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>%1: the speed has no sign; M03 and M04 say the direction.</source>
-      <translation>%1: la velocidad no lleva signo; M03 y M04 dicen el sentido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>Close it with M12 first.</source>
-      <translation>Ciérrela primero con M12.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>Correct one of them.</source>
-      <translation>Corrija uno de ellos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>G%1 needs S, a speed in rpm.</source>
-      <translation>G%1 necesita S, una velocidad en rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>G76 (%1 rpm) is over G77 (%2 rpm).</source>
-      <translation>G76 (%1 rpm) pasa de G77 (%2 rpm).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>M%1 starts the spindle and no S has said how fast.</source>
-      <translation>M%1 arranca el husillo y ninguna S dijo qué tan rápido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>M%1 starts the spindle with the collet open.</source>
-      <translation>M%1 arranca el husillo con la boquilla abierta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>M%1 starts the spindle, which is locked as the axis C.</source>
-      <translation>M%1 arranca el husillo, que está bloqueado como eje C.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>Release it with M05 first.</source>
-      <translation>Libérelo primero con M05.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>Write G%1Sn.</source>
-      <translation>Escriba G%1Sn.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>%1 has no LF.</source>
-      <translation>%1 no tiene LF.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>Add G75 or G78, or take it out.</source>
-      <translation>Agregue G75 o G78, o quítelo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>Add LF where the loop ends.</source>
-      <translation>Agregue LF donde termina el lazo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>Add LS with a count, or take it out.</source>
-      <translation>Agregue LS con una cuenta, o quítelo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>Add M99 at its end.</source>
-      <translation>Agregue M99 a su final.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>LF ends no loop.</source>
-      <translation>LF no termina ningún lazo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>M30 goes before the subroutines.</source>
-      <translation>M30 va antes de las subrutinas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>M99 ends no subroutine here.</source>
-      <translation>M99 no termina aquí ninguna subrutina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>RF ends no contour here.</source>
-      <translation>RF no termina aquí ningún contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>Subroutine %1 begins on line %2 already.</source>
-      <translation>La subrutina %1 ya empieza en la línea %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>Subroutine %1 has no M99.</source>
-      <translation>La subrutina %1 no tiene M99.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>Subroutine %1 is called, and no }%2 begins it.</source>
-      <translation>Se llama la subrutina %1, y ningún }%2 la empieza.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>The contour of G%1 has no RF.</source>
-      <translation>El contorno de G%1 no tiene RF.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>The main program ends without M30 or M02.</source>
-      <translation>El programa principal termina sin M30 ni M02.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>Write RF alone on the line after it, or P with the number of a subroutine.</source>
-      <translation>Escriba RF solo en la línea que sigue, o P con el número de una subrutina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>Write it after M30.</source>
-      <translation>Escríbalo después de M30.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>}%1 has no M99 before this line.</source>
-      <translation>}%1 no tiene M99 antes de esta línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>A comment stands on a line by itself.</source>
-      <translation>Hay un comentario solo en una línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>A comment stands on the line that starts a subroutine.</source>
-      <translation>Hay un comentario en la línea que empieza una subrutina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>Move it down a line.</source>
-      <translation>Bájelo una línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>Press Return after it.</source>
-      <translation>Oprima Return después.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>Put it on a line with a command.</source>
-      <translation>Póngalo en una línea con una orden.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>Save the file with the line ends of this machine.</source>
-      <translation>Guarde el archivo con los finales de línea de esta máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>Take it out for the original control.</source>
-      <translation>Quítelo para el control original.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>The comment holds more than letters, digits and blanks.</source>
-      <translation>El comentario contiene más que letras, números y espacios.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>The last line has no line end.</source>
-      <translation>La última línea no tiene final de línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>The line is blank.</source>
-      <translation>La línea está en blanco.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>The lines end in a carriage return.</source>
-      <translation>Las líneas terminan en retorno de carro.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>The tool number has a leading zero.</source>
-      <translation>El número de herramienta lleva un cero delante.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>Use plain text.</source>
-      <translation>Use texto simple.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>Write T1 for T01.</source>
-      <translation>Escriba T1 en vez de T01.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>%1 leaves nothing to cut: %2.</source>
-      <translation>%1 no deja nada que cortar: %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>%1 lies on the other side of the spindle axis: %2.</source>
-      <translation>%1 está del otro lado del eje del husillo: %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>%1: %2 stands without a number here.</source>
-      <translation>%1: aquí %2 está sin número.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>%1: the angle of infeed goes from 0 to 30 degrees.</source>
-      <translation>%1: el ángulo de entrada va de 0 a 30 grados.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>%1: the lead must be above 0 and at most %2.</source>
-      <translation>%1: el paso debe ser mayor que 0 y a lo más %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>At %1 rpm this lead is %2; %3 is the most.</source>
-      <translation>A %1 rpm este paso es %2; lo más es %3.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Correct C; bare C is 29 degrees.</source>
-      <translation>Corrija C; C sola es 29 grados.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Correct Z, or move away before the G33.</source>
-      <translation>Corrija Z, o aléjese antes del G33.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>G%1 is active, and a thread is cut without nose compensation.</source>
-      <translation>G%1 está activo, y una rosca se corta sin compensación de punta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>G35 allows more.</source>
-      <translation>G35 permite más.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>G35F2 allows more.</source>
-      <translation>G35F2 permite más.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>G96 is active, and a thread needs one speed from first pass to last.</source>
-      <translation>G96 está activo, y una rosca necesita una sola velocidad de la primera a la última pasada.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>I is missing.</source>
-      <translation>Falta I.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>I, the depth of the first pass, must be above 0.</source>
-      <translation>I, la profundidad de la primera pasada, debe ser mayor que 0.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>K is missing, and %1 is there.</source>
-      <translation>Falta K, y está %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>K, the lead, is missing.</source>
-      <translation>Falta K, el paso.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Look at the sign of X and at where the tool starts.</source>
-      <translation>Vea el signo de X y dónde empieza la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Start at the depth of the first pass.</source>
-      <translation>Empiece a la profundidad de la primera pasada.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Start farther away from Z.</source>
-      <translation>Empiece más lejos de Z.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Start it with M03 or M04.</source>
-      <translation>Arránquelo con M03 o M04.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>The flank angle moves the start of the last pass beyond its end.</source>
-      <translation>El ángulo de flanco lleva el inicio de la última pasada más allá de su final.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>The spindle stands, and a thread is cut by its turns.</source>
-      <translation>El husillo está parado, y una rosca se corta por sus vueltas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>The thread ends at the Z where it starts.</source>
-      <translation>La rosca termina en la Z en que empieza.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>The thread would take %1 passes; %2 are the most.</source>
-      <translation>La rosca haría %1 pasadas; lo más son %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Was K%1 meant?</source>
-      <translation>¿Se quiso decir K%1?</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Write %1 alone.</source>
-      <translation>Escriba sólo %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Write G97S before it.</source>
-      <translation>Escriba antes G97S.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Write I, the depth of the first pass.</source>
-      <translation>Escriba I, la profundidad de la primera pasada.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Write K, the lead per revolution.</source>
-      <translation>Escriba K, el paso por vuelta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>X of the last pass is missing.</source>
-      <translation>Falta la X de la última pasada.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Z, the end of the thread, is missing.</source>
-      <translation>Falta Z, el final de la rosca.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>the tool stands at radius %1</source>
-      <translation>la herramienta está en radio %1</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>A larger I takes fewer; look at I and at the X where the tool starts.</source>
-      <translation>Una I mayor hace menos; vea I y la X en que empieza la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Start farther away, or lower S.</source>
-      <translation>Empiece más lejos, o baje S.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>The run-up is %1; the slide needs %2 to reach the speed of the lead.</source>
-      <translation>La carrera de arranque es %1; el carro necesita %2 para llegar a la velocidad del paso.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>The thread takes %1 passes.</source>
-      <translation>La rosca hace %1 pasadas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/diagnostic_log.py" />
-      <source>The program makes more than %1 blocks or %2 executed lines.</source>
-      <translation>El programa hace más de %1 bloques o %2 líneas ejecutadas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
-      <source>%1 have no offset; 0 is used, and the machine will refuse to start.</source>
-      <translation>%1 no tienen compensación; se usa 0 y la máquina no arrancará.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
-      <source>G%1 needs X or Z.</source>
-      <translation>G%1 necesita X o Z.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
-      <source>G96 is active at a tool change: the spindle drive has to follow every jump of X.</source>
-      <translation>G96 está activo en un cambio de herramienta: el husillo tiene que seguir cada salto de X.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
-      <source>No T follows this G10, so the work shift never takes effect.</source>
-      <translation>Ninguna T sigue a este G10, así que el desplazamiento nunca actúa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
-      <source>Put G97 before the T.</source>
-      <translation>Ponga G97 antes de la T.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
-      <source>Put it before a T.</source>
-      <translation>Póngalo antes de una T.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
-      <source>Set their offsets.</source>
-      <translation>Ponga sus compensaciones.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
-      <source>Write the coordinates.</source>
-      <translation>Escriba las coordenadas.</translation>
-    </message>
-    <message>
       <location filename="core/language/diagnostics.py" />
       <source>%1 (%2 times)</source>
       <translation>%1 (%2 veces)</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>%1 A comment begins with ;.</source>
-      <translation>%1 Un comentario empieza con ;.</translation>
+      <location filename="core/language/klartext/canonical_text.py" />
+      <source>%1 PGM %2 %3</source>
+      <translation>%1 PGM %2 %3</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>%1 goes up to %2.</source>
-      <translation>%1 llega hasta %2.</translation>
+      <location filename="core/language/klartext/canonical_text.py" />
+      <source>BLK FORM 0.%1</source>
+      <translation>BLK FORM 0.%1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>%1 has an empty name.</source>
-      <translation>%1 tiene un nombre vacío.</translation>
+      <location filename="core/language/klartext/canonical_text.py" />
+      <source>CALL LBL</source>
+      <translation>CALL LBL</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>%1 has no number</source>
-      <translation>%1 no tiene número</translation>
+      <location filename="core/language/klartext/canonical_text.py" />
+      <source>CYCL DEF 7.%1</source>
+      <translation>CYCL DEF 7.%1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>%1 has no value</source>
-      <translation>%1 no tiene valor</translation>
+      <location filename="core/language/klartext/canonical_text.py" />
+      <source>LBL %1</source>
+      <translation>LBL %1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>%1 needs a whole number</source>
-      <translation>%1 necesita un número entero</translation>
+      <location filename="core/language/klartext/canonical_text.py" />
+      <source>MB MAX</source>
+      <translation>MB MAX</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>; '%1' stands here</source>
-      <translation>; aquí está '%1'</translation>
+      <location filename="core/language/klartext/canonical_text.py" />
+      <source>REP %1</source>
+      <translation>REP %1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>; the line ends here</source>
-      <translation>; la línea termina aquí</translation>
+      <location filename="core/language/klartext/canonical_text.py" />
+      <source>TOOL CALL</source>
+      <translation>TOOL CALL</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>Correct the number.</source>
-      <translation>Corrija el número.</translation>
+      <location filename="core/language/klartext/canonical_text.py" />
+      <source>TRANS DATUM AXIS</source>
+      <translation>TRANS DATUM AXIS</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>Q parameters go up to Q%1.</source>
-      <translation>Los parámetros Q llegan hasta Q%1.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>Take another parameter.</source>
-      <translation>Use otro parámetro.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>Write a number such as +10, or a Q parameter.</source>
-      <translation>Escriba un número como +10, o un parámetro Q.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>Write a number.</source>
-      <translation>Escriba un número.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>Write the name.</source>
-      <translation>Escriba el nombre.</translation>
+      <location filename="core/language/klartext/canonical_text.py" />
+      <source>TRANS DATUM RESET</source>
+      <translation>TRANS DATUM RESET</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
@@ -10264,81 +10244,6 @@
       <translation>RPM incorrectas</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>%1 stands twice in the block.</source>
-      <translation>%1 está dos veces en el bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>F has no value</source>
-      <translation>F no tiene valor</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>Write a number, Q, MAX or AUTO behind F.</source>
-      <translation>Escriba un número, Q, MAX o AUTO tras F.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>%1 is missing</source>
-      <translation>Falta %1</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>%1 needs a name and MM or INCH.</source>
-      <translation>%1 necesita un nombre y MM o INCH.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>A corner needs X, Y and Z.</source>
-      <translation>Una esquina necesita X, Y y Z.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>BLK FORM %1</source>
-      <translation>BLK FORM %1</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>BLK FORM 0.1 needs the tool axis</source>
-      <translation>BLK FORM 0.1 necesita el eje de herramienta</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>END PGM</source>
-      <translation>END PGM</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>It takes a tool, its axis, S, F, DL and DR.</source>
-      <translation>Lleva una herramienta, su eje, S, F, DL y DR.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>No word of BLK FORM</source>
-      <translation>No es palabra de BLK FORM</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>No word of TOOL CALL</source>
-      <translation>No es palabra de TOOL CALL</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>TOOL CALL</source>
-      <translation>TOOL CALL</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>Write Z behind 0.1.</source>
-      <translation>Escriba Z tras 0.1.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>Write both behind it.</source>
-      <translation>Escriba los dos después.</translation>
-    </message>
-    <message>
       <location filename="core/language/klartext/klartext_line.py" />
       <source>'%1' begins no block.</source>
       <translation>'%1' no empieza ningún bloque.</translation>
@@ -10365,11 +10270,6 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
-      <source>CALL LBL</source>
-      <translation>CALL LBL</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_line.py" />
       <source>CALL PGM</source>
       <translation>CALL PGM</translation>
     </message>
@@ -10392,6 +10292,11 @@
       <location filename="core/language/klartext/klartext_line.py" />
       <source>CYCL DEF</source>
       <translation>CYCL DEF</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_line.py" />
+      <source>END PGM</source>
+      <translation>END PGM</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
@@ -10514,69 +10419,89 @@
       <translation>Escriba un número como +10.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>'=' was expected behind Q%1</source>
-      <translation>Se esperaba '=' tras Q%1</translation>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>%1 A comment begins with ;.</source>
+      <translation>%1 Un comentario empieza con ;.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>CYCL DEF %1</source>
-      <translation>CYCL DEF %1</translation>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>%1 goes up to %2.</source>
+      <translation>%1 llega hasta %2.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>CYCL DEF 7.%1 takes one of X, Y and Z</source>
-      <translation>CYCL DEF 7.%1 lleva uno de X, Y y Z</translation>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>%1 has an empty name.</source>
+      <translation>%1 tiene un nombre vacío.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>Call another label.</source>
-      <translation>Llame otra etiqueta.</translation>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>%1 has no number</source>
+      <translation>%1 no tiene número</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>LBL 0 ends a subprogram; it cannot be called.</source>
-      <translation>LBL 0 termina un subprograma; no se puede llamar.</translation>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>%1 has no value</source>
+      <translation>%1 no tiene valor</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>No word of CALL LBL</source>
-      <translation>No es palabra de CALL LBL</translation>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>%1 needs a whole number</source>
+      <translation>%1 necesita un número entero</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>No word of LBL</source>
-      <translation>No es palabra de LBL</translation>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>%1 stands twice in the block.</source>
+      <translation>%1 está dos veces en el bloque.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>No word of TRANS DATUM</source>
-      <translation>No es palabra de TRANS DATUM</translation>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>; '%1' stands here</source>
+      <translation>; aquí está '%1'</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>No word of cycle 7</source>
-      <translation>No es palabra del ciclo 7</translation>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>; the line ends here</source>
+      <translation>; la línea termina aquí</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>TRANS DATUM AXIS needs X, Y or Z</source>
-      <translation>TRANS DATUM AXIS necesita X, Y o Z</translation>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>Correct the number.</source>
+      <translation>Corrija el número.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>TRANS DATUM TABLE</source>
-      <translation>TRANS DATUM TABLE</translation>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>F has no value</source>
+      <translation>F no tiene valor</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>TRANS DATUM needs AXIS or RESET</source>
-      <translation>TRANS DATUM necesita AXIS o RESET</translation>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>Q parameters go up to Q%1.</source>
+      <translation>Los parámetros Q llegan hasta Q%1.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>The formula '%1'</source>
-      <translation>La fórmula '%1'</translation>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>Take another parameter.</source>
+      <translation>Use otro parámetro.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>Write a number such as +10, or a Q parameter.</source>
+      <translation>Escriba un número como +10, o un parámetro Q.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>Write a number, Q, MAX or AUTO behind F.</source>
+      <translation>Escriba un número, Q, MAX o AUTO tras F.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>Write a number.</source>
+      <translation>Escriba un número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>Write the name.</source>
+      <translation>Escriba el nombre.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/plane_block.py" />
@@ -10669,269 +10594,119 @@
       <translation>Escriba un ángulo.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/canonical_text.py" />
-      <source>%1 PGM %2 %3</source>
-      <translation>%1 PGM %2 %3</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>%1 is missing</source>
+      <translation>Falta %1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/canonical_text.py" />
-      <source>BLK FORM 0.%1</source>
-      <translation>BLK FORM 0.%1</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>%1 needs a name and MM or INCH.</source>
+      <translation>%1 necesita un nombre y MM o INCH.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/canonical_text.py" />
-      <source>CYCL DEF 7.%1</source>
-      <translation>CYCL DEF 7.%1</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>'=' was expected behind Q%1</source>
+      <translation>Se esperaba '=' tras Q%1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/canonical_text.py" />
-      <source>LBL %1</source>
-      <translation>LBL %1</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>A corner needs X, Y and Z.</source>
+      <translation>Una esquina necesita X, Y y Z.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/canonical_text.py" />
-      <source>MB MAX</source>
-      <translation>MB MAX</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>BLK FORM %1</source>
+      <translation>BLK FORM %1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/canonical_text.py" />
-      <source>REP %1</source>
-      <translation>REP %1</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>BLK FORM 0.1 needs the tool axis</source>
+      <translation>BLK FORM 0.1 necesita el eje de herramienta</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/canonical_text.py" />
-      <source>TRANS DATUM AXIS</source>
-      <translation>TRANS DATUM AXIS</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>CYCL DEF %1</source>
+      <translation>CYCL DEF %1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/canonical_text.py" />
-      <source>TRANS DATUM RESET</source>
-      <translation>TRANS DATUM RESET</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>CYCL DEF 7.%1 takes one of X, Y and Z</source>
+      <translation>CYCL DEF 7.%1 lleva uno de X, Y y Z</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>%1 has a decimal point and no digit.</source>
-      <translation>%1 tiene punto decimal y ninguna cifra.</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>Call another label.</source>
+      <translation>Llame otra etiqueta.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>%1 has a sign and no number.</source>
-      <translation>%1 tiene signo y ningún número.</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>It takes a tool, its axis, S, F, DL and DR.</source>
+      <translation>Lleva una herramienta, su eje, S, F, DL y DR.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>%1 has over %2 digits.</source>
-      <translation>%1 tiene más de %2 cifras.</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>LBL 0 ends a subprogram; it cannot be called.</source>
+      <translation>LBL 0 termina un subprograma; no se puede llamar.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>%1 is no word of the language.</source>
-      <translation>%1 no es palabra del lenguaje.</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>No word of BLK FORM</source>
+      <translation>No es palabra de BLK FORM</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>%1 is no word of the language. %2</source>
-      <translation>%1 no es una palabra del lenguaje. %2</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>No word of CALL LBL</source>
+      <translation>No es palabra de CALL LBL</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>%1 is out of range: %2 goes from %3 to %4.</source>
-      <translation>%1 está fuera de rango: %2 va de %3 a %4.</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>No word of LBL</source>
+      <translation>No es palabra de LBL</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>%1 is out of range: a loop runs %2 to %3 times.</source>
-      <translation>%1 está fuera de rango: un lazo corre de %2 a %3 veces.</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>No word of TOOL CALL</source>
+      <translation>No es palabra de TOOL CALL</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>%1 must be a whole number without a sign.</source>
-      <translation>%1 debe ser un número entero sin signo.</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>No word of TRANS DATUM</source>
+      <translation>No es palabra de TRANS DATUM</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>%1 takes no number.</source>
-      <translation>%1 no lleva número.</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>No word of cycle 7</source>
+      <translation>No es palabra del ciclo 7</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>%1: %2 takes exactly two digits.</source>
-      <translation>%1: %2 lleva exactamente dos cifras.</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>TRANS DATUM AXIS needs X, Y or Z</source>
+      <translation>TRANS DATUM AXIS necesita X, Y o Z</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>%1: a feed of 0 moves nothing; a rapid is G00 here.</source>
-      <translation>%1: un avance de 0 no mueve nada; un rápido es aquí G00.</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>TRANS DATUM TABLE</source>
+      <translation>TRANS DATUM TABLE</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>%1: offsets go from 1 to 32.</source>
-      <translation>%1: las compensaciones van de 1 a 32.</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>TRANS DATUM needs AXIS or RESET</source>
+      <translation>TRANS DATUM necesita AXIS o RESET</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>%1: tools go from 1 to 32.</source>
-      <translation>%1: las herramientas van de 1 a 32.</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>The formula '%1'</source>
+      <translation>La fórmula '%1'</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>'%1' is no part of the language.</source>
-      <translation>'%1' no es parte del lenguaje.</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>Write Z behind 0.1.</source>
+      <translation>Escriba Z tras 0.1.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>'%1' is text outside parentheses.</source>
-      <translation>'%1' es texto fuera de paréntesis.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>')' closes no comment.</source>
-      <translation>')' no cierra ningún comentario.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>'/' may only stand first on a line.</source>
-      <translation>'/' sólo puede ir primero en una línea.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>A comma is not allowed anywhere.</source>
-      <translation>La coma no se permite en ninguna parte.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>A number stands without a letter.</source>
-      <translation>Hay un número sin letra.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>A sign stands inside a number.</source>
-      <translation>Hay un signo dentro de un número.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Add '(' or take it out.</source>
-      <translation>Agregue '(' o quítelo.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Comments go in parentheses.</source>
-      <translation>Los comentarios van entre paréntesis.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Correct the count.</source>
-      <translation>Corrija la cuenta.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>D0 cancels.</source>
-      <translation>D0 cancela.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Lines have no numbers here: N is not allowed.</source>
-      <translation>Aquí las líneas no llevan número: N no se permite.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Look the word up in the language page.</source>
-      <translation>Busque la palabra en la página del lenguaje.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Move it to the front.</source>
-      <translation>Muévalo al principio.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Numbers have no exponent here.</source>
-      <translation>Aquí los números no llevan exponente.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Round it.</source>
-      <translation>Redondéelo.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Split it into two words.</source>
-      <translation>Divídalo en dos palabras.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>T0 cancels the tool.</source>
-      <translation>T0 cancela la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Take the N word out.</source>
-      <translation>Quite la palabra N.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>The comment has no closing parenthesis.</source>
-      <translation>El comentario no tiene paréntesis de cierre.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>The letter O stands where a zero belongs.</source>
-      <translation>Hay una letra O donde va un cero.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>The number has two decimal points.</source>
-      <translation>El número tiene dos puntos decimales.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Write %1%2.</source>
-      <translation>Escriba %1%2.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Write (%1).</source>
-      <translation>Escriba (%1).</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Write a decimal point.</source>
-      <translation>Escriba un punto decimal.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Write it after %1.</source>
-      <translation>Escríbalo después de %1.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Write its letter.</source>
-      <translation>Escriba su letra.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Write the digits.</source>
-      <translation>Escriba las cifras.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Write the feed.</source>
-      <translation>Escriba el avance.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Write the number after it.</source>
-      <translation>Escriba después el número.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Write the number out; a feed is F.</source>
-      <translation>Escriba el número completo; un avance es F.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Write two digits.</source>
-      <translation>Escriba dos cifras.</translation>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>Write both behind it.</source>
+      <translation>Escriba los dos después.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -11329,6 +11104,231 @@
       <translation>Escriba sólo (%1n).</translation>
     </message>
     <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1 has a decimal point and no digit.</source>
+      <translation>%1 tiene punto decimal y ninguna cifra.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1 has a sign and no number.</source>
+      <translation>%1 tiene signo y ningún número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1 has over %2 digits.</source>
+      <translation>%1 tiene más de %2 cifras.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1 is no word of the language.</source>
+      <translation>%1 no es palabra del lenguaje.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1 is no word of the language. %2</source>
+      <translation>%1 no es una palabra del lenguaje. %2</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1 is out of range: %2 goes from %3 to %4.</source>
+      <translation>%1 está fuera de rango: %2 va de %3 a %4.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1 is out of range: a loop runs %2 to %3 times.</source>
+      <translation>%1 está fuera de rango: un lazo corre de %2 a %3 veces.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1 must be a whole number without a sign.</source>
+      <translation>%1 debe ser un número entero sin signo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1 takes no number.</source>
+      <translation>%1 no lleva número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1: %2 takes exactly two digits.</source>
+      <translation>%1: %2 lleva exactamente dos cifras.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1: a feed of 0 moves nothing; a rapid is G00 here.</source>
+      <translation>%1: un avance de 0 no mueve nada; un rápido es aquí G00.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1: offsets go from 1 to 32.</source>
+      <translation>%1: las compensaciones van de 1 a 32.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1: tools go from 1 to 32.</source>
+      <translation>%1: las herramientas van de 1 a 32.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>'%1' is no part of the language.</source>
+      <translation>'%1' no es parte del lenguaje.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>'%1' is text outside parentheses.</source>
+      <translation>'%1' es texto fuera de paréntesis.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>')' closes no comment.</source>
+      <translation>')' no cierra ningún comentario.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>'/' may only stand first on a line.</source>
+      <translation>'/' sólo puede ir primero en una línea.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>A comma is not allowed anywhere.</source>
+      <translation>La coma no se permite en ninguna parte.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>A number stands without a letter.</source>
+      <translation>Hay un número sin letra.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>A sign stands inside a number.</source>
+      <translation>Hay un signo dentro de un número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Add '(' or take it out.</source>
+      <translation>Agregue '(' o quítelo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Comments go in parentheses.</source>
+      <translation>Los comentarios van entre paréntesis.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Correct the count.</source>
+      <translation>Corrija la cuenta.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>D0 cancels.</source>
+      <translation>D0 cancela.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Lines have no numbers here: N is not allowed.</source>
+      <translation>Aquí las líneas no llevan número: N no se permite.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Look the word up in the language page.</source>
+      <translation>Busque la palabra en la página del lenguaje.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Move it to the front.</source>
+      <translation>Muévalo al principio.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Numbers have no exponent here.</source>
+      <translation>Aquí los números no llevan exponente.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Round it.</source>
+      <translation>Redondéelo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Split it into two words.</source>
+      <translation>Divídalo en dos palabras.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>T0 cancels the tool.</source>
+      <translation>T0 cancela la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Take the N word out.</source>
+      <translation>Quite la palabra N.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>The comment has no closing parenthesis.</source>
+      <translation>El comentario no tiene paréntesis de cierre.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>The letter O stands where a zero belongs.</source>
+      <translation>Hay una letra O donde va un cero.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>The number has two decimal points.</source>
+      <translation>El número tiene dos puntos decimales.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Write %1%2.</source>
+      <translation>Escriba %1%2.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Write (%1).</source>
+      <translation>Escriba (%1).</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Write a decimal point.</source>
+      <translation>Escriba un punto decimal.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Write it after %1.</source>
+      <translation>Escríbalo después de %1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Write its letter.</source>
+      <translation>Escriba su letra.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Write the digits.</source>
+      <translation>Escriba las cifras.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Write the feed.</source>
+      <translation>Escriba el avance.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Write the number after it.</source>
+      <translation>Escriba después el número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Write the number out; a feed is F.</source>
+      <translation>Escriba el número completo; un avance es F.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Write two digits.</source>
+      <translation>Escriba dos cifras.</translation>
+    </message>
+    <message>
       <location filename="core/language/sinumerik/sinumerik_alarms.py" />
       <source>%1 axis %2</source>
       <translation>%1 eje %2</translation>
@@ -11344,6 +11344,11 @@
       <translation>canal %1 bloque %2</translation>
     </message>
     <message>
+      <location filename="core/language/sinumerik/sinumerik_colours.py" />
+      <source>in line</source>
+      <translation>en la línea</translation>
+    </message>
+    <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 are the most; split it.</source>
       <translation>lo más son %1; divídalo.</translation>
@@ -11352,6 +11357,11 @@
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 has no value in its brackets</source>
       <translation>%1 no tiene valor entre sus paréntesis</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>%1 is no code</source>
+      <translation>%1 no es un código</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
@@ -11365,6 +11375,11 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>%1 is out of range</source>
+      <translation>%1 está fuera de rango</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 lacks its =</source>
       <translation>a %1 le falta su =</translation>
     </message>
@@ -11372,6 +11387,11 @@
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 lacks its brackets</source>
       <translation>a %1 le faltan sus paréntesis</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>%1 lies between %2 and %3.</source>
+      <translation>%1 está entre %2 y %3.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
@@ -11397,6 +11417,11 @@
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>A comment begins with ;, and a subprogram's name stands alone.</source>
       <translation>Un comentario empieza con ;, y el nombre de un subprograma va solo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>Codes are whole numbers of up to four digits.</source>
+      <translation>Los códigos son números enteros de hasta cuatro cifras.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
@@ -11487,31 +11512,6 @@
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>this control has no such word</source>
       <translation>este control no tiene esa palabra</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_colours.py" />
-      <source>in line</source>
-      <translation>en la línea</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>%1 is no code</source>
-      <translation>%1 no es un código</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>%1 is out of range</source>
-      <translation>%1 está fuera de rango</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>%1 lies between %2 and %3.</source>
-      <translation>%1 está entre %2 y %3.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>Codes are whole numbers of up to four digits.</source>
-      <translation>Los códigos son números enteros de hasta cuatro cifras.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_words.py" />
@@ -11684,9 +11684,54 @@
       <translation>El paso de los carros es %1 mm; dé un número positivo, o 0.</translation>
     </message>
     <message>
+      <location filename="core/motion/block_table.py" />
+      <source>Block %1 tells of all axes, another behind it does not.</source>
+      <translation>El bloque %1 habla de todos los ejes, otro después de él no.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/block_table.py" />
+      <source>Block %1: %2 is not a number; correct the block.</source>
+      <translation>Bloque %1: %2 no es un número; corrija el bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/block_table.py" />
+      <source>Block %1: a %2 block has no time law of its own.</source>
+      <translation>Bloque %1: un bloque %2 no tiene ley de tiempo propia.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/block_table.py" />
+      <source>Block %1: css is %2 mm/s; program a surface speed with S.</source>
+      <translation>Bloque %1: css es %2 mm/s; programe una velocidad superficial con S.</translation>
+    </message>
+    <message>
       <location filename="core/motion/curved_axes.py" />
       <source>Block %1: the slide needs %2 degrees of C; it turns %3.</source>
       <translation>Bloque %1: el carro necesita %2 grados de C; gira %3.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/feed_rates.py" />
+      <source>Block %1: %2.</source>
+      <translation>Bloque %1: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/feed_rates.py" />
+      <source>a thread does not advance along Z</source>
+      <translation>una rosca no avanza a lo largo de Z</translation>
+    </message>
+    <message>
+      <location filename="core/motion/feed_rates.py" />
+      <source>feed per revolution with the spindle stopped; start it first</source>
+      <translation>avance por vuelta con el husillo parado; arránquelo primero</translation>
+    </message>
+    <message>
+      <location filename="core/motion/feed_rates.py" />
+      <source>the feed is not above zero; program an F</source>
+      <translation>el avance no es mayor que cero; programe una F</translation>
+    </message>
+    <message>
+      <location filename="core/motion/feed_rates.py" />
+      <source>the spindle speed on the axis has no upper limit; give G77 or rpm_max</source>
+      <translation>la velocidad del husillo sobre el eje no tiene tope; dé G77 o rpm_max</translation>
     </message>
     <message>
       <location filename="core/motion/motion_path.py" />
@@ -11707,11 +11752,6 @@
       <location filename="core/motion/motion_path.py" />
       <source>There is no block to plan a path of; add the blocks first.</source>
       <translation>No hay bloque de que planear una trayectoria; agregue primero los bloques.</translation>
-    </message>
-    <message>
-      <location filename="core/motion/path_pieces.py" />
-      <source>Block %1: start and end of the arc lie %2 and %3 mm from its centre; correct the centre or the end point.</source>
-      <translation>Bloque %1: el principio y el final del arco están a %2 y %3 mm de su centro; corrija el centro o el punto final.</translation>
     </message>
     <message>
       <location filename="core/motion/motion_plan.py" />
@@ -11744,29 +11784,9 @@
       <translation>La velocidad actual es %1; debe ser cero o más.</translation>
     </message>
     <message>
-      <location filename="core/motion/feed_rates.py" />
-      <source>Block %1: %2.</source>
-      <translation>Bloque %1: %2.</translation>
-    </message>
-    <message>
-      <location filename="core/motion/feed_rates.py" />
-      <source>a thread does not advance along Z</source>
-      <translation>una rosca no avanza a lo largo de Z</translation>
-    </message>
-    <message>
-      <location filename="core/motion/feed_rates.py" />
-      <source>feed per revolution with the spindle stopped; start it first</source>
-      <translation>avance por vuelta con el husillo parado; arránquelo primero</translation>
-    </message>
-    <message>
-      <location filename="core/motion/feed_rates.py" />
-      <source>the feed is not above zero; program an F</source>
-      <translation>el avance no es mayor que cero; programe una F</translation>
-    </message>
-    <message>
-      <location filename="core/motion/feed_rates.py" />
-      <source>the spindle speed on the axis has no upper limit; give G77 or rpm_max</source>
-      <translation>la velocidad del husillo sobre el eje no tiene tope; dé G77 o rpm_max</translation>
+      <location filename="core/motion/path_pieces.py" />
+      <source>Block %1: start and end of the arc lie %2 and %3 mm from its centre; correct the centre or the end point.</source>
+      <translation>Bloque %1: el principio y el final del arco están a %2 y %3 mm de su centro; corrija el centro o el punto final.</translation>
     </message>
     <message>
       <location filename="core/motion/window_planner.py" />
@@ -11779,59 +11799,9 @@
       <translation>Un intervalo de muestreo de %1 s no da muestras; dé un tiempo mayor que cero.</translation>
     </message>
     <message>
-      <location filename="core/motion/block_table.py" />
-      <source>Block %1 tells of all axes, another behind it does not.</source>
-      <translation>El bloque %1 habla de todos los ejes, otro después de él no.</translation>
-    </message>
-    <message>
-      <location filename="core/motion/block_table.py" />
-      <source>Block %1: %2 is not a number; correct the block.</source>
-      <translation>Bloque %1: %2 no es un número; corrija el bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/motion/block_table.py" />
-      <source>Block %1: a %2 block has no time law of its own.</source>
-      <translation>Bloque %1: un bloque %2 no tiene ley de tiempo propia.</translation>
-    </message>
-    <message>
-      <location filename="core/motion/block_table.py" />
-      <source>Block %1: css is %2 mm/s; program a surface speed with S.</source>
-      <translation>Bloque %1: css es %2 mm/s; programe una velocidad superficial con S.</translation>
-    </message>
-    <message>
       <location filename="core/proving/block_delete.py" />
       <source>With block delete %1: %2</source>
       <translation>Con salto de bloque %1: %2</translation>
-    </message>
-    <message>
-      <location filename="core/proving/program_branches.py" />
-      <source>%1 Never proved: %2.</source>
-      <translation>%1 Nunca comprobado: %2.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/program_branches.py" />
-      <source>%1 ways through the program by its inputs were not proved; %2 were.</source>
-      <translation>%1 caminos del programa según sus entradas no se comprobaron; %2 sí.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/program_branches.py" />
-      <source>Fewer conditional calls in loops, or subroutines that end where they begin, make all provable.</source>
-      <translation>Con menos llamadas condicionales en lazos, o subrutinas que acaban donde empiezan, todo se puede comprobar.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/program_branches.py" />
-      <source>With %1 and %2: %3</source>
-      <translation>Con %1 y %2: %3</translation>
-    </message>
-    <message>
-      <location filename="core/proving/program_branches.py" />
-      <source>With %1: %2</source>
-      <translation>Con %1: %2</translation>
-    </message>
-    <message>
-      <location filename="core/proving/program_branches.py" />
-      <source>input %1 %2 at line %3</source>
-      <translation>la entrada %1 %2 en la línea %3</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -11930,21 +11900,6 @@
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
-      <source>C moves while the spindle turns, and on this machine the spindle itself is C</source>
-      <translation>C se mueve mientras gira el husillo, y en esta máquina el husillo mismo es C</translation>
-    </message>
-    <message>
-      <location filename="core/proving/machine_checks.py" />
-      <source>stop it with M5 first, or take a lathe whose C has its own drive: sinumerik-modulo</source>
-      <translation>párelo primero con M5, o use un torno cuyo C tenga servo propio: sinumerik-modulo</translation>
-    </message>
-    <message>
-      <location filename="core/proving/program_timeline.py" />
-      <source>change the move that the message names</source>
-      <translation>cambie el movimiento que nombra el mensaje</translation>
-    </message>
-    <message>
-      <location filename="core/proving/machine_checks.py" />
       <source> (X as a radius)</source>
       <translation> (X como radio)</translation>
     </message>
@@ -11952,6 +11907,11 @@
       <location filename="core/proving/machine_checks.py" />
       <source>%1 would go to %2 %3 from home%4, %5 %6 beyond the travel limit of %7</source>
       <translation>%1 iría a %2 %3 de la referencia%4, %5 %6 más allá del límite de carrera de %7</translation>
+    </message>
+    <message>
+      <location filename="core/proving/machine_checks.py" />
+      <source>C moves while the spindle turns, and on this machine the spindle itself is C</source>
+      <translation>C se mueve mientras gira el husillo, y en esta máquina el husillo mismo es C</translation>
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
@@ -11964,14 +11924,54 @@
       <translation>revise la palabra %1, la compensación de T%2 y cualquier G10 o G92</translation>
     </message>
     <message>
+      <location filename="core/proving/machine_checks.py" />
+      <source>stop it with M5 first, or take a lathe whose C has its own drive: sinumerik-modulo</source>
+      <translation>párelo primero con M5, o use un torno cuyo C tenga servo propio: sinumerik-modulo</translation>
+    </message>
+    <message>
+      <location filename="core/proving/program_branches.py" />
+      <source>%1 Never proved: %2.</source>
+      <translation>%1 Nunca comprobado: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/program_branches.py" />
+      <source>%1 ways through the program by its inputs were not proved; %2 were.</source>
+      <translation>%1 caminos del programa según sus entradas no se comprobaron; %2 sí.</translation>
+    </message>
+    <message>
       <location filename="core/proving/program_branches.py" />
       <source>Call it with M98P%1, or take it out.</source>
       <translation>Llámela con M98P%1, o quítela.</translation>
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />
+      <source>Fewer conditional calls in loops, or subroutines that end where they begin, make all provable.</source>
+      <translation>Con menos llamadas condicionales en lazos, o subrutinas que acaban donde empiezan, todo se puede comprobar.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/program_branches.py" />
       <source>Subroutine %1 is called from nowhere, so it was not proved.</source>
       <translation>Nadie llama a la subrutina %1, así que no se comprobó.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/program_branches.py" />
+      <source>With %1 and %2: %3</source>
+      <translation>Con %1 y %2: %3</translation>
+    </message>
+    <message>
+      <location filename="core/proving/program_branches.py" />
+      <source>With %1: %2</source>
+      <translation>Con %1: %2</translation>
+    </message>
+    <message>
+      <location filename="core/proving/program_branches.py" />
+      <source>input %1 %2 at line %3</source>
+      <translation>la entrada %1 %2 en la línea %3</translation>
+    </message>
+    <message>
+      <location filename="core/proving/program_timeline.py" />
+      <source>change the move that the message names</source>
+      <translation>cambie el movimiento que nombra el mensaje</translation>
     </message>
     <message>
       <location filename="core/store/backup.py" />
@@ -11990,6 +11990,11 @@
     </message>
     <message>
       <location filename="core/store/backup.py" />
+      <source>%1 is not what was saved</source>
+      <translation>%1 no es lo que se guardó</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
       <source>%1 is the store itself; name a backup</source>
       <translation>%1 es el almacén mismo; dé un respaldo</translation>
     </message>
@@ -12005,8 +12010,158 @@
     </message>
     <message>
       <location filename="core/store/backup.py" />
+      <source>a row of %1 points to a row of %2 that is not there</source>
+      <translation>un renglón de %1 apunta a un renglón de %2 que no está</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>the file is damaged: %1</source>
+      <translation>el archivo está dañado: %1</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
       <source>there is no store in %1 yet, so there is nothing to back up</source>
       <translation>todavía no hay almacén en %1, así que no hay nada que respaldar</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source> (process %1)</source>
+      <translation> (proceso %1)</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source>%1 has gone but its log %2 is still there; put the file back, or move the log away</source>
+      <translation>%1 ya no está pero su bitácora %2 sigue ahí; regrese el archivo, o mueva la bitácora</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source>%1 is a database of another program; it is left as it is. Name another file</source>
+      <translation>%1 es una base de datos de otro programa; se deja como está. Indique otro archivo</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source>%1 is from an older TurnDesk; start turndesk once to bring it up to date</source>
+      <translation>%1 es de un TurnDesk anterior; arranque turndesk una vez para actualizarlo</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source>%1 is not a database; it is left as it is. Restore a backup: turndesk store restore FILE</source>
+      <translation>%1 no es una base de datos; se deja como está. Restaure una copia: turndesk store restore ARCHIVO</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source>%1 was written by a newer TurnDesk (store version %2, this one knows %3); it is left as it is. Use the newer TurnDesk</source>
+      <translation>%1 fue escrito por un TurnDesk más nuevo (versión de almacén %2, este conoce %3); se deja como está. Use el TurnDesk más nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source>the folder %1 cannot be made (%2); set TURNDESK_HOME to a folder of yours</source>
+      <translation>no se puede crear la carpeta %1 (%2); ponga TURNDESK_HOME en una carpeta suya</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source>the store cannot be brought to version %1, and stays at the one before: %2</source>
+      <translation>el almacén no se puede llevar a la versión %1 y se queda en la anterior: %2</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source>the store in %1 is in use by another TurnDesk%2; close that one, or enter it there</source>
+      <translation>otro TurnDesk%2 usa el almacén en %1; ciérrelo, o hágalo allá</translation>
+    </message>
+    <message>
+      <location filename="core/store/event_log.py" />
+      <source>the setting %1 cannot be stored: %2</source>
+      <translation>el ajuste %1 no se puede guardar: %2</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_fields.py" />
+      <source>%1…%2 in</source>
+      <translation>%1…%2 pulg</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_fields.py" />
+      <source>nose radius</source>
+      <translation>radio de punta</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_fields.py" />
+      <source>tip quadrant</source>
+      <translation>cuadrante de punta</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_fields.py" />
+      <source>up to %1 characters in one line</source>
+      <translation>hasta %1 caracteres en una línea</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_fields.py" />
+      <source>whole number</source>
+      <translation>número entero</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_fields.py" />
+      <source>yes or no</source>
+      <translation>sí o no</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>%1 in</source>
+      <translation>%1 pulg</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>%1 is out of range; enter %2</source>
+      <translation>%1 está fuera de alcance; escriba %2</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>%1%2 does not exist; offsets are %31…32</source>
+      <translation>%1%2 no existe; las compensaciones son %31…32</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>T%1 was never set, so nothing can be relative to it; touch it off first</source>
+      <translation>T%1 nunca se puso, nada puede ser relativo a ella; tóquela primero</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>there is no offset change to undo</source>
+      <translation>no hay cambio de compensación que deshacer</translation>
+    </message>
+    <message>
+      <location filename="core/store/program_records.py" />
+      <source> version %1</source>
+      <translation> versión %1</translation>
+    </message>
+    <message>
+      <location filename="core/store/program_records.py" />
+      <source>%1 cannot name a program; take letters, digits, dot, dash and blank</source>
+      <translation>%1 no puede nombrar un programa; use letras, números, punto, guion y espacio</translation>
+    </message>
+    <message>
+      <location filename="core/store/program_records.py" />
+      <source>%1 version %2</source>
+      <translation>%1 versión %2</translation>
+    </message>
+    <message>
+      <location filename="core/store/program_records.py" />
+      <source>%1 version %2 is not what was saved; load another version or a backup</source>
+      <translation>%1 versión %2 no es lo que se guardó; cargue otra versión o un respaldo</translation>
+    </message>
+    <message>
+      <location filename="core/store/program_records.py" />
+      <source>the store has no program %1%2; see the list of programs and versions</source>
+      <translation>el almacén no tiene el programa %1%2; vea la lista de programas y versiones</translation>
+    </message>
+    <message>
+      <location filename="core/store/store.py" />
+      <source>%1 is closed; nothing can be read from it any more</source>
+      <translation>%1 está cerrado; ya no se puede leer nada de él</translation>
+    </message>
+    <message>
+      <location filename="core/store/store.py" />
+      <source>%1 is open for reading only; nothing can be stored</source>
+      <translation>%1 está abierto sólo para lectura; no se puede guardar nada</translation>
     </message>
     <message>
       <location filename="core/store/store_errors.py" />
@@ -12044,21 +12199,6 @@
       <translation>{path}: el disco falla ({error}); revise que esté y que esté sano</translation>
     </message>
     <message>
-      <location filename="core/store/backup.py" />
-      <source>%1 is not what was saved</source>
-      <translation>%1 no es lo que se guardó</translation>
-    </message>
-    <message>
-      <location filename="core/store/backup.py" />
-      <source>a row of %1 points to a row of %2 that is not there</source>
-      <translation>un renglón de %1 apunta a un renglón de %2 que no está</translation>
-    </message>
-    <message>
-      <location filename="core/store/backup.py" />
-      <source>the file is damaged: %1</source>
-      <translation>el archivo está dañado: %1</translation>
-    </message>
-    <message>
       <location filename="core/store/store_export.py" />
       <source># Offsets in inches, X a radius.</source>
       <translation># Compensaciones en pulgadas, X es radio.</translation>
@@ -12079,131 +12219,6 @@
       <translation>[zero.%1]  # mm and degrees</translation>
     </message>
     <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>%1…%2 in</source>
-      <translation>%1…%2 pulg</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>nose radius</source>
-      <translation>radio de punta</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>tip quadrant</source>
-      <translation>cuadrante de punta</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>up to %1 characters in one line</source>
-      <translation>hasta %1 caracteres en una línea</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>whole number</source>
-      <translation>número entero</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>yes or no</source>
-      <translation>sí o no</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
-      <source> (process %1)</source>
-      <translation> (proceso %1)</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
-      <source>the store in %1 is in use by another TurnDesk%2; close that one, or enter it there</source>
-      <translation>otro TurnDesk%2 usa el almacén en %1; ciérrelo, o hágalo allá</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>%1 in</source>
-      <translation>%1 pulg</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>%1 is out of range; enter %2</source>
-      <translation>%1 está fuera de alcance; escriba %2</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>%1%2 does not exist; offsets are %31…32</source>
-      <translation>%1%2 no existe; las compensaciones son %31…32</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>T%1 was never set, so nothing can be relative to it; touch it off first</source>
-      <translation>T%1 nunca se puso, nada puede ser relativo a ella; tóquela primero</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>there is no offset change to undo</source>
-      <translation>no hay cambio de compensación que deshacer</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
-      <source>%1 has gone but its log %2 is still there; put the file back, or move the log away</source>
-      <translation>%1 ya no está pero su bitácora %2 sigue ahí; regrese el archivo, o mueva la bitácora</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
-      <source>%1 is from an older TurnDesk; start turndesk once to bring it up to date</source>
-      <translation>%1 es de un TurnDesk anterior; arranque turndesk una vez para actualizarlo</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
-      <source>the folder %1 cannot be made (%2); set TURNDESK_HOME to a folder of yours</source>
-      <translation>no se puede crear la carpeta %1 (%2); ponga TURNDESK_HOME en una carpeta suya</translation>
-    </message>
-    <message>
-      <location filename="core/store/program_records.py" />
-      <source> version %1</source>
-      <translation> versión %1</translation>
-    </message>
-    <message>
-      <location filename="core/store/program_records.py" />
-      <source>%1 cannot name a program; take letters, digits, dot, dash and blank</source>
-      <translation>%1 no puede nombrar un programa; use letras, números, punto, guion y espacio</translation>
-    </message>
-    <message>
-      <location filename="core/store/program_records.py" />
-      <source>%1 version %2</source>
-      <translation>%1 versión %2</translation>
-    </message>
-    <message>
-      <location filename="core/store/program_records.py" />
-      <source>%1 version %2 is not what was saved; load another version or a backup</source>
-      <translation>%1 versión %2 no es lo que se guardó; cargue otra versión o un respaldo</translation>
-    </message>
-    <message>
-      <location filename="core/store/program_records.py" />
-      <source>the store has no program %1%2; see the list of programs and versions</source>
-      <translation>el almacén no tiene el programa %1%2; vea la lista de programas y versiones</translation>
-    </message>
-    <message>
-      <location filename="core/store/store.py" />
-      <source>%1 is closed; nothing can be read from it any more</source>
-      <translation>%1 está cerrado; ya no se puede leer nada de él</translation>
-    </message>
-    <message>
-      <location filename="core/store/event_log.py" />
-      <source>the setting %1 cannot be stored: %2</source>
-      <translation>el ajuste %1 no se puede guardar: %2</translation>
-    </message>
-    <message>
-      <location filename="core/store/store.py" />
-      <source>%1 is open for reading only; nothing can be stored</source>
-      <translation>%1 está abierto sólo para lectura; no se puede guardar nada</translation>
-    </message>
-    <message>
-      <location filename="core/store/touch_off.py" />
-      <source>T%1 was never set; touch both X and Z</source>
-      <translation>T%1 nunca se puso; toque X y Z</translation>
-    </message>
-    <message>
       <location filename="core/store/store_writer.py" />
       <source>%1 events had no room while nothing could be written</source>
       <translation>%1 eventos no cupieron mientras no se podía escribir</translation>
@@ -12212,11 +12227,6 @@
       <location filename="core/store/store_writer.py" />
       <source>not kept: %1</source>
       <translation>sin guardar: %1</translation>
-    </message>
-    <message>
-      <location filename="core/store/store_writer.py" />
-      <source>other entry</source>
-      <translation>otro apunte</translation>
     </message>
     <message>
       <location filename="core/store/store_writer.py" />
@@ -12230,8 +12240,18 @@
     </message>
     <message>
       <location filename="core/store/store_writer.py" />
+      <source>other entry</source>
+      <translation>otro apunte</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_writer.py" />
       <source>the store is closed; nothing can be written any more</source>
       <translation>el almacén está cerrado; ya no se puede escribir nada</translation>
+    </message>
+    <message>
+      <location filename="core/store/touch_off.py" />
+      <source>T%1 was never set; touch both X and Z</source>
+      <translation>T%1 nunca se puso; toque X y Z</translation>
     </message>
     <message>
       <location filename="core/store/zero_offset_table.py" />
