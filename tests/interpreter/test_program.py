@@ -25,12 +25,12 @@ def test_any_line_can_be_had_as_words_and_as_a_statement() -> None:
 @pytest.mark.parametrize(
     ("text", "move"),
     [
-        ("X.1234Z-.5678", (0.1234, -0.5678)),
-        ("z+1.", (None, 1.0)),
-        ("X1.00005", (1.00005, None, True, -1, None)),
-        ("G01X1F.003", (1.0, None, False, 1, 0.003)),
-        ("g00z1", (None, 1.0, False, 0, None)),
-        ("X1Z2F3", (1.0, 2.0, False, -1, 3.0)),
+        ("X.1234Z-.5678", (0.1234, -0.5678, None, -1, False)),
+        ("z+1.", (None, 1.0, None, -1, False)),
+        ("X1.00005", (1.00005, None, None, -1, True)),
+        ("G01X1F.003", (1.0, None, 0.003, 1, False)),
+        ("g00z1", (None, 1.0, None, 0, False)),
+        ("X1Z2F3", (1.0, 2.0, 3.0, -1, False)),
     ],
 )
 def test_moves_are_read_as_numbers(text: str, move: tuple[object, ...]) -> None:

@@ -19,7 +19,7 @@ from core.interpreter.elementary_blocks import Block, Series
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
-from core.interpreter.omniturn.plain_moves import LongProgram, columns_of, read_columns, read_move
+from core.interpreter.omniturn.plain_moves import Columns, read_columns, read_move
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
 from core.machine.machine_file import load_machine
@@ -33,15 +33,14 @@ NEVER = 10**9
 
 @contextmanager
 def at_once(least: int, most: int = 20_000) -> Iterator[None]:
-    """Series from ``least`` moves on, of ``most`` at most; every program is read into columns."""
+    """Series from ``least`` moves on, of ``most`` at most; lines are read all at once, or each alone."""
     long = NEVER if least == NEVER else 1
     with (
-        patch("core.interpreter.omniturn.omniturn_program.LONG", long),
         patch("core.interpreter.omniturn.omniturn_interpreter.LONG", long),
         patch("core.interpreter.omniturn.move_series.LEAST", least),
         patch("core.interpreter.omniturn.move_series.MOST", most),
         patch("core.interpreter.omniturn.plain_moves.MOST", most),
-        patch("core.interpreter.omniturn.plain_moves._FEW", 1),
+        patch("core.interpreter.omniturn.plain_moves._FEW", long),
     ):
         yield
 
@@ -116,7 +115,10 @@ def test_any_lines(moves: list[str], most: int) -> None:
 def test_numbers_are_those_of_single_lines(moves: list[str]) -> None:
     with patch("core.interpreter.omniturn.plain_moves._FEW", 1):
         read = read_columns(moves)
-    alone = columns_of([read_move(text) for text in moves])
+    alone = Columns.empty(len(moves))
+    for at, text in enumerate(moves):
+        if (move := read_move(text)) is not None:
+            alone.put(at, move)
     for many, one in zip(read, alone, strict=True):
         assert np.array_equal(many[alone.known], one[alone.known], equal_nan=True)
         assert np.array_equal(np.signbit(many[alone.known]), np.signbit(one[alone.known]))
@@ -202,13 +204,12 @@ def test_a_series_is_a_sequence_of_its_blocks() -> None:
 def test_lines_of_a_long_program_are_those_of_a_short_one() -> None:
     texts = ["X1.5Z-2", "", "G01X1F.003", "X1.23456", "M08", "Z3"] * 500
     with at_once(2):
-        steps = read_program(Source("A", lines(*texts))).steps
-    assert isinstance(steps, LongProgram)
+        steps = read_program(Source("A", lines(*texts))).ready
     assert [read_move(text) for text in texts] == [s if isinstance(s, tuple) else None for s in steps]
     changed = steps[5]
     steps[5] = None
     assert (steps[5], steps[4:6], steps.moves_until(5)) == (None, [steps[4], None], 5)
-    assert changed == (None, 3.0)
+    assert changed == (None, 3.0, None, -1, False)
     assert isinstance(
         next(iter(Interpreter(read_program(Source("A", body("X1F9"))), setup()).series())), Block
     )

@@ -7,6 +7,7 @@ from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES
 from core.interpreter.omniturn.loops_and_subroutines import Structure
 from core.interpreter.omniturn.omniturn_program import Program, of_machine_file, read_statement
 from core.interpreter.omniturn.omniturn_statement import PLANE, UNREADABLE, Statement
+from core.interpreter.omniturn.plain_moves import Columns, ReadyLines
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.source import Source
 
@@ -30,7 +31,7 @@ def read_single(source: Source) -> Program:
     unknown = (made,) if made is not None and of_machine_file(made) else ()
     return Program(
         source=source,
-        steps=[made],
+        ready=ReadyLines(Columns.empty(1), {0: made}),
         structure=Structure({}, {}, {}, {}, 1, {}),
         diagnostics=tuple(problems),
         blocks=int(executable),

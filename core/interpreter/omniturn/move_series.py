@@ -1,7 +1,7 @@
-"""Straight moves of many lines at once: what ``moves.fast_move`` makes of each of them, as one series.
+"""Straight moves of many lines at once, as a series: consecutive lines, or passes of a loop.
 
-Nothing is decided here. The words of a line say what ``plain`` says, the way ends where ``fast_move`` ends,
-and a word off the step or a move that takes long is told by whoever tells it of a single line.
+Nothing is decided here. ``in_force`` says which words change nothing, moves end where ``line_to`` ends, and a
+word off the step or a move that takes long is told by whoever tells it of a single line.
 """
 
 from __future__ import annotations
@@ -15,20 +15,21 @@ from core.interpreter.omniturn.feeds import check_move
 from core.interpreter.omniturn.loops_and_subroutines import Flow
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_state import State
-from core.interpreter.omniturn.plain_moves import MOST, Bools, Columns, Floats, Ints, LongProgram, columns_of
-from core.interpreter.omniturn.straight_moves import WHOLE, rounded, step_of
+from core.interpreter.omniturn.plain_moves import MOST, NO_CODE, Bools, Columns, Floats, Ints
+from core.interpreter.omniturn.straight_moves import WHOLE, in_force, rounded, step_of
 
 
 def unchanged(state: State, lines: Columns) -> Bools:
-    """Lines (m,) that hold nothing but X, Z and what is in force already; see ``plain.plain``."""
+    """Lines (m,) that hold nothing but X, Z and what is in force already."""
+    answer = lines.known.copy()
     fed = ~np.isnan(lines.f)
-    cut = lines.g != 1 if state.steady_feed is None else np.ones(len(fed), bool)
-    if fed.any():
-        words = np.unique(lines.f[fed]).tolist()
-        same = [f for f in words if state.feed_word(f) == state.steady_feed]
-        cut &= ~fed | np.isin(lines.f, same)
-    rapid = ~fed & (state.modal.rapid and not state.title_rapid)
-    answer: Bools = lines.known & np.where(lines.g == 0, rapid, cut)
+    for g in (0, 1, NO_CODE):
+        coded = lines.g == g
+        if g != NO_CODE and not in_force(state, g, None):
+            answer &= ~coded | fed
+        for f in np.unique(lines.f[coded & fed]).tolist():
+            if not in_force(state, g, f):
+                answer &= ~coded | (lines.f != f)
     return answer
 
 
@@ -94,9 +95,6 @@ def _tell(state: State, made: Series, lines: Columns, finer: Bools) -> None:
             check_move(state, line, float(made.x0[at]), float(made.x[at]), hypot(dx[at], dz[at]))
 
 
-# --- How many lines from here on are moves that can be made at once: a stretch of them, or passes of a loop.
-
-
 LEAST = 48
 """Moves for which a series pays; fewer are made one by one."""
 
@@ -106,9 +104,8 @@ class SeriesLookAhead:
 
     def __init__(self, state: State, program: Program, flow: Flow) -> None:
         self._state, self._flow = state, flow
-        self._steps, self._texts = program.steps, program.source.lines
+        self._ready, self._texts = program.ready, program.source.lines
         self._loops = program.structure.loop_ends
-        self._bodies: dict[int, Columns | None] = {}
         self._looked = -1  # index of a line from which on there was no series
 
     def take(self, lines: int, blocks: int) -> tuple[Series, int] | None:
@@ -119,17 +116,17 @@ class SeriesLookAhead:
         at = self._flow.at
         if self._looked <= at < self._looked + LEAST:
             return None
-        taken = self._passes(at, lines, blocks) if at - 1 in self._loops else self._stretch(at, lines, blocks)
+        taken = (
+            self._passes(at, lines, blocks) if at - 1 in self._loops else self._consecutive(at, lines, blocks)
+        )
         if taken is None:
             self._looked = at
         return taken
 
-    def _stretch(self, at: int, lines: int, blocks: int) -> tuple[Series, int] | None:
+    def _consecutive(self, at: int, lines: int, blocks: int) -> tuple[Series, int] | None:
         """Lines one after the other."""
-        if not isinstance(self._steps, LongProgram):
-            return None
-        end = min(self._steps.moves_until(at), self._flow.end, at + min(MOST, lines, blocks))
-        columns = self._steps.columns
+        end = min(self._ready.moves_until(at), self._flow.end, at + min(MOST, lines, blocks))
+        columns = self._ready.columns
         if end - at < LEAST or not unchanged(self._state, columns.part(slice(at, at + LEAST))).all():
             return None
         part = columns.part(slice(at, end))
@@ -148,21 +145,10 @@ class SeriesLookAhead:
         times = min(left, lines // (length + 1), (blocks - 1) // length, MOST // length)
         if times * length < LEAST:
             return None
-        body = self._body(at, at + length)
-        if body is None or not unchanged(self._state, body).all():
+        body = self._ready.columns.part(slice(at, at + length))
+        if not unchanged(self._state, body).all():
             return None
         index = np.tile(np.arange(length), times)
         self._flow.passed(times)
         made = series(self._state, body.part(index), at + 1 + index, self._texts)
         return made, times * (length + 1)
-
-    def _body(self, at: int, end: int) -> Columns | None:
-        """The lines of a loop, None where one of them is no plain move."""
-        if at not in self._bodies:
-            steps, body = self._steps, None
-            if isinstance(steps, LongProgram):
-                body = steps.columns.part(slice(at, end)) if steps.moves_until(at) >= end else None
-            elif all(isinstance(step, tuple) for step in steps[at:end]):
-                body = columns_of(steps[at:end])
-            self._bodies[at] = body
-        return self._bodies[at]

@@ -18,13 +18,12 @@ from core.interpreter.omniturn.contour_modification import ContourModifier
 from core.interpreter.omniturn.loops_and_subroutines import Flow
 from core.interpreter.omniturn.m_codes import check_m_codes
 from core.interpreter.omniturn.nose_compensation import nose_code, switch
-from core.interpreter.omniturn.omniturn_program import LONG, Program
+from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import PLANE, UNREADABLE, ReadyLine, Statement, statement
-from core.interpreter.omniturn.plain_moves import plain
 from core.interpreter.omniturn.program_size import refuse_too_large, takes_call, terminal
 from core.interpreter.omniturn.spindle_speed import rpm_at
-from core.interpreter.omniturn.straight_moves import fast_move, go, on_step, plain_move
+from core.interpreter.omniturn.straight_moves import go, on_step, plain_move
 from core.interpreter.omniturn.tools_and_offsets import ToolUse, warn_of_idle_shifts
 from core.language.diagnostics import ProgramError
 from core.language.omniturn import lex_line
@@ -55,7 +54,7 @@ def check_opening(state: State, program: Program) -> tuple[int, bool]:
 
 def _refuse_move(program: Program, log: Log) -> None:
     """MDI after power-up or M30: neither G90 nor G91 is in force, so X and Z have no meaning yet."""
-    step = program.steps[0]
+    step = program.ready[0]
     named = isinstance(step, Statement) and {90, 91}.intersection(step.modal)
     moves = isinstance(step, tuple) or (step is not None and {"X", "Z"}.intersection(step.words))
     if moves and not named:
@@ -65,7 +64,7 @@ def _refuse_move(program: Program, log: Log) -> None:
 
 def _first_line(program: Program, log: Log, *, block_delete: bool) -> int:
     """Number of the first line to execute, 0 where there is none; it must say G90 or G91."""
-    for number, step in enumerate(program.steps, start=1):
+    for number, step in enumerate(program.ready, start=1):
         if step is None:
             continue
         if isinstance(step, Statement):
@@ -80,6 +79,8 @@ def _first_line(program: Program, log: Log, *, block_delete: bool) -> int:
 
 
 _AHEAD = 8
+LONG = 5_000
+"""Lines from which on moves are made in series where there is no loop either."""
 
 
 class Interpreter(PassReport):
@@ -126,7 +127,7 @@ class Interpreter(PassReport):
 
     def series(self) -> Iterator[Block | Series]:
         """The same, whole series of straight moves in one: for whoever goes through all of a program."""
-        if self._program.structure.loop_ends or len(self._program.steps) >= LONG:
+        if self._program.structure.loop_ends or len(self._program.ready) >= LONG:
             from core.interpreter.omniturn.move_series import SeriesLookAhead
 
             self._ahead = SeriesLookAhead(self._state, self._program, self._flow)
@@ -149,8 +150,8 @@ class Interpreter(PassReport):
         warn_of_idle_shifts(self._state)
 
     def _lines(self) -> Iterator[Block | Series]:
-        steps, flow, state, ahead = self._program.steps, self._flow, self._state, self._ahead
-        lines = self._program.source.lines
+        ready, flow, state, ahead = self._program.ready, self._flow, self._state, self._ahead
+        texts = self._program.source.lines
         left = MOST_LINES
         while flow.at < flow.end:
             if ahead is not None and state.fast:
@@ -161,25 +162,24 @@ class Interpreter(PassReport):
                     continue
             at = flow.at
             flow.at = at + 1
-            step = steps[at]
+            line = ready[at]
             left -= 1
             if left < 0 or state.blocks >= MOST_BLOCKS:
                 self._too_much(at + 1, "Lower the counts of the loops.")
                 break
             try:
-                if isinstance(step, tuple):
-                    move = step if len(step) == 2 else plain(state, at + 1, lines[at], step)
-                    if move is None:
-                        step = steps[at] = statement(lex_line(at + 1, lines[at]))
-                        yield from self._statement(step)
-                    elif state.fast:
-                        yield fast_move(state, at + 1, lines[at], move)
+                if isinstance(line, tuple):
+                    block = plain_move(state, at + 1, texts[at], line)
+                    if block is None:
+                        line = ready[at] = statement(lex_line(at + 1, texts[at]))
+                    elif state.shape.active:
+                        yield from self._shaped(block)
                     else:
-                        yield from self._shaped(plain_move(state, at + 1, lines[at], move))
-                elif step is not None:
-                    yield from self._statement(step)
+                        yield block
+                if isinstance(line, Statement):
+                    yield from self._statement(line)
             except ProgramError as problem:
-                self._recover(problem, step)
+                self._recover(problem, line)
 
     def _statement(self, made: Statement) -> Iterator[Block]:
         contour = self._contour(made) if made.contour_cycle else ()
@@ -205,7 +205,7 @@ class Interpreter(PassReport):
             if nose_code(made):
                 yield from self._nose(made)
             first = made.line == self._first
-            ahead = self._program.steps[made.line : made.line + _AHEAD] if looks_ahead(made) else ()
+            ahead = self._program.ready[made.line : made.line + _AHEAD] if looks_ahead(made) else ()
             for block in execute(self._state, made, self._tools, ahead, first=first, contour=contour):
                 yield from self._shaped(block)
                 if isinstance(block.action, ProgramEnd):
@@ -259,13 +259,13 @@ class Interpreter(PassReport):
         """Whether a conditional call is made; the input is asked at this moment."""
         return takes_call(made, self._state.setup.inputs)
 
-    def _recover(self, problem: ProgramError, step: ReadyLine) -> None:
+    def _recover(self, problem: ProgramError, line: ReadyLine) -> None:
         """Keep the error, and stand where its line would have ended, so that the next is judged well."""
         self._refuse(problem)
         if problem.diagnostic.code == "recursion" or self._log.full:
             self._flow.stop()
-        if isinstance(step, Statement):
-            self._arrive(step)
+        if isinstance(line, Statement):
+            self._arrive(line)
 
     def _arrive(self, made: Statement) -> None:
         """Stand where the line would have ended."""

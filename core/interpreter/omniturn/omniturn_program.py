@@ -17,7 +17,7 @@ from core.interpreter.omniturn.omniturn_statement import (
     statement,
     unreadable,
 )
-from core.interpreter.omniturn.plain_moves import ReadyLines, read_long_program, read_move
+from core.interpreter.omniturn.plain_moves import ReadyLines, read_lines, read_move
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Line, lex_line
 from core.language.omniturn.plane_switching_lines import (
@@ -86,19 +86,16 @@ class Style:
             self.tell("comment-character", line.number, line.comment_column)
 
 
-LONG = 5_000
-"""Lines from which on a program is read into columns."""
-
 _MOST_PROBLEMS = 100
 _NEAR = 5  # lines
 
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """A program ready to run. ``steps`` has one entry a line; ``m_codes`` are those of the machine file."""
+    """A program ready to run. ``ready`` has one entry a line; ``m_codes`` are those of the machine file."""
 
     source: Source
-    steps: ReadyLines
+    ready: ReadyLines
     structure: Structure
     diagnostics: tuple[Diagnostic, ...]
     blocks: int  # lines that hold more than a comment
@@ -110,7 +107,7 @@ class Program:
 
     def for_one_pass(self) -> Program:
         """The same; what the pass finds out about a line is its own."""
-        return replace(self, steps=self.steps.copy())
+        return replace(self, ready=self.ready.copy())
 
     def line(self, number: int) -> Line:
         """The words of a line, counted from 1."""
@@ -118,30 +115,26 @@ class Program:
 
     def statement(self, number: int) -> Statement | None:
         """A line ready to run, counted from 1; None where there is nothing on it."""
-        step = self.steps[number - 1]
-        return statement(self.line(number)) if isinstance(step, tuple) else step
+        ready = self.ready[number - 1]
+        return statement(self.line(number)) if isinstance(ready, tuple) else ready
 
 
 class _Reader:
     def __init__(self, source: Source, *, strict: bool) -> None:
         self.source = source
         self.style = Style(strict=strict)
-        self.steps: ReadyLines = []
         self.blank = 0  # lines that hold nothing
         self.statements: list[Statement] = []
         self.problems: list[Diagnostic] = []
         self._plane = 0  # line of a (~PL..) whose (END) is still to come
 
-    def read(self) -> None:
-        lines = self.source.lines
-        if len(lines) >= LONG and "~" not in self.source.text:
-            self.steps = read_long_program(lines, self._step)
-        else:
-            self.steps = [self._step(number, text) for number, text in enumerate(lines, start=1)]
+    def read(self) -> ReadyLines:
+        lines = read_lines(self.source.lines, self._line, in_order="~" in self.source.text)
         if self._plane:
             self._plane_open(self._plane)
+        return lines
 
-    def _step(self, number: int, text: str) -> ReadyLine:
+    def _line(self, number: int, text: str) -> ReadyLine:
         move = read_move(text)
         return self.statement(number, text) if move is None or self._plane else move
 
@@ -206,8 +199,8 @@ def read_program(source: Source, strict: bool = False) -> Program:
     ``strict`` makes errors of what the original control's book forbids and real shops write.
     """
     reader = _Reader(source, strict=strict)
-    reader.read()
-    length = len(reader.steps)
+    ready = reader.read()
+    length = len(ready)
     structure, faults = find_structure(reader.statements, length)
     if not length:
         faults = [
@@ -216,15 +209,15 @@ def read_program(source: Source, strict: bool = False) -> Program:
     reader.style.look_at_file(source)
     problems = [*reader.problems, *faults, *_comments_in_loops(reader.statements, structure)]
     if not any(fault.code in {"after-end", "no-end", "subroutine-twice"} for fault in faults):
-        problems += _beyond_the_end(reader.steps, structure)
+        problems += _beyond_the_end(ready, structure)
     problems.sort(key=lambda problem: (problem.line, problem.column))
     problems = without_repeats(problems)
     return Program(
         source=source,
-        steps=reader.steps,
+        ready=ready,
         structure=structure,
         diagnostics=(*_capped(problems), *_capped(reader.style.found)),
-        blocks=_executable(reader),
+        blocks=_executable(reader, length),
         names_units=any({70, 71}.intersection(made.modal) for made in reader.statements),
         m_codes=tuple(made for made in reader.statements if of_machine_file(made)),
         asks=tuple(made for made in reader.statements if made.asks),
@@ -253,9 +246,9 @@ def read_statement(number: int, text: str) -> tuple[Statement | None, list[Diagn
     return made, reader.problems
 
 
-def _executable(reader: _Reader) -> int:
+def _executable(reader: _Reader, length: int) -> int:
     comments = sum(1 for made in reader.statements if not made.executable)
-    return len(reader.steps) - reader.blank - comments
+    return length - reader.blank - comments
 
 
 def _comments_in_loops(statements: list[Statement], structure: Structure) -> list[Diagnostic]:
@@ -269,13 +262,13 @@ def _comments_in_loops(statements: list[Statement], structure: Structure) -> lis
     return found
 
 
-def _beyond_the_end(steps: ReadyLines, structure: Structure) -> list[Diagnostic]:
+def _beyond_the_end(ready: ReadyLines, structure: Structure) -> list[Diagnostic]:
     """Moves after M30 that no subroutine holds: the first of them."""
     inside = False
     starts, ends = set(structure.subroutines.values()), set(structure.subroutine_ends.values())
-    for at in range(structure.main_end, len(steps)):
+    for at in range(structure.main_end, len(ready)):
         inside = (inside or at in starts) and at not in ends
-        if not inside and isinstance(steps[at], tuple):
+        if not inside and isinstance(ready[at], tuple):
             text = "This line stands after the end of the program and is in no subroutine."
             hint = "Move it before M30, or start a subroutine with }n."
             return [Diagnostic(at + 1, 1, Severity.ERROR, "after-end", text, hint)]

@@ -9,11 +9,9 @@ from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Line, Word, other_controls
 from core.language.omniturn.plane_switching_lines import PlaneLine
 
-PlainMove = tuple[float | None, float | None]
-"""X and Z as written of a line that holds nothing else: most lines of a long program."""
-
-CodedMove = tuple[float | None, float | None, bool, int, float | None]
-"""X, Z, whether one of them has a fifth decimal, 0 or 1 for G00 or G01 (-1: none), F; all as written."""
+PlainMove = tuple[float | None, float | None, float | None, int, bool]
+"""A line of G00 or G01, X, Z and F and no more: X, Z, F as written, 0 or 1 for the code (-1: none), and
+whether one of the numbers has a fifth decimal. Most lines of a long program."""
 
 _C_WORDS = frozenset({"C", "CA", "CI"})
 UNREADABLE = "unreadable"
@@ -106,7 +104,7 @@ class Statement:
         return self.text if self.parts is None else self.parts.get(name, self.text)
 
 
-ReadyLine = PlainMove | CodedMove | Statement | None
+ReadyLine = PlainMove | Statement | None
 """A line to run: a move of plain numbers, anything else, or nothing at all."""
 
 # --- Words of a line → a statement; what may not stand together on a line is refused here.

@@ -11,7 +11,6 @@ from core.interpreter.omniturn.code_table import FLOW_CODES, Acts
 from core.interpreter.omniturn.loops_and_subroutines import call_target
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.omniturn.plain_moves import LongProgram, ReadyLines
 from core.language.diagnostics import Diagnostic
 
 
@@ -29,7 +28,7 @@ def refuse_too_large(program: Program, inputs: Callable[[str], bool]) -> Diagnos
     Loops multiply, subroutines count where they are called, conditional calls as the inputs stand now.
     """
     if not program.structure.loop_ends and not program.structure.subroutines:
-        return _refusal(Count(len(program.steps), len(program.steps)))
+        return _refusal(Count(len(program.ready), len(program.ready)))
     counter = _Counter(program, inputs)
     return _refusal(counter.region(0, program.structure.main_end, 0))
 
@@ -61,15 +60,15 @@ class _Counter:
         """What the lines from ``start`` to before ``end`` execute, called ``depth`` deep."""
         open_loops: list[tuple[int, int, Count]] = []  # where it ends, how often it runs, what came before
         total = Count()
-        loop_ends, steps = self._program.structure.loop_ends, self._program.steps
+        loop_ends, ready = self._program.structure.loop_ends, self._program.ready
         at = start
         while at < end:
-            moves = _moves(steps, at, end)
+            moves = min(ready.moves_until(at), end) - at
             if moves:
                 total = Count(total.blocks + moves, total.lines + moves, total.worst)
                 at += moves
                 continue
-            step = steps[at]
+            step = ready[at]
             assert not isinstance(step, tuple)
             if step is not None:
                 if step.flow == "LS" and at in loop_ends:
@@ -107,13 +106,6 @@ class _Counter:
             end = structure.subroutine_ends.get(number, start)
             self._known[key] = self.region(start, end, depth)
         return self._known[key]
-
-
-def _moves(steps: ReadyLines, at: int, end: int) -> int:
-    """How many lines from this one on are known to be plain moves: 0 where it is none."""
-    if isinstance(steps, LongProgram) and steps.moves_until(at) > at:
-        return min(steps.moves_until(at), end) - at
-    return int(isinstance(steps[at], tuple))
 
 
 def _sum(a: Count, b: Count) -> Count:

@@ -19,64 +19,66 @@ _DIAMETERS = frozenset({"X"})  # words whose number is a diameter under G72
 WHOLE = 1e-6  # of a step: what a decimal fraction lacks in binary
 
 
-def fast_move(state: State, line: int, text: str, step: PlainMove) -> Block:
-    """A straight move under a state that has passed all checks; X and Z as written, finer than no step."""
-    x, z = step
-    x0, z0 = state.x, state.z
-    if state.absolute:
-        if x is not None:
-            state.px = x * state.scale_x
-        if z is not None:
-            state.pz = z * state.scale_z
-    else:
-        state.px += (x or 0.0) * state.scale_x
-        state.pz += (z or 0.0) * state.scale_z
-    state.x = x1 = state.px + state.dx
-    state.z = z1 = state.pz + state.dz
-    if state.cut and abs(x1 - x0) + abs(z1 - z0) > state.slow_length:
-        check_move(state, line, x0, x1, hypot(x1 - x0, z1 - z0))
-    state.blocks = n = state.blocks + 1
-    c = state.c
-    return Block(
-        n, line, state.kind, text, x0, z0, c, x1, z1, c, state.offset_x, state.offset_z,
-        state.modal, state.feed, state.per_rev, state.rpm,
-    )  # fmt: skip
+def plain_move(state: State, line: int, text: str, move: PlainMove) -> Block | None:
+    """The block of a line of G00 or G01, X, Z and F; None where its code or its F changes what is in force.
 
-
-def plain_move(state: State, line: int, text: str, step: PlainMove) -> Block:
-    """A line of X and Z alone, with every check."""
+    Raises ProgramError as ``line_to`` does.
+    """
+    x, z, f, g, fine = move
+    if (g >= 0 or f is not None) and not in_force(state, g, f):
+        return None
     # Four decimals lie on every step but a coarse one.
-    x, z = rounded(state, line, text, *step) if state.modal.coarse else step
-    return line_to(
-        state,
-        line,
-        text,
-        None if x is None else x * state.scale_x,
-        None if z is None else z * state.scale_z,
-    )
+    if fine or state.modal.coarse:
+        x, z = rounded(state, line, text, x, z)
+    if x is not None:
+        x *= state.scale_x
+    if z is not None:
+        z *= state.scale_z
+    return line_to(state, line, text, x, z)
+
+
+def in_force(state: State, g: int, f: float | None) -> bool:
+    """Whether G00 or G01 (negative: none) and F (None: none) of a plain move are what is in force already."""
+    if g == 0:
+        return f is None and state.modal.rapid and not state.title_rapid
+    if state.steady_feed is None:
+        return g < 0 and f is None
+    return f is None or state.feed_word(f) == state.steady_feed
 
 
 def statement_move(state: State, made: Statement) -> Block:
-    """The straight move of a line."""
+    """The straight move of a line, with every check. Raises ProgramError."""
     x, z = on_step(state, made, "X"), on_step(state, made, "Z")
+    state.fast = False
     return line_to(state, made.line, made.part("move"), x, z)
 
 
 def line_to(state: State, line: int, text: str, x: float | None, z: float | None) -> Block:
-    """A straight move to words X and Z in mm, None where there is none."""
+    """A straight move to words X and Z in mm, None where there is none.
+
+    Where ``state.fast`` holds, a move under this state has passed all checks, and none is made but for its
+    length. Raises ProgramError.
+    """
     x0, z0 = state.x, state.z
     go(state, x, z)
-    check_tool(state, line, x, z)
-    check_move(state, line, x0, state.x, hypot(state.x - x0, state.z - z0))
-    warn_of_title_rapid(state, line)
-    modal = state.modal
-    state.blocks += 1
-    # G95's limit depends on a speed that only constant surface speed changes from move to move.
-    state.fast = not modal.css and not modal.coarse and not state.told and not state.shape.active
+    x1, z1 = state.x, state.z
+    if state.fast:
+        if state.cut and abs(x1 - x0) + abs(z1 - z0) > state.slow_length:
+            check_move(state, line, x0, x1, hypot(x1 - x0, z1 - z0))
+        rpm, surface_speed = state.rpm, None
+    else:
+        check_tool(state, line, x, z)
+        check_move(state, line, x0, x1, hypot(x1 - x0, z1 - z0))
+        warn_of_title_rapid(state, line)
+        modal = state.modal
+        rpm, surface_speed = rpm_at(state, x1), modal.surface_speed if modal.css else None
+        # G95's limit depends on a speed that only constant surface speed changes from move to move.
+        state.fast = not modal.css and not modal.coarse and not state.told and not state.shape.active
+    state.blocks = n = state.blocks + 1
+    c = state.c
     return Block(
-        state.blocks, line, state.kind, text, x0, z0, state.c, state.x, state.z, state.c,
-        state.offset_x, state.offset_z, modal, state.feed, state.per_rev, rpm_at(state, state.x),
-        modal.surface_speed if modal.css else None,
+        n, line, state.kind, text, x0, z0, c, x1, z1, c, state.offset_x, state.offset_z,
+        state.modal, state.feed, state.per_rev, rpm, surface_speed,
     )  # fmt: skip
 
 
@@ -121,18 +123,17 @@ def on_step(state: State, made: Statement, letter: str) -> float | None:
 
 def mill_step(state: State, line: int, word: Word) -> float:
     """A length of plane switching in mm, as written: never halved, rounded to the control's step."""
-    value = word.value or 0.0
     step = units.METRIC_STEP if state.modal.metric else _COARSE[state.modal.coarse]
-    count = value / step
-    whole = copysign(floor(abs(count) + 0.5 + WHOLE), count)
-    if abs(count - whole) > max(WHOLE, abs(count) * 1e-12):
-        value = whole * step
+    value, finer = _nearest(step, word.value or 0.0)
+    if finer:
         text = f"{word.text} is finer than the step; {value:.5f} is used."
         state.log.warn(line, word.column, "finer-than-step", text, "Round the number.")
     return value * state.scale_z
 
 
-def rounded(state: State, line: int, text: str, x: float | None, z: float | None) -> PlainMove:
+def rounded(
+    state: State, line: int, text: str, x: float | None, z: float | None
+) -> tuple[float | None, float | None]:
     """X and Z of a line on the control's step, with a warning for each word that was not."""
     new_x, x_finer = (None, False) if x is None else _nearest_step(state, "X", x)
     new_z, z_finer = (None, False) if z is None else _nearest_step(state, "Z", z)
@@ -156,7 +157,10 @@ def step_of(state: State, letter: str) -> float:
 
 def _nearest_step(state: State, letter: str, value: float) -> tuple[float, bool]:
     """The number on the control's step, and whether it was not there before."""
-    step = step_of(state, letter)
+    return _nearest(step_of(state, letter), value)
+
+
+def _nearest(step: float, value: float) -> tuple[float, bool]:
     count = value / step
     whole = copysign(floor(abs(count) + 0.5 + WHOLE), count)  # half a step goes away from zero
     if abs(count - whole) <= max(WHOLE, abs(count) * 1e-12):

@@ -29,10 +29,10 @@ class RestartLines:
     """What the text of a program says about each of its lines."""
 
     def __init__(self, program: Program) -> None:
-        self._steps = program.steps
-        self.count = len(program.steps)
+        self._steps = program.ready
+        self.count = len(program.ready)
         order = attrgetter("first")
-        self.stretches = sorted((*_structured(program), *_open(program.steps)), key=order)
+        self.stretches = sorted((*_structured(program), *_open(program.ready)), key=order)
         self.repeated = sorted(_repeated(program), key=order)
         self._apart = sorted((*self.stretches, *self.repeated), key=order)
 
@@ -77,7 +77,7 @@ def _structured(program: Program) -> Iterator[LineRange]:
         yield LineRange(start + 2, end + 1, f"describes the contour of line {start + 1}.")
     spans = sorted(_subroutines(program))
     at = structure.main_end + 1
-    for start, end, _number in (*spans, (len(program.steps) + 1, 0, 0)):
+    for start, end, _number in (*spans, (len(program.ready) + 1, 0, 0)):
         if at < start:
             yield LineRange(at, start - 1, "stands after the end of the program.")
         at = max(at, end + 1)
@@ -95,7 +95,7 @@ def _subroutines(program: Program) -> Iterator[tuple[int, int, int]]:
     """First line, last line and number of each."""
     structure = program.structure
     for number, start in structure.subroutines.items():
-        yield start + 1, structure.subroutine_ends.get(number, len(program.steps) - 1) + 1, number
+        yield start + 1, structure.subroutine_ends.get(number, len(program.ready) - 1) + 1, number
 
 
 def _open(steps: ReadyLines) -> Iterator[LineRange]:

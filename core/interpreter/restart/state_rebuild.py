@@ -256,7 +256,7 @@ def _left_out(cut: CutRecord, done: int, blocks: int) -> tuple[int, int]:
 
 def _asks(program: Program, lines: RestartLines) -> list[int]:
     """Lines of the main program, loops apart, that ask an input; in order."""
-    steps = enumerate(program.steps, start=1)
+    steps = enumerate(program.ready, start=1)
     asking = [n for n, step in steps if isinstance(step, Statement) and step.flow in {"M95", "M97"}]
     return [number for number in asking if not lines.why_not(number)]
 
