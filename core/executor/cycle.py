@@ -1,18 +1,17 @@
-"""One pass through a program on the machine: motion, standstills, holds and ends, in the order of blocks."""
+"""A cycle: one run of a program on the machine, path sections and standstills in the order of its blocks."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.alarms import CATALOGUE, Code
-from core.executor.controller_motion import ControllerMotion
+from core.alarms import Code
+from core.executor.feed_hold import FeedHold, PathMotion
 from core.executor.machine_context import MachineContext
 from core.executor.path_section import Progress
-from core.executor.raised_alarm import AlarmError, code_of_hold
+from core.executor.raised_alarm import AlarmError
 from core.executor.read_ahead import ProgramPass, ReadAhead
-from core.executor.setpoint_motion import SetpointMotion
 from core.executor.snapshot import State
-from core.executor.standstill import Next, Standstill, Wait, at_speed
+from core.executor.standstill import Next, Standstill
 from core.interpreter.actions import ProgramEnd, ProgramStop, SpindleLock, SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
@@ -23,9 +22,6 @@ _ACTIONS = 50  # carried out in one tick at most
 _BUFFER = 1.0  # of the look-ahead: seconds of motion kept read beyond what is planned
 _GOING = frozenset({State.RUN, State.WAIT})
 _SPINDLE_WORDS = (SpindleStop, SpindleLock, ProgramEnd)  # done whether it turns or not
-
-PathMotion = SetpointMotion | ControllerMotion
-"""What moves the blocks from rest to rest: our own setpoints, or a controller that plans by itself."""
 
 
 class Cycle:
@@ -51,22 +47,18 @@ class Cycle:
         self._feed = ReadAhead(source, context.machine)
         self._state = State.RUN
         self._still = Standstill(context, self._feed)
-        self._spin_up: Wait | None = None  # before motion that was stopped goes on
-        self._held_at = 0.0
-        self._retracting = False
-        self._reason = ""  # why the cycle was held, when not by the button
+        self._hold = FeedHold(context, motion, self._still)
         self.message = ""  # of M00 and M01 while the stop lasts
         self.current: Block | None = None
         self.modal = begins
-        self._behind: Block | None = None  # single block goes on behind this one
 
     @property
     def waiting_for(self) -> str:
         """In words, what the cycle waits for."""
         if self._state is State.HOLD:
-            return self._reason
-        if self._spin_up is not None:
-            return self._spin_up.label()
+            return self._hold.reason
+        if self._hold.spins_up:
+            return self._hold.label
         if self._still.label is not None:
             return self._still.label
         return "FEED OVERRIDE AT 0" if self._state is State.WAIT else ""
@@ -84,30 +76,17 @@ class Cycle:
     # --- what the operator asks ---------------------------------------------------------------------------
 
     def hold(self, reason: str = "", by: str = "", code: Code | None = None) -> None:
-        """Come to rest on the path; in a thread behind its pull-out.
-
-        ``reason`` in the words of the catalogue or with its ``code``; empty where it was pressed, ``by``
-        whom.
-        """
+        """Feed hold; for ``reason``, ``by`` and ``code`` see ``FeedHold.begin``."""
         if self._state in {State.HOLD, State.HOLDING}:
-            self._reason = self._reason or reason
-        if self._state not in _GOING:
-            return
-        self._reason, self._held_at = reason, self._context.now
-        self._context.stopped(*(code_of_hold(reason, by) if code is None else (code, reason.lower())))
-        if self._motion.moving:
-            self._motion.hold()
-            self._change(State.HOLDING)
-        else:
-            self._motion.let_stop()  # of a plan whose queue has run out meanwhile nothing holds any more
-            self._change(State.HOLD)
+            self._hold.reason = self._hold.reason or reason
+        if self._state in _GOING:
+            self._change(self._hold.begin(reason, by, code))
 
     def starve(self, code: Code = "low-queue", detail: str = "") -> None:
         """The queue was not refilled in time: its tail stops the slides, Cycle Start goes on."""
         self._motion.let_stop()
         if self._state in _GOING:
-            self._reason, self._held_at = CATALOGUE[code].text.upper(), self._context.now
-            self._context.stopped(code, detail)
+            self._hold.starve(code, detail)
             self._change(State.HOLDING)
 
     def wait_for(self, label: str) -> None:
@@ -129,18 +108,12 @@ class Cycle:
     def go_on(self, *, starts_spindle: bool = False) -> None:
         """Cycle Start after hold, single block, M00, M01; a spindle that it starts is waited for."""
         stopped = self._state
-        self._reason = self.message = ""
-        within = self._motion.active and not self._motion.complete
-        self._still.done = within
+        self.message = ""
         if stopped is State.PROGRAM_STOP:
             self._feed.pass_stop()
-        self._still.held(self._context.now - self._held_at)
         self._change(State.RUN)
-        self._behind = self.current if stopped is State.BLOCK_END else None
-        self._spin_up = self._slow_spindle() if within or starts_spindle else None
-        self._held_at = self._context.now
-        if within and self._spin_up is None:
-            self._motion.go_on(self._behind)
+        behind = self.current if stopped is State.BLOCK_END else None
+        self._hold.go_on(behind, starts_spindle=starts_spindle)
 
     # --- every tick ---------------------------------------------------------------------------------------
 
@@ -151,7 +124,8 @@ class Cycle:
             self._show(playing)
             self._watch_spindle(playing)
         if self._state is State.HOLDING:
-            self._slow_down()
+            if self._hold.stopped():
+                self._change(State.HOLD)
         elif self._state in _GOING:
             self._read()
             self._advance()
@@ -159,52 +133,20 @@ class Cycle:
     def _read(self) -> None:
         self._feed.pull(_BLOCKS, _BUFFER * self._context.machine.timing.lookahead)
 
-    def _slow_down(self) -> None:
-        self._motion.keep_up()
-        if self._motion.moving:
-            return
-        if self._retracting:
-            self._motion.retracted()
-        else:
-            self._change(State.HOLD)
-
     def _advance(self) -> None:
         if self._context.spindle.waits and self._turns_next():
             self.hold(self._context.spindle.waits)
-        elif self._spin_up is not None:
-            self._speed_up(self._spin_up)
+        elif self._hold.spins_up:
+            self._change(self._hold.spin_up())
         else:
             self._progress()
 
     def _turns_next(self) -> bool:
         """Whether what is done now, or comes next, is meant for a spindle that turns."""
-        within = self._motion.active and not self._motion.complete
-        if within or self._still.label is not None or self._feed.pending:
+        if self._hold.within_section or self._still.label is not None or self._feed.pending:
             return True
         stop = self._feed.stop
         return stop is not None and not isinstance(stop.action, _SPINDLE_WORDS)
-
-    def _slow_spindle(self) -> Wait | None:
-        """What motion waits for that goes on: the spindle, when the program has it turning."""
-        spindle = self._context.spindle
-        if not spindle.asked or spindle.at_speed(self._context.now):
-            return None
-        return at_speed(self._context)
-
-    def _speed_up(self, wait: Wait) -> None:
-        """A spindle that does not come to speed is a hold here: the program is not lost with it."""
-        try:
-            over = wait.over(self._context.now)
-        except AlarmError:
-            self._spin_up = None
-            self.hold("SPINDLE NOT AT ITS SPEED")
-            return
-        if over:
-            self._spin_up = None
-            self._still.held(self._context.now - self._held_at)
-            if self._motion.active and not self._motion.complete:
-                self._motion.go_on(self._behind)
-        self._change(State.RUN if over else State.WAIT)
 
     def _progress(self) -> None:
         match self._motion.progress(self._feed):
@@ -272,12 +214,10 @@ class Cycle:
     def _watch_spindle(self, block: Block) -> None:
         """Feeding by the revolution needs a spindle that turns; a thread that lost it is left at once."""
         spindle = self._context.spindle
-        if not needs_speed(block) or self._retracting or not spindle.lost:
+        if not needs_speed(block) or self._hold.retracting or not spindle.lost:
             return
         if block.kind is Kind.THREAD and not self._motion.release():
-            self._context.say("thread", "spindle lost in a thread")
-            self._motion.retract(block)
-            self._retracting = True
+            self._hold.retract(block)
             self._change(State.HOLDING)
         elif block.kind is Kind.THREAD or (block.per_rev and not block.modal.c_locked) or spindle.fails:
             self.hold(spindle.why_slow or "SPINDLE BELOW HALF ITS SPEED")

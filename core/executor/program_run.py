@@ -8,7 +8,8 @@ from core.executor import start_conditions
 from core.executor.changed_offsets import ChangedOffsets
 from core.executor.control_status import ControlStatus, modal_as_machine, modal_given_up, modal_interrupted
 from core.executor.controller_motion import ControllerMotion
-from core.executor.cycle import Cycle, PathMotion
+from core.executor.cycle import Cycle
+from core.executor.feed_hold import PathMotion
 from core.executor.interrupted_job import GIVEN_UP, InterruptedJob
 from core.executor.interruption_watch import InterruptionWatch, Note
 from core.executor.job import Job, circumstances, outdated
