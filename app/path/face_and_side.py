@@ -64,7 +64,7 @@ class FaceSketch:
             c = block.c0 + (block.c - block.c0) * s
             self.pencil.to(*face_point(x0 + (x1 - x0) * s, c), stroke)
 
-    def trail(self) -> Polyline:
+    def polyline(self) -> Polyline:
         """What was collected."""
         z, x, stroke, first = self.pencil.arrays()
         low_z, high_z, low_x, high_x = bounds_of(z, x, stroke)
@@ -103,7 +103,7 @@ class SideSketch:
         self.pencil.start(block.z0 + dz, -block.c0)
         self.pencil.to(block.z + dz, -block.c, stroke)
 
-    def trail(self) -> Polyline:
+    def polyline(self) -> Polyline:
         """What was collected, unrolled at the diameter of the first plane or at the greatest that is cut."""
         z, x, stroke, first = self.pencil.arrays()
         scale = math.pi * (self._diameter or 2 * max(self._reach, LEAST)) / 360.0
@@ -137,13 +137,13 @@ class TurnedSketch:
         self._face.pencil.end_block()
         self._side.pencil.end_block()
 
-    def trails(self) -> tuple[Polyline | None, Polyline | None]:
+    def polylines(self) -> tuple[Polyline | None, Polyline | None]:
         """Face and side, each where something is to be seen there. Where C only divides it is the face."""
         face, side = self._face, self._side
         divides = not side.wanted and len(face.pencil.z) > 0
         return (
-            face.trail() if face.wanted or divides else None,
-            side.trail() if side.wanted else None,
+            face.polyline() if face.wanted or divides else None,
+            side.polyline() if side.wanted else None,
         )
 
 

@@ -1,4 +1,4 @@
-"""Points of a trail that are worth measuring from: ends, middles of arcs, crossings; and what lies nearest.
+"""Measuring in the path view: points worth measuring from, what lies nearest, what lies between two of them.
 
 No answer here takes longer than a look at every point once, so that a key may ask among a million.
 """
@@ -28,7 +28,7 @@ class PointKind(IntEnum):
 
 
 class Point(NamedTuple):
-    """A point of a trail."""
+    """A point of a polyline."""
 
     z: float
     x: float
@@ -50,24 +50,24 @@ def measuring_words() -> str:
     return tr("ARROWS: NEXT POINT   TAB: ALONG THE PATH   RETURN: HOLD, AND MEASURE FROM THERE   ESC: BACK")
 
 
-MOST_CROSSED = 300  # stretches in sight up to which crossings are looked for
+MOST_CROSSED = 300  # chords in sight up to which crossings are looked for
 APART = 1e-6  # mm: nearer points are one
 WIDE = 1.2  # how far aside of an arrow key's direction a point may lie, of its distance along it
 
 
 class Features:
-    """Of one trail; crossings are those in sight, looked for when another part is looked at."""
+    """Of one path; crossings are those in sight, looked for when another part is looked at."""
 
-    def __init__(self, trail: Polyline) -> None:
-        self._trail = trail
-        self._ends = _ends(trail)
+    def __init__(self, polyline: Polyline) -> None:
+        self._polyline = polyline
+        self._ends = _ends(polyline)
         self._box: Bounds | None = None
         self._crossings = np.zeros((0, 2))
 
     def look(self, box: Bounds) -> None:
         """This part is in sight: (least z, greatest z, least x, greatest x)."""
         if box != self._box:
-            self._box, self._crossings = box, crossings(self._trail, box)
+            self._box, self._crossings = box, crossings(self._polyline, box)
 
     def nearest(self, z: float, x: float) -> Point | None:
         """The point nearest to a place."""
@@ -110,23 +110,23 @@ class Features:
     def _tables(self) -> tuple[tuple[PointKind, Floats], ...]:
         return (
             (PointKind.END, self._ends),
-            (PointKind.CENTRE, self._trail.centres),
+            (PointKind.CENTRE, self._polyline.centres),
             (PointKind.CROSSING, self._crossings),
         )
 
 
-def _ends(trail: Polyline) -> Floats:
+def _ends(polyline: Polyline) -> Floats:
     """Ends of blocks and starts after jumps (n, 2), along the path."""
-    told = trail.stroke == Stroke.JUMP
-    told[trail.first[1:][np.diff(trail.first) > 0] - 1] = True
+    told = polyline.stroke == Stroke.JUMP
+    told[polyline.first[1:][np.diff(polyline.first) > 0] - 1] = True
     index = np.flatnonzero(told)
-    return np.column_stack((trail.z[index], trail.x[index]))
+    return np.column_stack((polyline.z[index], polyline.x[index]))
 
 
-def crossings(trail: Polyline, box: Bounds) -> Floats:
-    """Where stretches within a box cross each other (n, 2); none where there are too many of them."""
-    z0, x0, z1, x1 = trail.z[:-1], trail.x[:-1], trail.z[1:], trail.x[1:]
-    seen = trail.stroke[1:] != Stroke.JUMP
+def crossings(polyline: Polyline, box: Bounds) -> Floats:
+    """Where chords within a box cross each other (n, 2); none where there are too many of them."""
+    z0, x0, z1, x1 = polyline.z[:-1], polyline.x[:-1], polyline.z[1:], polyline.x[1:]
+    seen = polyline.stroke[1:] != Stroke.JUMP
     seen &= (np.maximum(z0, z1) >= box[0]) & (np.minimum(z0, z1) <= box[1])
     seen &= (np.maximum(x0, x1) >= box[2]) & (np.minimum(x0, x1) <= box[3])
     index = np.flatnonzero(seen)
@@ -143,10 +143,10 @@ def crossings(trail: Polyline, box: Bounds) -> Floats:
     return np.column_stack((z0[a] + s * az, x0[a] + s * ax))[met]
 
 
-def point_at(trail: Polyline, z: float, x: float, within: float) -> int | None:
-    """The point that ends the stretch nearest to a place, no farther than ``within`` mm; None: none is."""
-    z0, x0, z1, x1 = trail.z[:-1], trail.x[:-1], trail.z[1:], trail.x[1:]
-    near = trail.stroke[1:] != Stroke.JUMP
+def point_at(polyline: Polyline, z: float, x: float, within: float) -> int | None:
+    """The point that ends the chord nearest to a place, no farther than ``within`` mm; None: none is."""
+    z0, x0, z1, x1 = polyline.z[:-1], polyline.x[:-1], polyline.z[1:], polyline.x[1:]
+    near = polyline.stroke[1:] != Stroke.JUMP
     near &= (np.maximum(z0, z1) >= z - within) & (np.minimum(z0, z1) <= z + within)
     near &= (np.maximum(x0, x1) >= x - within) & (np.minimum(x0, x1) <= x + within)
     index = np.flatnonzero(near)

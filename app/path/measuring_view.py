@@ -27,7 +27,7 @@ class Measure:
     def __init__(self, pane: Pane) -> None:
         self.pane = pane
         self._free = not pane.by_hand  # whether the view goes back to the whole part in the end
-        self._features = Features(pane.trail)
+        self._features = Features(pane.polyline)
         self.first: Point | None = None
         self.second: Point | None = None
         self.cursor = self._begin()
@@ -90,7 +90,7 @@ class Measure:
 
     def renew(self) -> None:
         """The pane shows another path now; what is held stays where it is."""
-        self._features = Features(self.pane.trail)
+        self._features = Features(self.pane.polyline)
 
     def _jump(self, way: tuple[int, int]) -> None:
         self._features.look(self.pane.sight())
@@ -113,7 +113,7 @@ class Measure:
     def rows(self, metric: bool) -> list[measuring.Row]:
         """The figures: where the cross stands, or what lies between the held point and it."""
         start, end = self.first, self.second or self.cursor
-        aspect, scale = self.pane.aspect, self.pane.trail.round
+        aspect, scale = self.pane.aspect, self.pane.polyline.round
         if aspect is Aspect.PATH:
             place = measuring.place_on_path(end, metric)
             return place + (measuring.between_on_path(start, end, metric) if start else [])

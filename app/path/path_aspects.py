@@ -54,7 +54,7 @@ def tip_of(snapshot: Snapshot, job: Job | None = None) -> Tip:
     return tip._replace(block=found.block, stood=(found.where[1] - tool.z, found.where[0] - tool.x))
 
 
-def trail_of(picture: Picture | None, aspect: Aspect) -> Polyline | None:
+def polyline_of(picture: Picture | None, aspect: Aspect) -> Polyline | None:
     """What is to be seen from there."""
     if picture is None or aspect is Aspect.PATH:
         return picture
@@ -63,7 +63,7 @@ def trail_of(picture: Picture | None, aspect: Aspect) -> Polyline | None:
 
 def views_of(picture: Picture) -> list[View]:
     """What the view key goes through: the path with what is cut at C beside it, then each alone."""
-    more = [aspect for aspect in (Aspect.FACE, Aspect.SIDE) if trail_of(picture, aspect) is not None]
+    more = [aspect for aspect in (Aspect.FACE, Aspect.SIDE) if polyline_of(picture, aspect) is not None]
     both = [(Aspect.PATH, aspect) for aspect in more]
     return [*both, *((aspect,) for aspect in more), (Aspect.PATH,)]
 

@@ -1,11 +1,11 @@
-"""Everything that a path view shows, from back to front."""
+"""Marks of the path view: centre lines, legs of an approach, what lines mean, a scale, buttons."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QFontMetricsF, QPainter, QPen, QPolygonF
@@ -14,17 +14,12 @@ from app.desk import formats
 from app.desk.translation import tr
 from app.path.measuring import Apart
 from app.path.path_aspects import Aspect, DrawnLeg
-from app.path.path_layers_view import Frame, Ink, scale_length
+from app.path.path_layers_view import Ink
+from app.path.path_pane_view import Pane
+from app.path.path_projection import Projection, scale_length
 from app.path.polyline import Polyline
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Press
-
-if TYPE_CHECKING:
-    from app.path.path_pane_view import Pane
-    from app.path.path_view import PathView
-
-# --- What lies over the panes: buttons, what the lines mean, a scale in each pane.
-
 
 BUTTON = (6.6, 6.6, 7.0)  # units: width, height, from one to the next; a fingertip
 LOW = 5.0  # units: from one to the next at least
@@ -91,11 +86,11 @@ def draw_legend(painter: QPainter, look: Look, room: QRectF, entries: Sequence[L
         x += 5.0 * u + wide
 
 
-def draw_scale(painter: QPainter, look: Look, room: QRectF, frame: Frame, metric: bool) -> None:
+def draw_scale(painter: QPainter, look: Look, room: QRectF, projection: Projection, metric: bool) -> None:
     """A round length at the lower right of a pane, in the unit in force."""
     u = look.u
-    mm, text = scale_length(min(14 * u, 0.2 * room.width()) / frame.scale, metric)
-    wide = mm * frame.scale
+    mm, text = scale_length(min(14 * u, 0.2 * room.width()) / projection.scale, metric)
+    wide = mm * projection.scale
     right, y = room.right() - 1.4 * u, room.bottom() - 1.0 * u
     painter.setPen(look.pen("soft", 0.16))
     for a, b in (((-wide, 0.0), (0.0, 0.0)), ((-wide, -0.7), (-wide, 0.0)), ((0.0, -0.7), (0.0, 0.0))):
@@ -125,9 +120,6 @@ def draw_nothing(painter: QPainter, look: Look, room: QRectF, why: str) -> None:
     painter.setFont(look.fit(why, 2.0, room.width()))
     painter.setBrush(Qt.BrushStyle.NoBrush)
     put(painter, room, CENTRE, why)
-
-
-# --- The way back into a program, drawn over the path: legs in their order, rapids dashed, feeds solid.
 
 
 def draw_approach(painter: QPainter, look: Look, pane: Pane, legs: Sequence[DrawnLeg]) -> None:
@@ -177,46 +169,8 @@ def _label(painter: QPainter, look: Look, at: QPointF, text: str) -> None:
     put(painter, box, CENTRE, text)
 
 
-def draw_view(painter: QPainter, view: PathView) -> None:
-    """Panes, title, buttons, legend; a sentence where there is nothing."""
-    look = view.look
-    if not view.panes:
-        why = tr("The path is shown when a program is loaded.")
-        draw_nothing(painter, look, view.inside(), why)
-        return
-    for pane in view.panes:
-        _pane(painter, view, pane)
-    if view.ruler is not None:  # beside what is measured, where there is another pane
-        beside = next((pane for pane in view.panes if pane is not view.ruler.pane), view.ruler.pane)
-        view.ruler.draw_figures(painter, beside.room, view.in_mm)
-    _title(painter, view)
-    draw_buttons(painter, look, view.room(), _buttons(view), view.place)
-    legend = compared_legend(look) if view.comparing else run_legend(look)
-    draw_legend(painter, look, view.panes[0].room, legend)
-    apart = view.panes[0].apart
-    if apart is not None:
-        draw_words(painter, look, view.panes[0].room, _apart_words(apart, view.in_mm))
-
-
-def _pane(painter: QPainter, view: PathView, pane: Pane) -> None:
-    painter.save()
-    painter.setClipRect(pane.room)
-    painter.translate(pane.room.topLeft())
-    pane.draw(painter)
-    if view.legs and pane.aspect is Aspect.PATH:
-        draw_approach(painter, view.look, pane, view.legs)
-    if view.ruler is not None and view.ruler.pane is pane:
-        view.ruler.draw(painter)
-    painter.restore()
-    if pane.frame is not None:
-        draw_scale(painter, view.look, pane.room, pane.frame, view.in_mm)
-    if pane.aspect is not Aspect.PATH:
-        draw_words(painter, view.look, pane.room, _name_of(pane, view.in_mm))
-        if pane is not view.panes[0]:
-            draw_border(painter, view.look, pane.room)
-
-
-def _apart_words(apart: Apart, in_mm: bool) -> str:
+def apart_words(apart: Apart, in_mm: bool) -> str:
+    """How far two pictures are apart."""
     if not apart.distance:
         return tr("NOTHING THAT IS CUT HAS CHANGED")
     length = formats.length(apart.distance, in_mm)
@@ -225,51 +179,32 @@ def _apart_words(apart: Apart, in_mm: bool) -> str:
     )
 
 
-def _name_of(pane: Pane, in_mm: bool) -> str:
+def pane_words(pane: Pane, in_mm: bool) -> str:
+    """Which side of the part a pane shows."""
     if pane.aspect is Aspect.FACE:
         return tr("FACE  ·  SEEN FROM THE TAILSTOCK")
-    diameter = formats.length(pane.trail.round * 360.0 / math.pi, in_mm)
+    diameter = formats.length(pane.polyline.round * 360.0 / math.pi, in_mm)
     return tr("SIDE  ·  UNROLLED AT Ø {diameter}").format(diameter=diameter)
-
-
-def _buttons(view: PathView) -> list[Button]:
-    button = Button
-    found = [
-        button("+", lambda: view.zoom(1)),
-        button("−", lambda: view.zoom(-1)),
-        button(tr("FIT"), view.fit),
-        button(tr("MEAS"), view.measure, view.ruler is not None),
-    ]
-    if view.several:
-        found.append(button(tr("VIEW"), view.next_view))
-    return found
-
-
-def _title(painter: QPainter, view: PathView) -> None:
-    """The panes have covered the lower half of it."""
-    look, u = view.look, view.look.u
-    wide = view.width() - 4 * u
-    painter.setFont(look.fit(view.title, 1.7, wide, bold=True))
-    painter.setPen(look.colour("soft"))
-    put(painter, QRectF(2.2 * u, 0, wide, 2.0 * u), LEFT, view.title)
-
-
-# --- What stands still in a pane: centre lines, the circle of the part with C round it, lines along the side.
 
 
 QUARTERS = (0, 90, 180, 270)
 TIGHT = 9.0  # units: C lines of the side stand no nearer to each other
 
 
-def draw_scenery(painter: QPainter, look: Look, aspect: Aspect, frame: Frame, trail: Polyline) -> None:
-    """Under everything that moves; the painter's origin is the corner of the pane."""
+def draw_centre_lines(
+    painter: QPainter, look: Look, aspect: Aspect, projection: Projection, polyline: Polyline
+) -> None:
+    """Centre lines, the circle of the part with C round it, lines along the side: under all that moves.
+
+    The painter's origin is the corner of the pane.
+    """
     if aspect is Aspect.PATH:
-        _cross(painter, look, frame)
+        _cross(painter, look, projection)
     elif aspect is Aspect.FACE:
-        _cross(painter, look, frame)
-        _ring(painter, look, frame, trail)
+        _cross(painter, look, projection)
+        _ring(painter, look, projection, polyline)
     else:
-        _degrees(painter, look, frame, trail)
+        _degrees(painter, look, projection, polyline)
 
 
 def _pen(look: Look, dashes: list[float]) -> QPen:
@@ -278,21 +213,21 @@ def _pen(look: Look, dashes: list[float]) -> QPen:
     return pen
 
 
-def _cross(painter: QPainter, look: Look, frame: Frame) -> None:
+def _cross(painter: QPainter, look: Look, projection: Projection) -> None:
     painter.setPen(_pen(look, [14, 4, 2, 4]))
-    row = round(float(frame.down(0.0))) + 0.5
-    painter.drawLine(QPointF(0, row), QPointF(frame.width, row))
-    column = round(float(frame.across(0.0))) + 0.5
+    row = round(float(projection.down(0.0))) + 0.5
+    painter.drawLine(QPointF(0, row), QPointF(projection.width, row))
+    column = round(float(projection.across(0.0))) + 0.5
     painter.setPen(_pen(look, [2, 6]))
-    painter.drawLine(QPointF(column, 0), QPointF(column, frame.height))
+    painter.drawLine(QPointF(column, 0), QPointF(column, projection.height))
 
 
-def _ring(painter: QPainter, look: Look, frame: Frame, trail: Polyline) -> None:
+def _ring(painter: QPainter, look: Look, projection: Projection, polyline: Polyline) -> None:
     """The circle that holds all cuts, and where on it the tool is at C 0, 90, 180 and 270."""
     u = look.u
-    reach = trail.bounds[1]
-    middle = QPointF(float(frame.across(0.0)), float(frame.down(0.0)))
-    radius = reach * frame.scale + 0.9 * u
+    reach = polyline.bounds[1]
+    middle = QPointF(float(projection.across(0.0)), float(projection.down(0.0)))
+    radius = reach * projection.scale + 0.9 * u
     painter.setBrush(Qt.BrushStyle.NoBrush)
     painter.setPen(_pen(look, [3, 4]))
     painter.drawEllipse(middle, radius, radius)
@@ -304,20 +239,23 @@ def _ring(painter: QPainter, look: Look, frame: Frame, trail: Polyline) -> None:
         put(painter, QRectF(place.x() - 3 * u, place.y() - u, 6 * u, 2 * u), CENTRE, f"C{degrees}")
 
 
-def _degrees(painter: QPainter, look: Look, frame: Frame, trail: Polyline) -> None:
+def _degrees(painter: QPainter, look: Look, projection: Projection, polyline: Polyline) -> None:
     """Lines along Z at even angles, with their C; whole turns are as strong as a centre line."""
-    u, scale = look.u, trail.round
-    step = next((s for s in (15, 30, 45, 90, 180, 360) if s * scale * frame.scale >= TIGHT * u), 360)
-    top, bottom = (frame.x - frame.height / 2 / frame.scale, frame.x + frame.height / 2 / frame.scale)
+    u, scale = look.u, polyline.round
+    step = next((s for s in (15, 30, 45, 90, 180, 360) if s * scale * projection.scale >= TIGHT * u), 360)
+    top, bottom = (
+        projection.x - projection.height / 2 / projection.scale,
+        projection.x + projection.height / 2 / projection.scale,
+    )
     painter.setFont(look.font(1.5))
     for number in range(math.ceil(-bottom / scale / step), math.floor(-top / scale / step) + 1):
         degrees = number * step
-        row = round(float(frame.down(-degrees * scale))) + 0.5
+        row = round(float(projection.down(-degrees * scale))) + 0.5
         painter.setPen(_pen(look, [14, 4, 2, 4] if degrees % 360 == 0 else [2, 6]))
-        painter.drawLine(QPointF(0, row), QPointF(frame.width, row))
+        painter.drawLine(QPointF(0, row), QPointF(projection.width, row))
         painter.setPen(look.colour("soft"))
         text = f"C{formats.fixed(degrees, 0)}"
         put(painter, QRectF(0.8 * u, row - 2.0 * u, 8 * u, 2 * u), LEFT, text)
-    column = round(float(frame.across(0.0))) + 0.5
+    column = round(float(projection.across(0.0))) + 0.5
     painter.setPen(_pen(look, [2, 6]))
-    painter.drawLine(QPointF(column, 0), QPointF(column, frame.height))
+    painter.drawLine(QPointF(column, 0), QPointF(column, projection.height))

@@ -1,4 +1,4 @@
-"""One look at one trail: what part of it is seen, its cached images, where the tool stands in it."""
+"""The panes of the path view: what part of a path each shows, zoomed and panned, and where the tool is."""
 
 from __future__ import annotations
 
@@ -9,44 +9,84 @@ from PySide6.QtGui import QPainter, QPolygonF
 
 from app.path.face_and_side import face_point
 from app.path.measuring import farthest, point_at
-from app.path.path_aspects import Aspect, Tip, View, trail_of, views_of
-from app.path.path_layers_view import Frame, Ink, Layers, boxed, fitted, polygon, runs, stroke_run, travelled
-from app.path.path_marks_view import draw_scenery
+from app.path.path_aspects import Aspect, Tip, View, polyline_of, views_of
+from app.path.path_layers_view import Ink, Layers, polygon, stroke_run
 from app.path.path_picture import Picture
+from app.path.path_projection import Projection, boxed, fitted, runs, travelled
 from app.path.polyline import Bounds, Polyline
 from app.screen.look import Look
-
-# --- What part of a plane is seen: the whole, or nearer and moved by hand; and where points of it are then.
-
 
 ZOOM_STEP = 1.25
 PAN_STEP = 0.1  # of the width
 MARGIN = 2.8  # units round what is fitted
 
 Place = tuple[float, float]
+PICK = 1.6  # units: how near a finger must come to a line to mean it
+RING = 6.0  # units round a face: the circle of the part and its angles stand there
+MOST_MARKED = 20_000  # points drawn thick, of a line that makes more of them
 
 
-class Sight:
-    """Places are the widget's pixels; z and x are those of the plane."""
+class Pane:
+    """A part of the path view; places are the widget's pixels, everything drawn is the pane's own.
 
-    def __init__(self, look: Look) -> None:
-        self.look = look
+    z and x are those of the plane that is looked at.
+    """
+
+    def __init__(
+        self, look: Look, aspect: Aspect, polyline: Polyline, before: Polyline | None = None
+    ) -> None:
+        self.look, self.aspect = look, aspect
         self.room = QRectF()
         self.also: tuple[Place, ...] = ()  # points that are to be seen with the whole
         self.by_hand = False  # somebody has zoomed or panned
-        self.frame: Frame | None = None
+        self.projection: Projection | None = None
+        self.polyline, self.before = polyline, before
+        self.apart = farthest(before, polyline) if before is not None else None
+        self._layers: Layers | None = None
+        self._block = 0
+        self._place: Place | None = None  # of the tip; nobody has told it yet
+        self._stood: Place | None = None
+        self.marked: list[tuple[int, int]] = []  # ranges of points
 
-    def whole(self) -> Frame:
-        """What is seen when nobody looks at a part of it."""
-        raise NotImplementedError
+    # --- what is seen --------------------------------------------------------------------------------
 
-    def wanted_near(self) -> Place | None:
-        """What one wants to see nearer; None: the middle."""
-        return None
+    def take(self, polyline: Polyline, before: Polyline | None) -> None:
+        """Another path in the same place; what is looked at stays if it was chosen by hand."""
+        self.polyline, self.before, self._block, self.marked = polyline, before, 0, []
+        self.apart = farthest(before, polyline) if before is not None else None
+        if self.by_hand and self.projection is not None:
+            self.look_at(self.projection)
+        else:
+            self.fit()
 
-    def look_at(self, frame: Frame) -> None:
-        """This is seen from now on."""
-        self.frame = frame
+    def whole(self) -> Projection:
+        """Everything, the path before a change too."""
+        fit = boxed if self.aspect is Aspect.SIDE else fitted
+        bounds = self.polyline.bounds
+        if self.before is not None:
+            bounds = _around(bounds, self.before.bounds)
+        for z, x in self.also:
+            bounds = _around(bounds, (z, z, x, x))
+        margin = (RING if self.aspect is Aspect.FACE else MARGIN) * self.look.u
+        return fit(bounds, int(self.room.width()), int(self.room.height()), margin)
+
+    def restart(self) -> None:
+        """The same again, in other colours."""
+        if self.projection is not None:
+            self.look_at(self.projection)
+
+    def look_at(self, projection: Projection) -> None:
+        """This is seen from now on, drawn anew."""
+        self.projection = projection
+        self._layers = Layers(self.look, self.polyline, projection, self.before)
+        self._layers.want(self._block - 1)
+        self._layers.advance()
+
+    def block_at(self, at: QPointF) -> int:
+        """The block that was drawn at a place of the widget, or very near to it; 0: none was."""
+        z, x = self.here(at)
+        point = point_at(self.polyline, z, x, PICK * self.look.u * self.pixel)
+        return 0 if point is None else self.polyline.block_of_point(point)
 
     # --- looking around ------------------------------------------------------------------------------
 
@@ -65,27 +105,26 @@ class Sight:
         """Points of the plane that are to be seen with the whole part."""
         if tuple(places) != self.also:
             self.also = tuple(places)
-            if not self.by_hand and self.frame is not None:
+            if not self.by_hand and self.projection is not None:
                 self.fit()
 
     def zoom(self, steps: int, at: QPointF | None = None) -> None:
-        """Nearer (positive) or farther, about a point of the widget, what is wanted near or the middle."""
+        """Nearer (positive) or farther, about a point of the widget, the greatest change or the middle."""
         self.magnify(ZOOM_STEP**steps, at if at is not None else self._middle())
 
     def _middle(self) -> QPointF:
-        wanted = self.wanted_near()
-        if wanted is not None and self.frame is not None:
-            at = self.room.topLeft() + self.spot(*wanted)
+        if self.apart is not None and self.projection is not None:
+            at = self.room.topLeft() + self.spot(self.apart.z, self.apart.x)
             if self.room.contains(at):
                 return at
         return self.room.center()
 
     def magnify(self, factor: float, at: QPointF) -> None:
         """Nearer by a factor; what is at the point stays there."""
-        if self.frame is not None:
+        if self.projection is not None:
             self.by_hand = True
             at = at - self.room.topLeft()
-            self.look_at(self.frame.zoomed(factor, at.x(), at.y()))
+            self.look_at(self.projection.zoomed(factor, at.x(), at.y()))
 
     def pan(self, across: int, down: int) -> None:
         """Look further right and down by so many steps."""
@@ -94,28 +133,28 @@ class Sight:
 
     def drag(self, by: QPointF) -> None:
         """The picture goes along with the finger."""
-        if self.frame is not None:
+        if self.projection is not None:
             self.by_hand = True
-            self.look_at(self.frame.moved(by.x(), by.y()))
+            self.look_at(self.projection.moved(by.x(), by.y()))
 
     # --- places --------------------------------------------------------------------------------------
 
     @property
     def pixel(self) -> float:
         """How many mm one is."""
-        return 1.0 / self.frame.scale if self.frame is not None else 1.0
+        return 1.0 / self.projection.scale if self.projection is not None else 1.0
 
     def spot(self, z: float, x: float) -> QPointF:
         """Where a point of the plane is in the pane; pixels from its corner."""
-        assert self.frame is not None
-        return QPointF(float(self.frame.across(z)), float(self.frame.down(x)))
+        assert self.projection is not None
+        return QPointF(float(self.projection.across(z)), float(self.projection.down(x)))
 
     def here(self, at: QPointF) -> Place:
         """The plane's z and x at a place of the widget."""
-        frame, room = self.frame, self.room
-        assert frame is not None
-        z = frame.z + (at.x() - room.x() - frame.width / 2) / frame.scale
-        return z, frame.x + (at.y() - room.y() - frame.height / 2) / frame.scale
+        projection, room = self.projection, self.room
+        assert projection is not None
+        z = projection.z + (at.x() - room.x() - projection.width / 2) / projection.scale
+        return z, projection.x + (at.y() - room.y() - projection.height / 2) / projection.scale
 
     def sight(self) -> Bounds:
         """What part of the plane is seen: least and greatest z, least and greatest x."""
@@ -133,74 +172,10 @@ class Sight:
         if not over.isNull():
             self.drag(-over)
 
-
-PICK = 1.6  # units: how near a finger must come to a line to mean it
-RING = 6.0  # units round a face: the circle of the part and its angles stand there
-MOST_MARKED = 20_000  # points drawn thick, of a line that makes more of them
-
-
-class Pane(Sight):
-    """A part of the path view; places are the widget's pixels, everything drawn is the pane's own."""
-
-    def __init__(self, look: Look, aspect: Aspect, trail: Polyline, before: Polyline | None = None) -> None:
-        super().__init__(look)
-        self.aspect = aspect
-        self.trail, self.before = trail, before
-        self.apart = farthest(before, trail) if before is not None else None
-        self._layers: Layers | None = None
-        self._block = 0
-        self._place: Place | None = None  # of the tip; nobody has told it yet
-        self._stood: Place | None = None
-        self.marked: list[tuple[int, int]] = []  # ranges of points
-
-    # --- what is seen --------------------------------------------------------------------------------
-
-    def take(self, trail: Polyline, before: Polyline | None) -> None:
-        """Another path in the same place; what is looked at stays if it was chosen by hand."""
-        self.trail, self.before, self._block, self.marked = trail, before, 0, []
-        self.apart = farthest(before, trail) if before is not None else None
-        if self.by_hand and self.frame is not None:
-            self.look_at(self.frame)
-        else:
-            self.fit()
-
-    def whole(self) -> Frame:
-        """Everything, the path before a change too."""
-        fit = boxed if self.aspect is Aspect.SIDE else fitted
-        bounds = self.trail.bounds
-        if self.before is not None:
-            bounds = _around(bounds, self.before.bounds)
-        for z, x in self.also:
-            bounds = _around(bounds, (z, z, x, x))
-        margin = (RING if self.aspect is Aspect.FACE else MARGIN) * self.look.u
-        return fit(bounds, int(self.room.width()), int(self.room.height()), margin)
-
-    def wanted_near(self) -> Place | None:
-        """The greatest change."""
-        return (self.apart.z, self.apart.x) if self.apart is not None else None
-
-    def restart(self) -> None:
-        """The same again, in other colours."""
-        if self.frame is not None:
-            self.look_at(self.frame)
-
-    def look_at(self, frame: Frame) -> None:
-        """This is seen from now on, drawn anew."""
-        super().look_at(frame)
-        self._layers = Layers(self.look, self.trail, frame, self.before)
-        self._layers.want(self._block - 1)
-        self._layers.advance()
-
-    def block_at(self, at: QPointF) -> int:
-        """The block that was drawn at a place of the widget, or very near to it; 0: none was."""
-        z, x = self.here(at)
-        point = point_at(self.trail, z, x, PICK * self.look.u * self.pixel)
-        return 0 if point is None else self.trail.block_of_point(point)
-
     # --- what moves ----------------------------------------------------------------------------------
 
     def stand(self, block: int, place: Place | None, stood: Place | None = None) -> None:
-        """The tip, in the trail's own z and x; ``stood``: where the block was broken off."""
+        """The tip, in the polyline's own z and x; ``stood``: where the block was broken off."""
         if self._layers is not None and block != self._block:
             self._layers.want(block - 1)
         self._block, self._place = block, place
@@ -208,8 +183,10 @@ class Pane(Sight):
 
     def end_of(self, block: int) -> Place | None:
         """Where a block ends, or the last one before it that draws anything here."""
-        at = max(0, self.trail.points_done(block) - 1)
-        return (float(self.trail.z[at]), float(self.trail.x[at])) if len(self.trail.z) else self._place
+        at = max(0, self.polyline.points_done(block) - 1)
+        return (
+            (float(self.polyline.z[at]), float(self.polyline.x[at])) if len(self.polyline.z) else self._place
+        )
 
     def place_of(self, tip: Tip) -> Place | None:
         """Where the machine's tip is seen here; a face keeps what it showed while C turns as the spindle."""
@@ -219,11 +196,11 @@ class Pane(Sight):
             return self._place
         if self.aspect is Aspect.FACE:
             return face_point(tip.x, tip.c, tip.h)
-        return tip.z, -tip.c * self.trail.round
+        return tip.z, -tip.c * self.polyline.round
 
     def mark(self, blocks: list[tuple[int, int]]) -> None:
         """Draw these blocks thick: ranges of numbers from 1, the last one in them."""
-        first = self.trail.first
+        first = self.polyline.first
         ranges = [(int(first[a - 1]), int(first[b])) for a, b in blocks]
         self.marked = [(a, min(b, a + MOST_MARKED)) for a, b in ranges if b > a]
 
@@ -238,37 +215,39 @@ class Pane(Sight):
 
     # --- drawing -------------------------------------------------------------------------------------
 
-    def draw(self, painter: QPainter) -> None:
-        """Image, scenery, the marked line, what is under way, the tip. The painter's origin is the corner."""
-        frame, layers = self.frame, self._layers
-        if frame is None or layers is None:
+    def draw_path(self, painter: QPainter) -> None:
+        """What is to come and what is done, as cached. The painter's origin is the corner of the pane."""
+        if self._layers is not None:
+            painter.drawImage(QPointF(0, 0), self._layers.image)
+
+    def draw_run(self, painter: QPainter) -> None:
+        """The marked line, what is under way and the tip; of two pictures the greatest change."""
+        if self.projection is None:
             return
-        painter.drawImage(QPointF(0, 0), layers.image)
-        draw_scenery(painter, self.look, self.aspect, frame, self.trail)
-        self._draw_marked(painter, frame)
+        self._draw_marked(painter, self.projection)
         if self.before is None:
-            self._under_way(painter, frame)
+            self._under_way(painter, self.projection)
             self._tool_tip(painter)
         elif self.apart is not None and self.apart.distance:
             painter.setPen(self.look.pen("text", 0.2))
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawEllipse(self.spot(self.apart.z, self.apart.x), 1.4 * self.look.u, 1.4 * self.look.u)
 
-    def _draw_marked(self, painter: QPainter, frame: Frame) -> None:
+    def _draw_marked(self, painter: QPainter, projection: Projection) -> None:
         pens = Ink.MARKED.pens(self.look)
         painter.setBrush(Qt.BrushStyle.NoBrush)
         for start, end in self.marked:
-            for run in runs(self.trail, frame, start, end):
+            for run in runs(self.polyline, projection, start, end):
                 painter.setPen(pens[run.stroke])
                 stroke_run(painter, run)
 
-    def _under_way(self, painter: QPainter, frame: Frame) -> None:
+    def _under_way(self, painter: QPainter, projection: Projection) -> None:
         """The part of the present block that lies behind the tip."""
         if not self._block or self._place is None:
             return
         if self._stood is not None and self.aspect is not Aspect.PATH:
             return  # on a face or a side nobody knows any more where C stood
-        found = travelled(self.trail, frame, self._block, *(self._stood or self._place))
+        found = travelled(self.polyline, projection, self._block, *(self._stood or self._place))
         if found is not None:
             painter.setPen(Ink.DONE.pens(self.look)[found.stroke])
             painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -293,9 +272,6 @@ def _around(one: Bounds, other: Bounds) -> Bounds:
     """The box round two boxes."""
     low, high = tuple(map(min, one, other)), tuple(map(max, one, other))
     return low[0], high[1], low[2], high[3]
-
-
-# --- Which panes stand side by side, and what each of them shows.
 
 
 LEAST = 40  # pixels: in less room nothing is laid out
@@ -358,13 +334,13 @@ class Panes:
         kept = {pane.aspect: pane for pane in self.now} if self._keeps else {}
         panes = []
         for aspect in aspects:
-            trail, before = trail_of(self.picture, aspect), trail_of(self.before, aspect)
-            assert trail is not None
+            polyline, before = polyline_of(self.picture, aspect), polyline_of(self.before, aspect)
+            assert polyline is not None
             pane = kept.get(aspect)
             if pane is None:
-                pane = Pane(self._look, aspect, trail, before)
+                pane = Pane(self._look, aspect, polyline, before)
             else:
-                pane.take(trail, before)
+                pane.take(polyline, before)
             panes.append(pane)
         self.now = panes
         self.lay(self._room)

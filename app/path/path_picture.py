@@ -123,7 +123,7 @@ class Sketch:
     def picture(self) -> Picture:
         """The picture of what was added."""
         z, x, stroke, first = self._pencil.arrays()
-        face, side = self._turned.trails() if self._turned is not None else (None, None)
+        face, side = self._turned.polylines() if self._turned is not None else (None, None)
         return Picture(
             z=z,
             x=x,

@@ -3,58 +3,63 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
 from PySide6.QtCore import QEvent, QPointF, Qt
 from PySide6.QtGui import QNativeGestureEvent, QTouchEvent
 
-if TYPE_CHECKING:
-    from app.path.path_pane_view import Pane
-    from app.path.path_view import PathView
+from app.path.path_pane_view import Pane
+from app.screen.look import Look
 
 STILL = 0.8  # units: a press that moves less is a touch, not a drag
 NEAR = 8.0  # pixels: fingers that lie closer tell no spread
 
 
+@dataclass(slots=True, eq=False)
 class Pointer:
-    """Tells drags from touches; the view says what a touch means."""
+    """Tells drags from touches. ``pressed`` says on which pane the pointer went down; None: on none."""
 
-    def __init__(self, view: PathView) -> None:
-        self._view = view
-        self._pane: Pane | None = None  # that was pressed
-        self._down = self._last = QPointF()
-        self._dragging = False
-        self._spread: float | None = None  # of two fingers, pixels; None until there are two
+    look: Look
+    pressed: Callable[[QPointF], Pane | None]
+    hovers: Callable[[QPointF], None]  # it moves over the view and is not held down
+    dragged: Callable[[Pane, QPointF], None]  # by so many pixels
+    touched: Callable[[Pane, QPointF], None]  # it came up where it went down
+    magnify: Callable[[float, QPointF], None]  # by two fingers, about a point
+    _pane: Pane | None = None  # that was pressed
+    _down: QPointF = field(default_factory=QPointF)
+    _last: QPointF = field(default_factory=QPointF)
+    _dragging: bool = False
+    _spread: float | None = None  # of two fingers, pixels; None until there are two
 
     def press(self, at: QPointF) -> None:
         """It went down: on a button of the view, or on a pane."""
-        self._pane = None if self._view.touch(at) else self._view.pane_at(at)
+        self._pane = self.pressed(at)
         self._down = self._last = at
         self._dragging = False
 
     def move(self, at: QPointF) -> None:
         """It moves; held down it takes the picture along."""
         if self._pane is None:
-            self._view.ruling.point(at)
+            self.hovers(at)
             return
         if not self._dragging:
-            self._dragging = (at - self._down).manhattanLength() > STILL * self._view.look.u
+            self._dragging = (at - self._down).manhattanLength() > STILL * self.look.u
         if self._dragging:
-            self._pane.drag(at - self._last)
-            self._view.update()
+            self.dragged(self._pane, at - self._last)
         self._last = at
 
     def release(self, at: QPointF) -> None:
         """It came up again; where it has not moved something was touched."""
         pane, self._pane = self._pane, None
         if pane is not None and not self._dragging:
-            self._view.ruling.touched(pane, at)
+            self.touched(pane, at)
 
     def takes(self, event: QEvent) -> bool:
         """Fingers on the screen or on a touch pad; whether the event was one of theirs."""
         if isinstance(event, QNativeGestureEvent):
             if event.gestureType() == Qt.NativeGestureType.ZoomNativeGesture:
-                self._view.magnify(1.0 + event.value(), event.position())
+                self.magnify(1.0 + event.value(), event.position())
             return True
         if not isinstance(event, QTouchEvent):
             return False
@@ -86,4 +91,4 @@ class Pointer:
         spread, before = max(NEAR, math.hypot(way.x(), way.y())), self._spread
         self._spread = spread
         if before is not None and before != spread:
-            self._view.magnify(spread / before, (one + other) / 2)
+            self.magnify(spread / before, (one + other) / 2)

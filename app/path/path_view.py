@@ -2,77 +2,76 @@
 
 From above X+ is down, Z+ to the right, both sides of X0; beside it what is cut with C locked, on the face of
 the part or on its side unrolled. Feed it with ``show_picture`` or ``show_compared``, tell ``show_tip`` where
-the machine is, and call ``advance`` once a frame. Nothing here computes but where things stand on the screen;
-numpy comes with the first picture.
+the machine is, and call ``advance`` once a frame. Nothing here computes but where things stand on the screen.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import QFocusEvent, QKeyEvent, QMouseEvent, QPainter, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.path.path_aspects import Aspect, Tip
+from app.desk.translation import tr
+from app.path import path_marks_view as marks
+from app.path.measuring_view import Measure
+from app.path.path_aspects import Aspect, DrawnLeg, Tip
+from app.path.path_pane_view import Pane, Panes, Place
+from app.path.path_picture import Picture
 from app.path.path_pointer_view import Pointer
-from app.screen.look import Look
+from app.path.path_projection import Projection
+from app.screen.look import LEFT, Look, put
 from app.screen.panel import Panel
 
-if TYPE_CHECKING:
-    from app.path.measuring_view import Measure
-    from app.path.path_aspects import DrawnLeg
-    from app.path.path_layers_view import Frame
-    from app.path.path_pane_view import Pane, Panes, Place
-    from app.path.path_picture import Picture
-
-# --- What is shown of programs' paths, side by side: pictures, the way back into one, the tip.
-
-
 COLUMN = 6.4  # units at the right of a view that are the buttons'
+Picked = Callable[[int], None]
 
 
-class PathBoard(Panel):
-    """Panes side by side, each with its own zoom. Nothing here computes but where things stand on the screen;
-    numpy comes with the first picture.
+class PathView(Panel):
+    """Panes side by side, each with its own zoom; keys act on the first, fingers on the one they touch.
+
+    ``picked`` is called with the block (from 1) whose line was touched. While measuring the view has the
+    keyboard; keys that mean nothing there go on to the window.
     """
 
+    title = "PATH"
     keeps = False  # whether what is looked at by hand stays when the picture changes
 
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+    def __init__(self, look: Look, parent: QWidget | None = None, picked: Picked | None = None) -> None:
         super().__init__(look, parent)
-        self.legs: tuple[DrawnLeg, ...] = ()
-        self._set: Panes | None = None
+        self._picked = picked
+        self._panes = Panes(look, self.keeps)
         self._tip: Tip | None = None  # not drawn before somebody tells it
-
-    def renewed(self, panes: Sequence[Pane]) -> None:
-        """Other pictures are in the panes."""
+        self.legs: tuple[DrawnLeg, ...] = ()  # of an approach
+        self.ruler: Measure | None = None  # what one measures with; None while one does not
+        self._pointer = Pointer(look, self._pressed, self._hovers, self._dragged, self._touched, self.magnify)
+        self.setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents)
 
     @property
     def panes(self) -> Sequence[Pane]:
         """What is side by side now."""
-        return self._set.now if self._set is not None else ()
+        return self._panes.now
 
     @property
-    def view(self) -> Frame | None:
+    def view(self) -> Projection | None:
         """What is looked at in the first pane."""
-        return self.panes[0].frame if self.panes else None
+        return self.panes[0].projection if self.panes else None
 
     @property
     def several(self) -> bool:
         """Whether there is another choice of panes."""
-        return self._set is not None and self._set.several
+        return self._panes.several
 
     @property
     def comparing(self) -> bool:
         """Whether two pictures are shown."""
-        return self._set is not None and self._set.before is not None
+        return self._panes.before is not None
 
     @property
     def picture(self) -> Picture | None:
         """What is shown."""
-        return self._set.picture if self._set is not None else None
+        return self._panes.picture
 
     @property
     def drawn(self) -> bool:
@@ -98,7 +97,7 @@ class PathBoard(Panel):
         self._show(after, before)
 
     def show_approach(self, legs: Sequence[DrawnLeg] | None) -> None:
-        """The way back into the program, over its path; the first leg is where the tool stands."""
+        """The approach back into the program, over its path; the first leg is where the tool stands."""
         if tuple(legs or ()) != self.legs:
             self.legs = tuple(legs or ())
             self._include()
@@ -108,7 +107,7 @@ class PathBoard(Panel):
         """Where the run is now."""
         if tip != self._tip:
             self._tip = tip
-            self._stand()
+            self._show_tool()
             self.update()
 
     def mark(self, blocks: list[tuple[int, int]]) -> None:
@@ -119,36 +118,34 @@ class PathBoard(Panel):
 
     def advance(self) -> None:
         """Once a frame: draw on what is not drawn yet, for a few milliseconds at most."""
-        if self._set is not None and self._set.advance():
+        if self._panes.advance():
             self.update()
 
     def _show(self, picture: Picture | None, before: Picture | None) -> None:
-        from app.path.path_pane_view import Panes
-
-        if self._set is None:
-            self._set = Panes(self.look, self.keeps)
-        if picture is self._set.picture and before is self._set.before:
+        if picture is self._panes.picture and before is self._panes.before:
             return
         if self._tip is not None:
             self._tip = self._tip._replace(block=0)
-        self._set.show(picture, before)
-        self.renewed(self._set.now)
+        self._panes.show(picture, before)
+        if self.ruler is not None and self.ruler.pane in self.panes:
+            self.ruler.renew()  # what is held stays where it is
+        else:
+            self.measure(on=False)
         self._lay_out()
 
     def _lay_out(self) -> None:
-        if self._set is not None:
-            self._include()
-            self._set.lay(self.room().adjusted(0, 0, -COLUMN * self.look.u, 0))
-            self._stand()
+        self._include()
+        self._panes.lay(self.room().adjusted(0, 0, -COLUMN * self.look.u, 0))
+        self._show_tool()
         self.update()
 
     def _include(self) -> None:
-        """The way back is seen whole."""
+        """The approach is seen whole."""
         for pane in self.panes:
             if pane.aspect is Aspect.PATH:
                 pane.include([(leg.z, leg.x) for leg in self.legs])
 
-    def _stand(self) -> None:
+    def _show_tool(self) -> None:
         if self._tip is not None:
             for pane in self.panes:
                 pane.stand(self._tip.block, self._place_in(pane, self._tip), self._tip.stood)
@@ -178,87 +175,14 @@ class PathBoard(Panel):
         u = self.look.u
         return self.area().adjusted(0.2 * u, 1.2 * u, -0.2 * u, -0.2 * u).toRect().toRectF()
 
-
-# --- When the path view measures, and what a touch means: a point to measure from, or the block drawn there.
-
-
-Picked = Callable[[int], None]
-
-
-class Ruling:
-    """``now`` is what one measures with, None while one does not. The view has the keyboard meanwhile."""
-
-    def __init__(self, view: PathView, picked: Picked | None) -> None:
-        self._view, self._picked = view, picked
-        self.now: Measure | None = None
-
-    def switch(self, *, on: bool) -> None:
-        """Begin, in the last pane, or end."""
-        view = self._view
-        if on and view.drawn and view.view is not None:
-            self._begin(view.panes[-1])
-            view.setFocus()
-        elif not on and self.now is not None:
-            self.now.end()
-            self.now = None
-            view.setMouseTracking(False)
-            if view.hasFocus():
-                view.window().setFocus()
-        view.update()
-
-    def renew(self, panes: Sequence[Pane]) -> None:
-        """Other pictures are shown: go on where the pane is still there, else end."""
-        if self.now is not None and self.now.pane in panes:
-            self.now.renew()
-        else:
-            self.switch(on=False)
-
-    def point(self, at: QPointF) -> None:
-        """The pointer moves over the view."""
-        if self.now is not None and self.now.pane.room.contains(at):
-            self.now.point(at)
-            self._view.update()
-
-    def touched(self, pane: Pane, at: QPointF) -> None:
-        """A pane was touched."""
-        if self.now is not None:
-            now = self.now if self.now.pane is pane else self._begin(pane)
-            now.point(at)
-            now.hold()
-            self._view.update()
-        elif self._picked is not None and (block := pane.block_at(at)):
-            self._picked(block)
-
-    def _begin(self, pane: Pane) -> Measure:
-        from app.path.measuring_view import Measure
-
-        now = self.now = Measure(pane)
-        self._view.setMouseTracking(True)
-        return now
-
-
-class PathView(PathBoard):
-    """Panes side by side, each with its own zoom; keys act on the first, fingers on the one they touch.
-
-    ``picked`` is called with the block (from 1) whose line was touched. While measuring the view has the
-    keyboard; keys that mean nothing there go on to the window.
-    """
-
-    title = "PATH"
-
-    def __init__(self, look: Look, parent: QWidget | None = None, picked: Picked | None = None) -> None:
-        super().__init__(look, parent)
-        self._pointer, self.ruling = Pointer(self), Ruling(self, picked)
-        self.setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents)
-
     # --- looking around ------------------------------------------------------------------------------
 
     def next_view(self) -> None:
         """Another choice of panes, where the program gives one."""
-        if self._set is not None and self.several:
+        if self.several:
             measuring = self.ruler is not None
             self.measure(on=False)
-            self._set.next_view()
+            self._panes.next_view()
             self._lay_out()
             self.measure(on=measuring)
 
@@ -285,25 +209,55 @@ class PathView(PathBoard):
 
     def pane_at(self, at: QPointF | None) -> Pane | None:
         """The pane under a point, or else the one that is measured in, or the first."""
-        found = self._set.at(at) if self._set is not None and at is not None else None
+        found = self._panes.at(at) if at is not None else None
         if found is None:
             found = self.ruler.pane if self.ruler is not None else next(iter(self.panes), None)
         return found
 
-    def renewed(self, panes: Sequence[Pane]) -> None:
-        """What is measured is of the picture that was."""
-        self.ruling.renew(panes)
-
     # --- measuring and picking -----------------------------------------------------------------------
 
-    @property
-    def ruler(self) -> Measure | None:
-        """What one measures with; None while one does not."""
-        return self.ruling.now
-
     def measure(self, *, on: bool | None = None) -> None:
-        """Begin or end measuring; None: the other way round."""
-        self.ruling.switch(on=self.ruler is None if on is None else on)
+        """Begin to measure in the last pane, or end it; None: the other way round."""
+        if on is None:
+            on = self.ruler is None
+        if on and self.drawn and self.view is not None:
+            self._measure_in(self.panes[-1])
+            self.setFocus()
+        elif not on and self.ruler is not None:
+            self.ruler.end()
+            self.ruler = None
+            self.setMouseTracking(False)
+            if self.hasFocus():
+                self.window().setFocus()
+        self.update()
+
+    def _measure_in(self, pane: Pane) -> Measure:
+        ruler = self.ruler = Measure(pane)
+        self.setMouseTracking(True)
+        return ruler
+
+    def _pressed(self, at: QPointF) -> Pane | None:
+        """On a pane, unless it is on a button of the view."""
+        return None if self.touch(at) else self.pane_at(at)
+
+    def _hovers(self, at: QPointF) -> None:
+        if self.ruler is not None and self.ruler.pane.room.contains(at):
+            self.ruler.point(at)
+            self.update()
+
+    def _dragged(self, pane: Pane, by: QPointF) -> None:
+        pane.drag(by)
+        self.update()
+
+    def _touched(self, pane: Pane, at: QPointF) -> None:
+        """A point to measure from, or the block that is drawn there."""
+        if self.ruler is not None:
+            ruler = self.ruler if self.ruler.pane is pane else self._measure_in(pane)
+            ruler.point(at)
+            ruler.hold()
+            self.update()
+        elif self._picked is not None and (block := pane.block_at(at)):
+            self._picked(block)
 
     # --- Qt's calls ----------------------------------------------------------------------------------
 
@@ -346,6 +300,62 @@ class PathView(PathBoard):
     # --- drawing -------------------------------------------------------------------------------------
 
     def draw(self, painter: QPainter) -> None:
-        from app.path.path_marks_view import draw_view
+        """Panes, title, buttons, legend; a sentence where there is nothing."""
+        look, panes = self.look, self.panes
+        if not panes:
+            why = tr("The path is shown when a program is loaded.")
+            marks.draw_nothing(painter, look, self.inside(), why)
+            return
+        for pane in panes:
+            self._draw_pane(painter, pane)
+        if self.ruler is not None:  # beside what is measured, where there is another pane
+            beside = next((pane for pane in panes if pane is not self.ruler.pane), self.ruler.pane)
+            self.ruler.draw_figures(painter, beside.room, self.in_mm)
+        self._draw_title(painter)
+        marks.draw_buttons(painter, look, self.room(), self._buttons(), self.place)
+        legend = marks.compared_legend(look) if self.comparing else marks.run_legend(look)
+        marks.draw_legend(painter, look, panes[0].room, legend)
+        apart = panes[0].apart
+        if apart is not None:
+            marks.draw_words(painter, look, panes[0].room, marks.apart_words(apart, self.in_mm))
 
-        draw_view(painter, self)
+    def _draw_pane(self, painter: QPainter, pane: Pane) -> None:
+        look = self.look
+        painter.save()
+        painter.setClipRect(pane.room)
+        painter.translate(pane.room.topLeft())
+        if pane.projection is not None:
+            pane.draw_path(painter)
+            marks.draw_centre_lines(painter, look, pane.aspect, pane.projection, pane.polyline)
+            pane.draw_run(painter)
+        if self.legs and pane.aspect is Aspect.PATH:
+            marks.draw_approach(painter, look, pane, self.legs)
+        if self.ruler is not None and self.ruler.pane is pane:
+            self.ruler.draw(painter)
+        painter.restore()
+        if pane.projection is not None:
+            marks.draw_scale(painter, look, pane.room, pane.projection, self.in_mm)
+        if pane.aspect is not Aspect.PATH:
+            marks.draw_words(painter, look, pane.room, marks.pane_words(pane, self.in_mm))
+            if pane is not self.panes[0]:
+                marks.draw_border(painter, look, pane.room)
+
+    def _buttons(self) -> list[marks.Button]:
+        button = marks.Button
+        found = [
+            button("+", lambda: self.zoom(1)),
+            button("−", lambda: self.zoom(-1)),
+            button(tr("FIT"), self.fit),
+            button(tr("MEAS"), self.measure, self.ruler is not None),
+        ]
+        if self.several:
+            found.append(button(tr("VIEW"), self.next_view))
+        return found
+
+    def _draw_title(self, painter: QPainter) -> None:
+        """Again: the panes have covered the lower half of it."""
+        look, u = self.look, self.look.u
+        wide = self.width() - 4 * u
+        painter.setFont(look.fit(self.title, 1.7, wide, bold=True))
+        painter.setPen(look.colour("soft"))
+        put(painter, QRectF(2.2 * u, 0, wide, 2.0 * u), LEFT, self.title)

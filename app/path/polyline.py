@@ -21,7 +21,7 @@ SAME = 1e-7  # mm
 
 
 class Stroke(IntEnum):
-    """What the stretch that ends in a point is; ``TURN`` strokes cut both sides of X0."""
+    """What the chord that ends in a point is; ``TURN`` strokes cut both sides of X0."""
 
     JUMP = 0  # another tool's tip: nothing is drawn
     RAPID = 1
@@ -58,12 +58,12 @@ class Polyline:
         return int(self.first[max(0, min(blocks, self.blocks))])
 
     def block_of_point(self, point: int) -> int:
-        """The number of the block, from 1, that the stretch which ends in a point (from 0) belongs to."""
+        """The number of the block, from 1, that the chord which ends in a point (from 0) belongs to."""
         return int(np.searchsorted(self.first, point, side="right"))
 
 
 class PolylineBuilder:
-    """Draws a trail: ``stretch`` as often as a block needs it, then ``end_block``."""
+    """Draws a polyline: ``to`` as often as a block needs it, then ``end_block``."""
 
     def __init__(self, blocks: int = 0) -> None:
         self.z, self.x, self.stroke = array("d"), array("d"), array("B")
@@ -95,7 +95,7 @@ class PolylineBuilder:
         self.first.append(len(self.z))
 
     def arrays(self) -> tuple[Floats, Floats, npt.NDArray[np.uint8], npt.NDArray[np.int64]]:
-        """``z``, ``x``, ``stroke`` and ``first`` of a trail."""
+        """``z``, ``x``, ``stroke`` and ``first`` of a polyline."""
         return (
             np.array(self.z),
             np.array(self.x),

@@ -229,8 +229,8 @@ def test_the_tip_goes_round_on_the_face_and_along_the_side(view: PathView) -> No
     assert face.place_of(tip) == pytest.approx((0.0, 5.0), abs=1e-9)
     view.next_view()
     _path, side = view.panes
-    assert side.place_of(tip) == pytest.approx((-5.0, -90 * side.trail.round))
-    assert side.place_of(Tip(4, 1.0, 2.0)) == pytest.approx((-5.0, -90 * side.trail.round))  # C is let go
+    assert side.place_of(tip) == pytest.approx((-5.0, -90 * side.polyline.round))
+    assert side.place_of(Tip(4, 1.0, 2.0)) == pytest.approx((-5.0, -90 * side.polyline.round))  # C is let go
 
 
 def test_measuring_on_the_face(view: PathView) -> None:

@@ -6,25 +6,23 @@ import numpy as np
 import pytest
 from PySide6.QtGui import QColor, QImage
 
-from app.path.path_layers_view import (
-    SMOOTH_TO,
+from app.path.path_layers_view import SMOOTH_TO, Layers, polygon
+from app.path.path_picture import Picture
+from app.path.path_projection import (
     Ends,
-    Frame,
-    Layers,
+    Projection,
     clipped,
     fitted,
-    polygon,
     runs,
     scale_length,
     stepped,
     travelled,
 )
-from app.path.path_picture import Picture
 from app.path.polyline import Stroke
 from app.screen.look import Look
 from app.screen.theme import DARK
 
-FRAME = Frame(z=0.0, x=0.0, scale=10.0, width=400, height=200)
+FRAME = Projection(z=0.0, x=0.0, scale=10.0, width=400, height=200)
 
 
 def picture(points: list[tuple[float, float, Stroke]], first: list[int]) -> Picture:

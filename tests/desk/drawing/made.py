@@ -19,7 +19,7 @@ def turned(n: int, kind: Kind, start: Way, end: Way, **more: object) -> Block:
     return Block(n, n, kind, "", *start, *end, **given)  # type: ignore[arg-type]
 
 
-def trail(points: list[tuple[float, float, Stroke]], first: list[int]) -> Polyline:
+def polyline(points: list[tuple[float, float, Stroke]], first: list[int]) -> Polyline:
     """A trail of (z, x, stroke) points and where blocks end."""
     z, x, stroke = (np.array(column) for column in zip(*points, strict=True))
     bounds = (float(z.min()), float(z.max()), float(x.min()), float(x.max()))

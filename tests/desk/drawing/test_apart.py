@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from app.path.measuring import Apart, farthest
 from app.path.polyline import Stroke
-from tests.desk.drawing.made import trail
+from tests.desk.drawing.made import polyline
 
 JUMP, RAPID, TURN = Stroke.JUMP, Stroke.RAPID, Stroke.TURN
-BEFORE = trail([(9, 9, JUMP), (0, 5, RAPID), (-9, 5, TURN), (-9, 8, TURN)], [0, 2, 3, 4])
+BEFORE = polyline([(9, 9, JUMP), (0, 5, RAPID), (-9, 5, TURN), (-9, 8, TURN)], [0, 2, 3, 4])
 
 
 def test_the_farthest_point_that_is_cut() -> None:
-    after = trail(
+    after = polyline(
         [(9, 9, JUMP), (7, 5, RAPID), (-9, 5.3, TURN), (-9.4, 8.3, TURN)],
         [0, 2, 3, 4],
     )
@@ -26,14 +26,14 @@ def test_no_difference_is_told_as_none_at_all() -> None:
 
 
 def test_another_number_of_points_cannot_be_compared() -> None:
-    assert farthest(BEFORE, trail([(9, 9, JUMP), (0, 5, TURN)], [0, 2])) is None
+    assert farthest(BEFORE, polyline([(9, 9, JUMP), (0, 5, TURN)], [0, 2])) is None
 
 
 def test_other_strokes_cannot_be_compared() -> None:
-    other = trail([(9, 9, JUMP), (0, 5, TURN), (-9, 5, TURN), (-9, 8, TURN)], [0, 2, 3, 4])
+    other = polyline([(9, 9, JUMP), (0, 5, TURN), (-9, 5, TURN), (-9, 8, TURN)], [0, 2, 3, 4])
     assert farthest(BEFORE, other) is None
 
 
 def test_nothing_is_cut() -> None:
-    rapid = trail([(9, 9, JUMP), (0, 5, RAPID)], [0, 2])
+    rapid = polyline([(9, 9, JUMP), (0, 5, RAPID)], [0, 2])
     assert farthest(rapid, rapid) is None

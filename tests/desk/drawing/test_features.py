@@ -9,11 +9,11 @@ import pytest
 
 from app.path.measuring import MOST_CROSSED, Features, Point, PointKind, crossings, point_at
 from app.path.polyline import Stroke
-from tests.desk.drawing.made import trail
+from tests.desk.drawing.made import polyline
 
 EVERYWHERE = (-100.0, 100.0, -100.0, 100.0)
 # a square of 4 mm, its last side crossed by a diagonal that comes from elsewhere
-SQUARE = trail(
+SQUARE = polyline(
     [
         (0, 0, Stroke.JUMP),
         (4, 0, Stroke.TURN),
@@ -33,7 +33,7 @@ def test_ends_of_blocks_and_starts_after_jumps_are_points() -> None:
 
 
 def test_points_within_an_arc_are_none() -> None:
-    bend = trail([(0, 0, Stroke.JUMP), (1, 1, Stroke.TURN), (2, 0, Stroke.TURN)], [0, 3])
+    bend = polyline([(0, 0, Stroke.JUMP), (1, 1, Stroke.TURN), (2, 0, Stroke.TURN)], [0, 3])
     assert Features(bend).nearest(1, 1) != Point(1, 1, PointKind.END)
 
 
@@ -56,7 +56,7 @@ def test_a_jump_crosses_nothing() -> None:
 
 
 def test_too_many_stretches_have_no_crossings_and_take_no_time() -> None:
-    zigzag = trail(
+    zigzag = polyline(
         [(float(k % 2), float(k), Stroke.TURN if k else Stroke.JUMP) for k in range(MOST_CROSSED + 2)],
         list(range(MOST_CROSSED + 3)),
     )
@@ -81,7 +81,7 @@ def test_along_the_path_and_on_at_the_other_end() -> None:
 
 
 def test_an_empty_trail_has_no_points() -> None:
-    nothing = trail([(0, 0, Stroke.JUMP)], [0])
+    nothing = polyline([(0, 0, Stroke.JUMP)], [0])
     features = Features(replace(nothing, z=np.zeros(0), x=np.zeros(0), stroke=np.zeros(0, dtype=np.uint8)))
     features.look(EVERYWHERE)
     assert features.nearest(0, 0) is None

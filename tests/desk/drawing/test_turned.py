@@ -143,15 +143,15 @@ def test_programs_agree_with_the_transformation_of_the_executor(name: str) -> No
     setup = setup_for(lathe, tools={1: ToolOffset()}, secondary={})
     blocks = list(timed_blocks(Timeline.of(load_source(PROGRAMS / f"{name}.nc"), setup, lathe)))
     picture = sketched(blocks, lambda _count: None)
-    trail = picture.side if name.startswith("side") else picture.face
-    assert trail is not None
+    polyline = picture.side if name.startswith("side") else picture.face
+    assert polyline is not None
     for number, (block, _start, _end) in enumerate(blocks):
         if block.plane is None:
             continue
-        at = int(trail.first[number + 1]) - 1
+        at = int(polyline.first[number + 1]) - 1
         if isinstance(block.plane.frame, Side):
-            found = (trail.z[at], -trail.x[at] / trail.round)
+            found = (polyline.z[at], -polyline.x[at] / polyline.round)
             assert found == pytest.approx((block.z, block.c), abs=1e-9)
         else:
             spot = face_point(block.x, block.c, block.plane.frame.h)
-            assert (trail.z[at], trail.x[at]) == pytest.approx(spot, abs=1e-9)
+            assert (polyline.z[at], polyline.x[at]) == pytest.approx(spot, abs=1e-9)

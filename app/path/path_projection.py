@@ -1,0 +1,194 @@
+"""How a path is projected onto pixels: what is looked at, points thinned out to the pixel, cut to the edge.
+
+Everything is done for whole arrays: no Python loop goes over the points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from app.path.polyline import Polyline
+
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Projection:
+    """What is looked at: the point (z, x) in the middle of ``width`` by ``height`` pixels, pixels a mm."""
+
+    z: float
+    x: float
+    scale: float
+    width: int
+    height: int
+
+    def across(self, z: Floats | float) -> Floats | float:
+        """Pixel column of a Z: Z+ goes to the right."""
+        return self.width / 2 + (z - self.z) * self.scale
+
+    def down(self, x: Floats | float) -> Floats | float:
+        """Pixel row of an X, a radius: X+ goes down, towards the operator."""
+        return self.height / 2 + (x - self.x) * self.scale
+
+    def zoomed(self, factor: float, column: float, row: float) -> Projection:
+        """Nearer by ``factor``, the point under (column, row) staying where it is."""
+        scale = min(max(self.scale * factor, 0.02), 5000.0)
+        z = self.z + (column - self.width / 2) * (1 / self.scale - 1 / scale)
+        x = self.x + (row - self.height / 2) * (1 / self.scale - 1 / scale)
+        return Projection(z, x, scale, self.width, self.height)
+
+    def moved(self, columns: float, rows: float) -> Projection:
+        """The picture shifted by so many pixels."""
+        z, x = self.z - columns / self.scale, self.x - rows / self.scale
+        return Projection(z, x, self.scale, self.width, self.height)
+
+
+def fitted(bounds: tuple[float, float, float, float], width: int, height: int, margin: float) -> Projection:
+    """All that is cut and its mirror image on the other side of X0, ``margin`` pixels around it."""
+    z0, z1, x0, x1 = bounds
+    reach = max(abs(x0), abs(x1), 0.5)
+    across, down = max(width - 2 * margin, 10.0), max(height - 2 * margin, 10.0)
+    scale = min(across / max(z1 - z0, 1.0), down / (2 * reach))
+    return Projection((z0 + z1) / 2, 0.0, scale, width, height)
+
+
+def boxed(bounds: tuple[float, float, float, float], width: int, height: int, margin: float) -> Projection:
+    """Just what is within the bounds, ``margin`` pixels around it."""
+    z0, z1, x0, x1 = bounds
+    across, down = max(width - 2 * margin, 10.0), max(height - 2 * margin, 10.0)
+    scale = min(across / max(z1 - z0, 1.0), down / max(x1 - x0, 1.0))
+    return Projection((z0 + z1) / 2, (x0 + x1) / 2, scale, width, height)
+
+
+class Shape(NamedTuple):
+    """Points in pixels, with the stroke that ends in each."""
+
+    columns: Floats
+    rows: Floats
+    stroke: npt.NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """Neighbouring points under one stroke, in pixels."""
+
+    stroke: int
+    columns: Floats
+    rows: Floats
+
+
+def points(polyline: Polyline, projection: Projection, start: int, end: int) -> Shape:
+    """Points ``start`` … ``end - 1`` and the one before, thinned out to the pixel."""
+    low = max(0, start - 1)
+    columns = np.asarray(projection.across(polyline.z[low:end]), dtype=np.float64)
+    rows = np.asarray(projection.down(polyline.x[low:end]), dtype=np.float64)
+    stroke = polyline.stroke[low:end].copy()
+    if start > 0 and len(stroke):
+        stroke[0] = 0
+    keep = _telling(columns, rows, stroke)
+    return Shape(columns[keep], rows[keep], stroke[keep])
+
+
+def runs(polyline: Polyline, projection: Projection, start: int, end: int) -> Iterator[Run]:
+    """The strokes that end in points ``start`` … ``end - 1``, thinned out to the pixel, cut to the frame."""
+    columns, rows, stroke = points(polyline, projection, start, end)
+    stroke[1:][_outside(columns, rows, projection)] = 0
+    edges = np.flatnonzero(np.diff(stroke)) + 1
+    for a, b in zip(np.append(0, edges), np.append(edges, len(stroke)), strict=True):
+        kind = int(stroke[a]) if b > a else 0
+        if kind and a > 0:
+            yield Run(kind, columns[a - 1 : b], rows[a - 1 : b])
+
+
+def _telling(columns: Floats, rows: Floats, stroke: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
+    """Points that fall on another pixel than the one before, or where the stroke changes."""
+    c, r = np.rint(columns * 2), np.rint(rows * 2)
+    keep = np.ones(len(c), dtype=np.bool_)
+    keep[1:-1] = (c[1:-1] != c[:-2]) | (r[1:-1] != r[:-2]) | (stroke[1:-1] != stroke[2:])
+    return keep
+
+
+def _outside(columns: Floats, rows: Floats, projection: Projection) -> npt.NDArray[np.bool_]:
+    """Chords with both ends beyond the same edge."""
+    out = np.zeros(max(0, len(columns) - 1), dtype=np.bool_)
+    for beyond in (columns < 0, columns > projection.width, rows < 0, rows > projection.height):
+        out |= beyond[1:] & beyond[:-1]
+    return out
+
+
+def travelled(polyline: Polyline, projection: Projection, block: int, z: float, x: float) -> Run | None:
+    """What of a block lies behind the tip at (z, x): its points up to the nearest chord, then the tip."""
+    if not 1 <= block <= polyline.blocks:
+        return None
+    start, end = int(polyline.first[block - 1]), int(polyline.first[block])
+    if start < end and polyline.stroke[start] == 0:
+        start += 1  # a jump to another tool's tip
+    if start >= end or start == 0:
+        return None
+    zs, xs = polyline.z[start - 1 : end], polyline.x[start - 1 : end]
+    last = _nearest_chord(zs, xs, z, x) + 1
+    columns = np.append(np.asarray(projection.across(zs[:last])), projection.across(z))
+    rows = np.append(np.asarray(projection.down(xs[:last])), projection.down(x))
+    return Run(int(polyline.stroke[start]), columns, rows)
+
+
+def _nearest_chord(zs: Floats, xs: Floats, z: float, x: float) -> int:
+    """Index of the chord that comes nearest to a point."""
+    dz, dx = np.diff(zs), np.diff(xs)
+    size = np.maximum(dz * dz + dx * dx, 1e-18)
+    share = np.clip(((z - zs[:-1]) * dz + (x - xs[:-1]) * dx) / size, 0.0, 1.0)
+    off = (zs[:-1] + share * dz - z) ** 2 + (xs[:-1] + share * dx - x) ** 2
+    return int(np.argmin(off))
+
+
+def scale_length(most: float, metric: bool) -> tuple[float, str]:
+    """The longest round length up to ``most`` mm, and how it is written in the unit in force."""
+    unit, name = (1.0, "mm") if metric else (25.4, "in")
+    decade = 10.0 ** np.floor(np.log10(max(most / unit, 1e-9)))
+    step = max((k for k in (1.0, 2.0, 5.0) if k * decade <= most / unit * (1 + 1e-9)), default=1.0)
+    return float(step * decade * unit), f"{step * decade:g} {name}"
+
+
+class Ends(NamedTuple):
+    """Where chords begin and end: columns and rows, pixels."""
+
+    c0: Floats
+    r0: Floats
+    c1: Floats
+    r1: Floats
+
+
+def clipped(ends: Ends, right: int, bottom: int) -> tuple[Ends, npt.NDArray[np.bool_]]:
+    """The parts of chords within 0…right, 0…bottom, and which chords have one (Liang and Barsky)."""
+    dc, dr = ends.c1 - ends.c0, ends.r1 - ends.r0
+    enter, leave = np.zeros(len(dc)), np.ones(len(dc))
+    inside = np.ones(len(dc), dtype=np.bool_)
+    for towards, room in ((-dc, ends.c0), (dc, right - ends.c0), (-dr, ends.r0), (dr, bottom - ends.r0)):
+        along = towards == 0
+        inside &= ~(along & (room < 0))
+        at = np.divide(room, towards, out=np.zeros(len(dc)), where=~along)
+        enter = np.where(towards < 0, np.maximum(enter, at), enter)
+        leave = np.where(towards > 0, np.minimum(leave, at), leave)
+    inside &= enter <= leave
+    c0, r0, dc, dr, enter, leave = (a[inside] for a in (ends.c0, ends.r0, dc, dr, enter, leave))
+    return Ends(c0 + enter * dc, r0 + enter * dr, c0 + leave * dc, r0 + leave * dr), inside
+
+
+def stepped(ends: Ends) -> tuple[Indices, Indices, Indices]:
+    """Column, row and number of the chord of every pixel of all chords, in their order."""
+    dc, dr = ends.c1 - ends.c0, ends.r1 - ends.r0
+    steps = np.ceil(np.maximum(np.abs(dc), np.abs(dr))).astype(np.int64)
+    count = steps + 1
+    which = np.repeat(np.arange(len(count)), count)
+    first = np.repeat(np.cumsum(count) - count, count)
+    share = (np.arange(len(which)) - first) / np.maximum(steps, 1)[which]
+    column = np.rint(ends.c0[which] + share * dc[which]).astype(np.int64)
+    row = np.rint(ends.r0[which] + share * dr[which]).astype(np.int64)
+    return column, row, which
