@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection
 from pathlib import Path
 
 from app.desk.data_folder import data_folder
-from app.offsets.offset_book import OffsetBook, ZeroBook
+from app.offsets.offset_book import OffsetBook
 from app.programs.run_record import tell_cut_off
 from core.executor.interrupted_job import InterruptedJob, of_plain, plain
 from core.executor.snapshot import Event
@@ -35,7 +35,7 @@ class Journal:
         self._folder = folder
         self._lock = threading.Lock()  # held for the blink in which stores or events change hands
         self._held: deque[Event] | None = None  # while a restore is under way
-        self._books: list[OffsetBook | ZeroBook] = []
+        self._books: list[OffsetBook] = []
         self._store: Store | None = None
         self._program = ""
         self._trouble = ""
@@ -84,14 +84,6 @@ class Journal:
         if self._store is None:
             return OffsetBook(locked=f"OFFSETS CANNOT BE KEPT: {self.trouble}")
         book = OffsetBook(self._store)
-        self._books.append(book)
-        return book
-
-    def zero_book(self) -> ZeroBook:
-        """G54…G59 of the store, for the screen to show and to change."""
-        if self._store is None:
-            return ZeroBook(locked=f"OFFSETS CANNOT BE KEPT: {self.trouble}")
-        book = ZeroBook(self._store)
         self._books.append(book)
         return book
 

@@ -16,7 +16,7 @@ from app.compose.journal import Journal
 from app.compose.machine_setup import read_machine
 from app.compose.shop_floor import keep_status, open_shop_floor
 from app.compose.special_functions import furnish
-from app.compose.stored_offsets import Offsets, Zero, book_of, stored_offsets, stored_zero, zero_book
+from app.compose.stored_offsets import Offsets, Zero, book_of, stored_offsets, stored_zero
 from app.compose.workshop import drawer, give_mdi, give_searchto, samples, workshop
 from app.desk.alarm_log import KEPT, KINDS
 from app.desk.data_folder import data_folder
@@ -27,7 +27,7 @@ from app.desk.program_loading import LoadingSteps, ProgramLoader
 from app.desk.translation import tr
 from app.editor.editor import Editor
 from app.editor.versions import Bench, NoArchive
-from app.offsets.effect import Effect
+from app.offsets.offset_effect import Effect
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.snapshot import Event, Snapshot
@@ -173,8 +173,7 @@ def desk_and_executor(
         lathe=machine,
         machine=f"{machine.name} · {_drives(machine)}",
         changes=changed,
-        book=book_of(offsets, journal),
-        zero=zero_book(zero, journal),
+        book=book_of(offsets, zero, journal),
     )
     desk.attach(Effect(drawer(machine)))
     desk.attach(_editor(workshop(machine, offsets, zero=zero, left=left), journal))

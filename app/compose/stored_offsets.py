@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.command_errors import CommandError
 from app.desk.data_folder import data_folder
-from app.offsets.offset_book import OffsetBook, ZeroBook, secondary_offsets, tool_offsets
+from app.offsets.offset_book import OffsetBook, secondary_offsets, tool_offsets
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset, ZeroOffset
 from core.store.store_rows import SecondaryRow, ToolRow, ZeroRow
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from core.store.store import Store
 
 OF_A_FILE = "THE OFFSETS COME FROM A FILE (--offsets) AND ARE READ ONLY: CHANGE THE FILE, OR START WITHOUT IT"
+Zero = dict[int, ZeroOffset]
 Offsets = tuple[dict[int, ToolOffset], dict[int, SecondaryOffset]]
 
 
@@ -43,7 +44,7 @@ def offsets_of(store: Store) -> Offsets:
     return tool_offsets(store.tools()), secondary_offsets(store.secondary())
 
 
-def book_of(offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBook:
+def book_of(offsets: Callable[[], Offsets], zero: Callable[[], Zero], journal: Journal | None) -> OffsetBook:
     """For the screen: the offsets of the journal's store, or those of a file, which are not changed here.
 
     Raises CommandError when the file has mistakes.
@@ -55,6 +56,7 @@ def book_of(offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBo
         locked=OF_A_FILE,
         tools={n: ToolRow(row.x, row.z, row.nose_radius) for n, row in tools.items()},
         secondary={n: SecondaryRow(row.x, row.z, row.r) for n, row in secondary.items()},
+        zero={n: ZeroRow(row.x, row.z, row.c) for n, row in zero().items()},
     )
 
 
@@ -68,9 +70,6 @@ def chosen_offsets(path: str | None) -> Callable[[], Offsets]:
 
 
 # --- G54 to G59 from the store, or from the offsets file, to the interpreter.
-
-
-Zero = dict[int, ZeroOffset]
 
 
 def stored_zero() -> Zero:
@@ -97,13 +96,6 @@ def chosen_zero(path: str | None) -> Callable[[], Zero]:
     from app.cli.toml_files import read_zero
 
     return partial(_of_file, read_zero, Path(path))
-
-
-def zero_book(zero: Callable[[], Zero], journal: Journal | None) -> ZeroBook:
-    """For the screen: those of the journal's store, or those of a file, which are not changed here."""
-    if journal is not None and zero is stored_zero:
-        return journal.zero_book()
-    return ZeroBook(locked=OF_A_FILE, rows={n: ZeroRow(row.x, row.z, row.c) for n, row in zero().items()})
 
 
 def _of_file(read: Callable[[Path], Mapping[int, ZeroRow]], path: Path) -> Zero:

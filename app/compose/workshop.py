@@ -30,7 +30,7 @@ from core.proving.proof_report import Report
 
 if TYPE_CHECKING:
     from app.desk.latest import Watch
-    from app.offsets.effect import Draw
+    from app.offsets.offset_effect import Draw
     from app.path.path_picture import Picture, Timed
     from core.interpreter.restart.state_rebuild import StateRebuild
 

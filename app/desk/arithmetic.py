@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from math import isfinite
 
+CHARACTERS = frozenset("0123456789.,+-*/()−")  # that an entry is typed with
 LONGEST = 80  # characters: more than any sum on the back of a drawing
 _TOKEN = re.compile(r"\s*(?:([0-9]+\.?[0-9]*|\.[0-9]+)|([-+*/()−]))")
 

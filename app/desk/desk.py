@@ -26,8 +26,7 @@ from app.desk.prompt_line import UNDER_WAY, YES, Answers
 from app.desk.readouts import Readout
 from app.desk.screen_settings import SettingsBook
 from app.desk.translation import tr
-from app.offsets.offset_book import NO_ZEROS_KEPT as NO_ZERO
-from app.offsets.offset_book import NONE_KEPT, OffsetBook, ZeroBook
+from app.offsets.offset_book import NONE_KEPT, OffsetBook
 from app.programs.run_record import RunRecord
 from app.special.part_count import PartCounter
 from core.executor.commands import (
@@ -106,7 +105,6 @@ class Desk:
     record: RunRecord = field(default_factory=RunRecord)
     restoring: bool = False  # a backup takes the place of what is kept
     book: OffsetBook = field(default_factory=lambda: OffsetBook(locked=NONE_KEPT))
-    zero: ZeroBook = field(default_factory=lambda: ZeroBook(locked=NO_ZERO))
     changes: FileChanges = field(default_factory=FileChanges)  # of the machine file, to be accepted
     stop_held: Callable[[], bool] = bool  # whether a key that stops is held down
     starts_here: bool = True  # whether the page in front is one on which cycles are started
@@ -223,7 +221,7 @@ class Desk:
             return ""
         if loaded.phase is Phase.UNREADABLE:
             return prompt_line.refusal(loaded)  # the executor still has what was there before
-        stale = self.rebuilding.wanted or self.book.busy or self.zero.busy or loaded.phase is Phase.READING
+        stale = self.rebuilding.wanted or self.book.busy or loaded.phase is Phase.READING
         return prompt_line.STALE if stale else ""
 
     # --- every frame ---------------------------------------------------------------------------------
@@ -233,7 +231,7 @@ class Desk:
         self.hands.turn_knobs()
         snapshot = self.snapshot()
         self.answers.look(snapshot)
-        self.rebuilding.look(snapshot, self.book, self.zero, self.post)
+        self.rebuilding.look(snapshot, self.book, self.post)
         loaded = self.session.now
         if snapshot.starts is not Starts.LINE:  # a line of MDI is no run of the program
             self.counter.see(snapshot, self.post, self.say)

@@ -16,7 +16,7 @@ from app.desk.latest import AbandonedError, sentence
 from app.desk.program_loading import Loaded, Phase, ProgramLoader
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.translation import tr
-from app.offsets.offset_book import OffsetBook, ZeroBook, secondary_offsets, tool_offsets
+from app.offsets.offset_book import OffsetBook, secondary_offsets, tool_offsets
 from core.executor.commands import Command, Renew, UseOffsets
 from core.executor.job import outdated
 from core.executor.snapshot import Snapshot, State
@@ -126,17 +126,15 @@ class Rebuilding:
     say: Callable[[str], None]
     wanted: bool = False
     renewing: Renewing = field(init=False)
-    _changes: int = 0  # of the books, as far as they were seen
+    _changes: int = 0  # of the book, as far as they were seen
 
     def __post_init__(self) -> None:
         self.renewing = Renewing(self.session)
 
-    def look(
-        self, snapshot: Snapshot, book: OffsetBook, zero: ZeroBook, post: Callable[[Command], None]
-    ) -> None:
+    def look(self, snapshot: Snapshot, book: OffsetBook, post: Callable[[Command], None]) -> None:
         """Once a frame: note what has changed, and begin as soon as that may be."""
-        trouble, before = book.poll() or zero.poll(), self._changes
-        self._changes = book.changes + zero.changes
+        trouble, before = book.poll(), self._changes
+        self._changes = book.changes
         if trouble:
             self.say(f"REFUSED: {trouble}")
         changed, under_way = self._changes != before, snapshot.state in UNDER_WAY
@@ -147,7 +145,7 @@ class Rebuilding:
         if changed or self._outdated(snapshot):
             self.wanted = True
         self._tell_trouble(snapshot)
-        if self.wanted and not under_way and not (book.busy or zero.busy):
+        if self.wanted and not under_way and not book.busy:
             self.wanted = False
             # Active at once, for the loaded tool too.
             post(UseOffsets(tool_offsets(book.tools), secondary_offsets(book.secondary)))

@@ -148,7 +148,7 @@ class JogPage(Page):
 
     def opened(self) -> None:
         """What was changed on another page is no news here."""
-        self.model.tool.ledger.opened()
+        self.model.tool.history.opened()
 
     def leave(self) -> bool:
         """Nothing stays held or half entered."""

@@ -5,17 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from app.desk.arithmetic import LONGEST, EntryError, value_of
+from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError, value_of
 from app.desk.desk import Desk
 from app.desk.translation import tr
 from app.jog import touch_off
 from app.jog.touch_off import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
-from app.offsets import offset_changes
 from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_history import Ledger
+from app.offsets.offset_history import CORRECTIONS, OffsetHistory, refusal
 from app.offsets.offset_values import TOOL_FIELDS, Mode, marked, not_set, shown_value, value_typed, word
-from app.offsets.secondary_dialogue import CHARACTERS
-from app.offsets.tool_cells import ToolCells
+from app.offsets.tool_offsets import ToolFields
 from core.executor.snapshot import Snapshot
 from core.store.offset_fields import Sort
 from core.store.store_rows import OFFSETS, REMARK_LONGEST, Kind, ToolRow
@@ -35,10 +33,10 @@ class Setting(Protocol):
     text: str
 
     @property
-    def ledger(self) -> Ledger: ...
+    def history(self) -> OffsetHistory: ...
 
     @property
-    def cells(self) -> ToolCells: ...
+    def fields(self) -> ToolFields: ...
 
     @property
     def touching(self) -> TouchOff: ...
@@ -67,7 +65,7 @@ def question(setting: Setting) -> str:
 
 def note(setting: Setting) -> str:
     """What has to be known before the answer is entered."""
-    number, new = setting.number, setting.cells.new
+    number, new = setting.number, setting.fields.new
     if setting.masters and setting.touching.alone:
         return tr("T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)").format(number=number)
     if setting.masters:
@@ -81,8 +79,8 @@ def note(setting: Setting) -> str:
 def old_to_new(setting: Setting) -> str:
     """What the answer would make of the tool, or else the last change."""
     if not setting.asked or setting.asked == TOOL:
-        return setting.ledger.last_told
-    mode, name, row = setting.ledger.mode, TOUCHES.get(setting.asked, setting.asked), setting.row
+        return setting.history.last_in_words
+    mode, name, row = setting.history.mode, TOUCHES.get(setting.asked, setting.asked), setting.row
     touched, mark = setting.asked in TOUCHES, marked(name, mode)
     title = f"{word(name)} {mark}" if mark else word(name)
     was = shown_value(name, getattr(row, name), mode) if row else not_set()
@@ -131,8 +129,8 @@ class ToolSetting:
 
     desk: Desk
     book: OffsetBook
-    ledger: Ledger = field(init=False)
-    cells: ToolCells = field(init=False)
+    history: OffsetHistory = field(init=False)
+    fields: ToolFields = field(init=False)
     touching: TouchOff = field(default_factory=TouchOff)
     number: int = 0
     asked: str = ""  # a touch, "tool", a field of a tool, or nothing
@@ -140,8 +138,8 @@ class ToolSetting:
     _active: int = -1  # the tool that was loaded at the last look
 
     def __post_init__(self) -> None:
-        self.ledger = Ledger(self.desk, self.book, Kind.TOOL)
-        self.cells = ToolCells(self.ledger)
+        self.history = OffsetHistory(self.desk, Kind.TOOL)
+        self.fields = ToolFields(self.history)
 
     # --- what is shown -------------------------------------------------------------------------------
 
@@ -159,9 +157,9 @@ class ToolSetting:
 
     def look(self, snapshot: Snapshot) -> None:
         """Follow the loaded tool until another is chosen; an entry in another unit is given up."""
-        before = self.ledger.mode
-        self.ledger.look(snapshot)
-        if self.ledger.mode != before and self.asked:
+        before = self.history.mode
+        self.history.look(snapshot)
+        if self.history.mode != before and self.asked:
             self.close()
             self.desk.say(
                 tr("THE CONTROL HAS CHANGED ITS UNIT OR ITS X: NOTHING WAS CHANGED, ENTER IT AGAIN")
@@ -174,7 +172,7 @@ class ToolSetting:
     def _choose(self, number: int) -> None:
         if number != self.number:
             self.number = number
-            self.cells.new.drop()
+            self.fields.new.drop()
 
     # --- questions -----------------------------------------------------------------------------------
 
@@ -193,9 +191,7 @@ class ToolSetting:
             self.touching.open(what, snapshot)
 
     def _barred(self, what: str, snapshot: Snapshot) -> str:
-        why = self.book.locked or offset_changes.refusal(
-            snapshot, correction=what in offset_changes.CORRECTIONS
-        )
+        why = self.book.locked or refusal(snapshot, correction=what in CORRECTIONS)
         if why or not self.number:
             return why or tr("WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST")
         if what in TOUCHES:
@@ -211,7 +207,7 @@ class ToolSetting:
     def forget(self) -> None:
         """Neither is anything half touched."""
         self.close()
-        self.cells.new.drop()
+        self.fields.new.drop()
 
     def takes(self, key: str) -> bool:
         """Whether a character goes to the entry."""
@@ -263,7 +259,7 @@ class ToolSetting:
     def _touched(self, snapshot: Snapshot) -> str:
         if self.touching.moved(snapshot):
             return tr("THE SLIDE HAS MOVED SINCE: PRESS ESC AND TOUCH AGAIN")
-        why = self.touching.save(self.number, self.text, self.ledger, self.cells.new)
+        why = self.touching.save(self.number, self.text, self.history, self.fields.new)
         if not why:
             self.close()
         return why or note(self)
@@ -271,7 +267,7 @@ class ToolSetting:
     def _field(self) -> str:
         name, text = self.asked, self.text
         keeps = not text.strip() and TOOL_FIELDS[name].sort is not Sort.TEXT
-        why = "" if keeps else self.cells.save(self.number, name, text)
+        why = "" if keeps else self.fields.save(self.number, name, text)
         if not why:
             self.close()
             self.asked = _AFTER.get(name, "")
@@ -280,16 +276,16 @@ class ToolSetting:
     def master(self) -> None:
         """The chosen tool becomes the master; being it already, none is."""
         why = self._barred("master", self.desk.snapshot())
-        self.ledger.answer(why or self.cells.master(self.number))
+        self.history.answer(why or self.fields.master(self.number))
 
     def undo(self) -> None:
         """Take the last change of the tools back."""
         self.close()
-        self.ledger.undo(self.book.locked or offset_changes.refusal(self.desk.snapshot(), correction=False))
+        self.history.undo(self.book.locked or refusal(self.desk.snapshot(), correction=False))
 
     def escape(self) -> bool:
         """Close the question, forget half a tool; False when there was nothing."""
-        was = bool(self.asked or self.cells.new.number)
+        was = bool(self.asked or self.fields.new.number)
         if was and self.number:
             self.desk.say(tr("T{number} IS AS IT WAS").format(number=self.number))
         self.forget()

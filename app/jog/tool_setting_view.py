@@ -48,7 +48,7 @@ class ToolPanel(Panel):
     def show_tool(self, snapshot: Snapshot) -> None:
         """The tool of now, and where its tip stands."""
         tool = self._model.tool
-        self._mode = tool.ledger.mode
+        self._mode = tool.history.mode
         self._tip = tool_setting.tip(tool, snapshot)
         shown = (
             tool.number,

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.translation import tr
-from app.offsets.offset_history import Ledger
+from app.offsets.offset_history import OffsetHistory
 from app.offsets.offset_values import TOOL_FIELDS, Mode, to_mm, word
-from app.offsets.tool_cells import NewTool
+from app.offsets.tool_offsets import NewTool
 from core.executor.snapshot import Snapshot, State
 from core.store.touch_off import Touch
 
@@ -61,15 +61,15 @@ class TouchOff:
             raise EntryError(tr("{axis} would be out of range").format(axis=word(self.name)))
         return place
 
-    def save(self, number: int, text: str, ledger: Ledger, new: NewTool) -> str:
+    def save(self, number: int, text: str, history: OffsetHistory, new: NewTool) -> str:
         """Save what was touched; the answer is why not. X and Z of a new tool are saved together.
 
         Raises EntryError for a text that is no value.
         """
-        place, book = self.place(text, ledger.mode), ledger.book
+        place, book = self.place(text, history.mode), history.book
         if number in book.tools:
             x, z = (place, None) if self.name == "x" else (None, place)
-            return book.touch_off(number, Touch(x, z, self.alone), self._reason(text, ledger.mode))
+            return book.touch_off(number, Touch(x, z, self.alone), self._reason(text, history.mode))
         values = new.add(number, self.name, place)
         if len(values) < 2:
             return ""

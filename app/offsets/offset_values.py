@@ -1,20 +1,21 @@
-"""One field of a tool as it is typed and as it is shown: unit, diameter, range."""
+"""How offsets are typed and written: unit, diameter, range, sign.
+
+Inch with 5 places, metric with 4; zero offsets in mm and degrees with 3. Stored are mm, X a radius, degrees.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import datetime
-from math import remainder
 
 from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
-from app.desk.formats import MINUS, MM_PER_INCH, fixed
+from app.desk.formats import MINUS, MM_PER_INCH
 from app.desk.translation import tr
 from core.store.offset_fields import FIELDS, Field, Sort
 from core.store.store_rows import Kind, Row, SecondaryRow, ToolRow, Value
-from core.store.zero_offset_table import ZeroChange, ZeroRow, reach
 
-# --- How offsets are written: inch with 5 places, metric with 4, always with their sign.
+TOOL_FIELDS = FIELDS[Kind.TOOL]
+ZERO_PLACES = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,20 +47,42 @@ def signed(mm: float, metric: bool) -> str:
     return figure if figure.startswith(MINUS) else f"+{figure}"
 
 
-def row(number: int, offset: SecondaryRow, metric: bool) -> str:
-    """One row of the secondary offsets as the control writes it; X as the radius that is stored."""
-    x, z, r = offset
-    return f"{number}  X: {signed(x, metric)} Z: {signed(z, metric)}R: {formats.length(r, metric)}"
+def signed_zero_offset(value: float) -> str:
+    """A value of G54 to G59, mm or degrees, with its sign."""
+    figure = formats.fixed(value, ZERO_PLACES)
+    return figure if value < 0 and figure[:1] not in "0123456789" else f"+{figure}"
+
+
+def to_mm(value: float, metric: bool) -> float:
+    """A typed length in mm; rounded in its own unit, so that it comes back as it was entered."""
+    return round(value, 10) * (1.0 if metric else MM_PER_INCH)
+
+
+def added(mm: float, value: float, metric: bool) -> float:
+    """``mm`` and a typed correction: summed in the unit of the entry, so that .0005 ten times is .005."""
+    unit = 1.0 if metric else MM_PER_INCH
+    return round(mm / unit + value, 10) * unit
+
+
+def out_of_range(field: str, value: str, unit: str, low: float, high: float) -> str:
+    """Why a value is not kept, said in the unit of the entry."""
+    text = tr("{field} would become {value} {unit}; it may be {low}…{high}")
+    return text.format(field=field, value=value, unit=unit, low=f"{low:g}", high=f"{high:g}")
+
+
+# --- an offset in one line -------------------------------------------------------------------------------
 
 
 def in_words(offset: Row | None, mode: Mode) -> str:
-    """An offset in one line: a tool's X as the control has it, a secondary one's as the radius stored."""
+    """A tool's X as the control has it, that of the others as the radius that is stored."""
     if offset is None:
         return not_set()
     if isinstance(offset, ToolRow):
         return f"{_pair(offset.x, offset.z, mode.metric, mode.diameter)}{_more(offset, mode)}"
-    x, z, r = offset
-    return f"X {signed(x, mode.metric)}  Z {signed(z, mode.metric)}  R {formats.length(r, mode.metric)}"
+    if isinstance(offset, SecondaryRow):
+        x, z, r = offset
+        return f"X {signed(x, mode.metric)}  Z {signed(z, mode.metric)}  R {formats.length(r, mode.metric)}"
+    return "  ".join(f"{name} {signed_zero_offset(value)}" for name, value in zip("XZC", offset, strict=True))
 
 
 def _pair(x: float, z: float, metric: bool, diameter: bool) -> str:
@@ -79,18 +102,23 @@ def _more(tool: ToolRow, mode: Mode) -> str:
     return "".join(parts) + (f"  {tool.remark}" if tool.remark else "")
 
 
-def to_mm(value: float, metric: bool) -> float:
-    """A typed length in mm; rounded in its own unit, so that it comes back as it was entered."""
-    return round(value, 10) * (1.0 if metric else MM_PER_INCH)
+def from_to(old: Row | None, new: Row | None, mode: Mode) -> str:
+    """An offset before and after; of a tool that was and stays set only the fields that changed."""
+    if not (isinstance(old, ToolRow) and isinstance(new, ToolRow)):
+        return f"{in_words(old, mode)}  →  {in_words(new, mode)}"
+    changed = [name for name in ToolRow._fields if getattr(old, name) != getattr(new, name)]
+    return "   ".join(
+        f"{word(name)} {_in_change(name, old, mode)} → {_in_change(name, new, mode)}" for name in changed
+    )
 
 
-def added(mm: float, value: float, metric: bool) -> float:
-    """``mm`` and a typed correction: summed in the unit of the entry, so that .0005 ten times is .005."""
-    unit = 1.0 if metric else MM_PER_INCH
-    return round(mm / unit + value, 10) * unit
+def _in_change(name: str, row: ToolRow, mode: Mode) -> str:
+    if name == "master":
+        return tr("yes") if row.master else tr("no")
+    return shown_value(name, getattr(row, name), mode) or tr("none")
 
 
-TOOL_FIELDS = FIELDS[Kind.TOOL]
+# --- a field of a tool -----------------------------------------------------------------------------------
 
 
 def value_typed(name: str, text: str, mode: Mode) -> Value:
@@ -120,16 +148,8 @@ def _taken(field: Field, value: Value, mode: Mode) -> Value:
     if field.sort is not Sort.LENGTH:
         raise EntryError(tr("{field} takes {range}").format(field=field.word, range=field.range))
     factor = _doubled(field.name, mode) / mode.unit
-    text = tr("{field} would become {value} {unit}; it may be {low}…{high}")
-    raise EntryError(
-        text.format(
-            field=field.word,
-            value=shown_value(field.name, value, mode),
-            unit=mode.name,
-            low=f"{field.low * factor:g}",
-            high=f"{field.high * factor:g}",
-        )
-    )
+    figure = shown_value(field.name, value, mode)
+    raise EntryError(out_of_range(field.word, figure, mode.name, field.low * factor, field.high * factor))
 
 
 def _doubled(name: str, mode: Mode) -> float:
@@ -173,59 +193,7 @@ def word(name: str) -> str:
     return words[name]
 
 
-# --- How G54 to G59 are typed and written: mm and degrees with three places, always with their sign.
-
-
-PLACES = 3
-
-
-def zero_typed(code: int, name: str, text: str) -> float:
-    """What a field becomes by a typed text: mm, degrees for ``c``. Raises EntryError with the reason."""
-    return checked(code, name, value_of(text))
-
-
-def zero_touched(code: int, name: str, at: float, text: str) -> float:
-    """What a field becomes so that the machine position ``at`` reads as was typed, 0 where nothing was.
-
-    Whole turns of C say nothing and are left out. Raises EntryError.
-    """
-    value = at - (value_of(text) if text.strip() else 0.0)
-    return checked(code, name, remainder(value, 360.0) if name == "c" else value)
-
-
-def checked(code: int, name: str, value: float) -> float:
-    """The value, where it is one that is kept. Raises EntryError."""
-    most = reach(name)
-    if abs(value) <= most:
-        return round(value, 10)
-    unit = tr("degrees") if name == "c" else tr("mm")
-    zero_change_in_words = tr("{name} would become {value} {unit}; it may be {low}…{high}")
-    field, low, high = f"G{code} {name.upper()}", f"-{most:g}", f"{most:g}"
-    raise EntryError(
-        zero_change_in_words.format(name=field, value=shown_zero(value), unit=unit, low=low, high=high)
-    )
-
-
-def shown_zero(value: float) -> str:
-    """A value with its sign, also a plus: an offset without one reads like a dimension."""
-    figure = fixed(value, PLACES)
-    return figure if value < 0 and figure[:1] not in "0123456789" else f"+{figure}"
-
-
-def zero_in_words(row: ZeroRow | None) -> str:
-    """An offset in one line."""
-    if row is None:
-        return tr("not set")
-    return f"X {shown_zero(row.x)}  Z {shown_zero(row.z)}  C {shown_zero(row.c)}"
-
-
-def zero_change_in_words(change: ZeroChange) -> tuple[str, str, str, str]:
-    """Of one change: when (local time), which offset, from → to, why and by whom."""
-    at = datetime.fromisoformat(change.at).astimezone().strftime("%Y-%m-%d %H:%M:%S")
-    who = "" if change.who == "operator" else f" ({change.who})"
-    return (
-        at,
-        f"G{change.code}",
-        f"{zero_in_words(change.old)}  →  {zero_in_words(change.new)}",
-        f"{change.why}{who}",
-    )
+def heading(name: str, mode: Mode) -> str:
+    """What the screen calls a field, with Ø or R at an X."""
+    mark = marked(name, mode)
+    return f"{word(name)} {mark}" if mark else word(name)

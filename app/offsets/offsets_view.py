@@ -1,38 +1,40 @@
-"""What F8 and F9 share: a table over a dialogue, a pad of keys for fingers at their right, the history."""
+"""What the pages of tool, secondary and zero offsets show in common.
+
+A table over the line that is typed, a pad of keys for fingers at their right; in the place of the table the
+history, or the path before and after a change.
+"""
 
 from __future__ import annotations
 
 import math
 from functools import partial
-from typing import Protocol
 
-from PySide6.QtGui import QResizeEvent
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainter, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
-from app.offsets.effect_shown import Rows, ShownEffect
-from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_history import Ledger
-from app.offsets.offset_history_view import HistoryList
+from app.offsets.offset_effect import EffectDisplay
+from app.offsets.offset_table import OffsetTable
 from app.path.path_pane_view import ZOOM_STEP
 from app.path.path_view import PathView
 from app.screen import page_table
-from app.screen.entry_panel import AskedPanel, KeyPad
-from app.screen.look import Look
+from app.screen.entry_panel import Asked, AskedPanel, KeyPad
+from app.screen.look import LEFT, Look, put
 from app.screen.page_base import Doings, Host, Page
+from app.screen.panel import Panel
 from core.executor.snapshot import Snapshot
 
-# --- The path before and after a change of offsets on one picture.
-
-
+PAD, ASKED = 28.4, 12.4  # units: width of the pad, height of the line that is typed
+ROW = 5.2  # units: a change of the history
 NEAR = 0.06  # of the width: how far apart the greatest change is shown from near
 
 
 class EffectView(PathView):
     """Two pictures of the loaded program; the model says which."""
 
-    def __init__(self, look: Look, model: ShownEffect, parent: QWidget) -> None:
+    def __init__(self, look: Look, model: EffectDisplay, parent: QWidget) -> None:
         super().__init__(look, parent)
         self._model = model
         self._near = False
@@ -66,84 +68,119 @@ class EffectView(PathView):
         }
 
 
-PAD, ASKED = 28.4, 12.4  # units: width of the pad, height of the dialogue
+Entry = tuple[str, str, str, str]
 
 
-class OffsetModel(Protocol):
-    """What both models offer to their page."""
+class HistoryList(Panel):
+    """Newest on top, two lines each."""
 
-    ledger: Ledger
+    title = "HISTORY  ·  NEWEST ON TOP"
+
+    def __init__(self, look: Look, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self.entries: tuple[Entry, ...] = ()
+        self.top = 0
+        self.hide()
+
+    def show_entries(self, entries: tuple[Entry, ...]) -> None:
+        """All of it, newest first."""
+        if entries != self.entries:
+            self.entries = entries
+            self.look_at(self.top)
 
     @property
-    def book(self) -> OffsetBook: ...
+    def rows(self) -> int:
+        """How many changes fit."""
+        return max(1, int((self.height() - 3.4 * self.look.u) / (ROW * self.look.u)))
 
-    def look(self, snapshot: Snapshot) -> None: ...
+    def look_at(self, top: int) -> None:
+        """Begin with this one."""
+        self.top = max(0, min(top, len(self.entries) - self.rows))
+        self.update()
 
-    def prompt(self, snapshot: Snapshot) -> str: ...
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Three changes a notch."""
+        self.look_at(self.top - round(event.angleDelta().y() / 40))
 
-    def typed(self, key: str) -> bool: ...
+    def draw(self, painter: QPainter) -> None:
+        look, u, room = self.look, self.look.u, self.inside()
+        if not self.entries:
+            painter.setPen(look.colour("soft"))
+            painter.setFont(look.font(2.0))
+            put(painter, QRectF(room.x(), room.y(), room.width(), 3 * u), LEFT, "No offset was changed yet.")
+        for place, entry in enumerate(self.entries[self.top : self.top + self.rows]):
+            self._entry(painter, QRectF(room.x(), room.y() + place * ROW * u, room.width(), ROW * u), entry)
 
-    def proposed(self) -> Rows: ...
-
-    def undo(self) -> None: ...
-
-    def escape(self) -> bool: ...
-
-    def leave(self) -> None: ...
+    def _entry(self, painter: QPainter, row: QRectF, entry: Entry) -> None:
+        look, u = self.look, self.look.u
+        at, which, change, why = entry
+        painter.setPen(look.colour("accent"))
+        painter.setFont(look.font(2.2, bold=True))
+        put(painter, QRectF(row.x(), row.y(), 6 * u, 2.6 * u), LEFT, which)
+        room = row.adjusted(6.4 * u, 0, 0, 0)
+        painter.setPen(look.colour("text"))
+        painter.setFont(look.fit(change, 2.0, room.width(), bold=True))
+        put(painter, QRectF(room.x(), room.y(), room.width(), 2.6 * u), LEFT, change)
+        painter.setPen(look.colour("soft"))
+        painter.setFont(look.font(1.7))
+        put(painter, QRectF(room.x(), room.y() + 2.4 * u, room.width(), 2.2 * u), LEFT, f"{at}    {why}")
 
 
 class OffsetPage(Page):
     """The model decides, this only shows it and hands the keys on."""
 
-    def __init__(self, host: Host, parent: QWidget, model: OffsetModel) -> None:
+    model: OffsetTable
+    table: Panel
+
+    def __init__(self, host: Host, parent: QWidget, model: OffsetTable) -> None:
         super().__init__(host, parent)
-        self.shared = model
+        self.model = model
         self.history = HistoryList(self.look, self)
         self.asked = AskedPanel(self.look, self)
-        self.shown = ShownEffect(host.desk, model.ledger, model.proposed)
-        self.effect = EffectView(self.look, self.shown, self)
-        own = ("C", "C") if self.NAME == page_table.SECCMP else None
+        self.effect_model = EffectDisplay(model)
+        self.effect = EffectView(self.look, self.effect_model, self)
+        own = ("C", "C") if model.clears else None
         self.pad = KeyPad(self.look, self._touched, own=own, parent=self)
 
-    def board(self) -> QWidget:
-        """The table of this page."""
-        raise NotImplementedError
-
-    def show_offsets(self) -> None:
-        """The table and the question as they are now."""
+    def show_table(self, snapshot: Snapshot) -> None:
+        """The table as it is now."""
         raise NotImplementedError
 
     def doings(self) -> Doings:
-        """Undo and history; Page up and Page down look through the latter."""
-        around = self.effect.doings() if self.shown.open else {}
+        """Undo, history, effect, and the other tables."""
+        around = self.effect.doings() if self.effect_model.open else {}
         return {
             **around,
-            "F4": self.shared.undo,
-            "F5": self._toggle,
-            "F6": self._effect,
-            "F8": lambda: self._go(page_table.TOOLS),
-            "F9": lambda: self._go(page_table.SECCMP),
-            "F10": lambda: self._go(page_table.ZERO),
+            "F4": self.model.undo,
+            "F5": self._toggle_history,
+            "F6": self._turn_effect,
+            "F8": partial(self._go, page_table.TOOLS),
+            "F9": partial(self._go, page_table.SECCMP),
+            "F10": partial(self._go, page_table.ZERO),
         }
 
     def _go(self, name: str) -> None:
         self.host.go(name)
 
-    def _toggle(self) -> None:
-        self.shown.close()
-        self.shared.ledger.toggle_history()
+    def _toggle_history(self) -> None:
+        self.effect_model.close()
+        self.model.history.toggle()
         self.history.look_at(0)
 
-    def _effect(self) -> None:
-        self.shared.ledger.looking_back = None
-        self.shown.turn()
+    def _turn_effect(self) -> None:
+        self.model.history.shown = None
+        self.effect_model.turn()
 
     def typed(self, key: str) -> bool:
-        """Figures and signs are the entry's; letters stay what they are everywhere, but for C on F9."""
+        """Figures and signs are the entry's; letters stay what they are everywhere, but for C and remarks."""
         if self.history.isVisible() and key in {"Page up", "Page down"}:
             self.history.look_at(self.history.top + (1 if key == "Page down" else -1) * self.history.rows)
             return True
-        return self.shared.typed(key)
+        return self.model.typed(key)
+
+    def takes(self, key: str) -> bool:
+        """As the model says."""
+        return self.model.takes(key)
 
     def _touched(self, key: str) -> None:
         if key == "Esc":
@@ -153,13 +190,13 @@ class OffsetPage(Page):
 
     def has_field(self) -> bool:
         """Figures are always typed here, but while one looks at what they do."""
-        return not self.shown.open
+        return not self.effect_model.open
 
     def prompt(self) -> str:
         """From the model; while the effect is shown, what it is."""
-        if self.shown.open:
-            return self.shown.words
-        return self.shared.prompt(self.desk.snapshot())
+        if self.effect_model.open:
+            return self.effect_model.words
+        return self.model.prompt(self.desk.snapshot())
 
     def dress(self) -> None:
         """The picture in the colours of now."""
@@ -167,42 +204,43 @@ class OffsetPage(Page):
 
     def opened(self) -> None:
         """What was changed on another page is no news here."""
-        self.shared.ledger.opened()
+        self.model.history.opened()
 
     def leave(self) -> bool:
         """Nothing stays half entered."""
-        self.shown.close()
-        self.shared.leave()
+        self.effect_model.close()
+        self.model.leave()
         return True
 
     def escape(self) -> bool:
         """Esc goes one step back, and from the first question to the Automatic page."""
-        if self.shown.open:
-            self.shown.close()
-        elif not self.shared.escape():
+        if self.effect_model.open:
+            self.effect_model.close()
+        elif not self.model.escape():
             self.host.go(page_table.AUTOMATIC)
         return True
 
-    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, _status: MachineStatus, _loaded: Loaded) -> None:
         """The table as the store has it, and the question."""
-        ledger = self.shared.ledger
-        self.shared.look(snapshot)
-        changes = ledger.looking_back
+        model, effect = self.model, self.effect_model
+        model.look(snapshot)
+        changes = model.history.shown
         self.history.setVisible(changes is not None)
-        self.board().setVisible(changes is None and not self.shown.open)
-        self.effect.setVisible(self.shown.open)
-        if self.shown.open:
+        self.table.setVisible(changes is None and not effect.open)
+        self.effect.setVisible(effect.open)
+        if effect.open:
             self.effect.show_effect()
         if changes is not None:
-            self.history.show_entries(tuple(ledger.told(change) for change in changes))
-        self.show_offsets()
+            self.history.show_entries(tuple(model.history.in_words(change) for change in changes))
+        self.show_table(snapshot)
+        self.asked.show_asked(Asked(model.heading, model.question, model.text, model.old_to_new, model.foot))
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Table over dialogue, the pad at their right."""
+        """Table over the line that is typed, the pad at their right."""
         u = self.look.u
         pad, high, gap = round(PAD * u), round(ASKED * u), max(4, round(0.7 * u))
         wide, table = self.width() - pad - gap, self.height() - high - gap
-        for part in (self.board(), self.history, self.effect):
+        for part in (self.table, self.history, self.effect):
             part.setGeometry(0, 0, wide, table)
         self.asked.setGeometry(0, table + gap, wide, high)
         self.pad.setGeometry(wide + gap, 0, pad, self.height())

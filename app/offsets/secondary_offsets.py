@@ -1,123 +1,222 @@
-"""The model of F9: dialogue, clear, undo, history, and what the last change did."""
+"""Secondary offsets, F9 SECCMP: a number, then one question after the other, then the change is saved.
+
+The questions are the control's own. X is a diameter correction, halved and added; Z is added; R becomes the
+value; bare Return keeps what is there.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from enum import IntEnum
 
+from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError, value_of
 from app.desk.desk import Desk
+from app.desk.formats import length
 from app.desk.translation import tr
-from app.offsets import offset_changes
-from app.offsets.effect_shown import Rows
-from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_history import Ledger
-from app.offsets.offset_values import Mode, in_words
-from app.offsets.secondary_dialogue import KEYS, Dialogue, Step
+from app.offsets.offset_history import counts_from
+from app.offsets.offset_table import OffsetTable, Proposed
+from app.offsets.offset_values import Mode, added, in_words, out_of_range, to_mm
 from core.executor.snapshot import Snapshot
-from core.store.store_rows import Kind
+from core.store.store_rows import OFFSETS, RADIUS_MAX, SECONDARY_REACH, Kind, SecondaryRow
+
+_KEYS = CHARACTERS | {"Back", "Delete", "Enter"}
 
 
-@dataclass(slots=True)
-class SeccmpDesk:
-    """What Esc, C and the undo key do stands here; the page only draws."""
+class Step(IntEnum):
+    """What is asked."""
 
-    desk: Desk
-    book: OffsetBook
-    ledger: Ledger = field(init=False)
-    dialogue: Dialogue = field(init=False)
+    NUMBER = 0
+    X = 1
+    Z = 2
+    R = 3
 
-    def __post_init__(self) -> None:
-        self.ledger = Ledger(self.desk, self.book, Kind.SECONDARY)
-        self.dialogue = Dialogue(self.book, self.desk.say, self.barred)
 
-    def barred(self) -> str:
-        """Why nothing may be changed now; empty when it may."""
-        return self.book.locked or offset_changes.refusal(self.desk.snapshot(), correction=True)
+def corrected(step: Step, old: float, typed: float, mode: Mode) -> float:
+    """What ``old`` (mm) becomes: X halved and added, Z added, R becomes the value."""
+    if step is Step.R:
+        return to_mm(typed, mode.metric)
+    return added(old, typed / 2 if step is Step.X else typed, mode.metric)
 
-    def prompt(self, snapshot: Snapshot) -> str:
-        """The page's own words on the prompt line."""
-        why = self.book.locked or offset_changes.refusal(snapshot, correction=True)
-        if why:
-            return why
-        if self.ledger.looking_back is not None:
-            return tr("F5 OR ESC LEAVES THE HISTORY; PAGE UP AND PAGE DOWN LOOK ON")
-        standing = offset_changes.standing(snapshot)
-        return standing or tr("EVERY VALUE TAKES ARITHMETIC, SUCH AS .5-.002; RETURN ALONE KEEPS THE VALUE")
+
+class SecondaryOffsets(OffsetTable):
+    """The dialogue: which number, which step, what is typed, and what was answered so far."""
+
+    kind = Kind.SECONDARY
+    clears = "PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, ESC TO KEEP THEM"
+    why_cleared = "C: all offsets cleared"
+
+    def __init__(self, desk: Desk) -> None:
+        super().__init__(desk)
+        self.step, self.number = Step.NUMBER, 0
+        self._answers: list[float] = []  # mm, of the steps so far
+        self._typed: list[str] = []
+
+    # --- what is shown -------------------------------------------------------------------------------
 
     @property
-    def foot(self) -> str:
-        """What can be done beside answering, in the control's words."""
-        leave = tr("Press Esc to exit offset adjustment screen")
-        return f"{leave}        {tr('Press C to clear all offsets')}"
+    def heading(self) -> str:
+        """Which offset."""
+        which = tr("Secondary offset number:")
+        return f"{which} {self.number}" if self.number else which
 
-    def look(self, snapshot: Snapshot) -> None:
-        """Once a frame: follow the control's unit, and see what has been saved."""
-        self.dialogue.follow(Mode(snapshot.modal.metric, snapshot.modal.diameter))
-        self.ledger.look(snapshot)
+    @property
+    def question(self) -> str:
+        """The prompt of this step; attested but for R."""
+        words = (tr("Offset Number?"), tr("X DIAMETER CORRECTION?"), tr("Z CORRECTION?"), tr("R?"))
+        return words[self.step]
+
+    @property
+    def old(self) -> SecondaryRow | None:
+        """The offset that is being changed, as it is now."""
+        return self.book.secondary.get(self.number) if self.number else None
+
+    @property
+    def preview(self) -> SecondaryRow | None:
+        """What it would become if the text were entered; None while no number is chosen."""
+        if not self.number:
+            return None
+        old = self.old or SecondaryRow()
+        new = [*self._answers, *old[len(self._answers) :]]
+        if self.text.strip() and self.step is not Step.NUMBER:
+            try:
+                at = self.step - 1
+                new[at] = corrected(self.step, old[at], value_of(self.text), self.mode)
+            except EntryError:
+                pass  # half a sum is no mistake yet
+        return SecondaryRow(*new)
 
     @property
     def old_to_new(self) -> str:
         """The change that is being entered, or else the last one."""
-        dialogue = self.dialogue
-        if dialogue.step is Step.NUMBER:
-            return self.ledger.last_told
-        was, new = (in_words(side, dialogue.mode) for side in (dialogue.old, dialogue.preview))
-        return f"D{dialogue.number}   {was}  →  {new}"
+        if self.step is Step.NUMBER:
+            return self.history.last_in_words
+        was, new = (in_words(side, self.mode) for side in (self.old, self.preview))
+        return f"D{self.number}   {was}  →  {new}"
 
-    def proposed(self) -> Rows:
+    @property
+    def foot(self) -> str:
+        """In the control's words."""
+        leave = tr("Press Esc to exit offset adjustment screen")
+        return f"{leave}        {tr('Press C to clear all offsets')}"
+
+    def hint(self, snapshot: Snapshot) -> str:
+        """Every value is a sum."""
+        return counts_from(snapshot) or tr(
+            "EVERY VALUE TAKES ARITHMETIC, SUCH AS .5-.002; RETURN ALONE KEEPS THE VALUE"
+        )
+
+    def proposed(self) -> Proposed:
         """The tables as they would be with what is being entered."""
-        preview = self.dialogue.preview
-        typed = {self.dialogue.number: preview} if preview else {}
-        return self.book.tools, {**self.book.secondary, **typed}
+        tools, secondary = super().proposed()
+        preview = self.preview
+        return tools, {**secondary, **({self.number: preview} if preview else {})}
+
+    def look(self, snapshot: Snapshot) -> None:
+        """Once a frame; an entry that was begun in another unit is given up.
+
+        X is a diameter correction whatever the control's X is, which every part changes as it begins.
+        """
+        before = self.mode
+        super().look(snapshot)
+        if self.mode.metric != before.metric and self.step is not Step.NUMBER:
+            self.drop()
+            self.desk.say(tr("THE CONTROL HAS CHANGED ITS UNIT: NOTHING WAS CHANGED, ENTER IT AGAIN"))
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def typed(self, key: str) -> bool:
-        """A typed key; False leaves it to the window."""
-        if key in {"c", "C"}:
-            self._clear()
-            return True
-        if key not in KEYS:
+    def takes(self, key: str) -> bool:
+        """Figures, signs, and C."""
+        return key in CHARACTERS or key == "C"
+
+    def enter_key(self, key: str) -> bool:
+        """Figures are typed, Return answers."""
+        if key not in _KEYS:
             return False
         self.desk.clear()
-        return self.dialogue.type(key)
-
-    def _clear(self) -> None:
-        why = self.book.locked or offset_changes.refusal(self.desk.snapshot(), correction=False)
-        if why:
-            self.desk.say(why)
-        elif self.dialogue.step is not Step.NUMBER:
-            self.desk.say(tr("C CLEARS ALL OFFSETS ONLY WHILE Offset Number? IS ASKED; PRESS ESC FIRST"))
-        else:
-            question = tr("PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, ESC TO KEEP THEM")
-            self.desk.ask(question, self._clear_all)
-
-    def _clear_all(self) -> None:
-        why = self.book.locked or offset_changes.refusal(self.desk.snapshot(), correction=False)
-        self.ledger.answer(why or self.book.clear_secondary())
-
-    def undo(self) -> None:
-        """Take the last change of this table back."""
-        why = self.barred()
-        if not why:
-            self.dialogue.restart()
-        self.ledger.undo(why)
-
-    def escape(self) -> bool:
-        """Esc closes the history, keeps the offsets, takes an entry back; False when the page may be left."""
-        if self.ledger.looking_back is not None:
-            self.ledger.looking_back = None
-        elif self.desk.asked:
-            self.desk.clear()
-        elif self.dialogue.step is not Step.NUMBER or self.dialogue.text:
-            number = self.dialogue.number
-            self.dialogue.restart()
-            self.desk.say(tr("D{number} IS AS IT WAS").format(number=number) if number else "")
-        else:
-            return False
+        if key == "Enter":
+            self._enter()
+        elif key == "Back":
+            self.text = self.text[:-1]
+        elif key == "Delete":
+            self.text = ""
+        elif len(self.text) < LONGEST:
+            self.text += key
         return True
 
-    def leave(self) -> None:
-        """The page goes: nothing stays half entered."""
-        self.desk.clear()
-        self.ledger.looking_back = None
-        self.dialogue.restart()
+    def choose(self, number: int) -> None:
+        """The number, by a finger on its row; in the middle of an entry it is not taken."""
+        if self.step is Step.NUMBER:
+            self.text = str(number)
+            self._enter()
+        else:
+            self.desk.say(tr("FINISH D{number} FIRST, OR PRESS ESC").format(number=self.number))
+
+    def clear(self) -> None:
+        """C; not in the middle of an entry."""
+        whole = self.barred(self.desk.snapshot(), correction=False)
+        if not whole and self.step is not Step.NUMBER:
+            self.desk.say(tr("C CLEARS ALL OFFSETS ONLY WHILE Offset Number? IS ASKED; PRESS ESC FIRST"))
+        else:
+            super().clear()
+
+    def take_back(self) -> bool:
+        """The entry that was begun."""
+        if self.step is Step.NUMBER and not self.text:
+            return False
+        number = self.number
+        self.drop()
+        self.desk.say(tr("D{number} IS AS IT WAS").format(number=number) if number else "")
+        return True
+
+    def drop(self) -> None:
+        """Back to the number; what was entered so far is forgotten."""
+        self.step, self.number, self.text = Step.NUMBER, 0, ""
+        self._answers, self._typed = [], []
+
+    def _enter(self) -> None:
+        if why := self.barred(self.desk.snapshot(), correction=True):
+            self.desk.say(why)
+            return
+        try:
+            self._take_number() if self.step is Step.NUMBER else self._take_value()
+        except EntryError as error:
+            self.desk.say(tr("REFUSED: {why}").format(why=error))
+
+    def _take_number(self) -> None:
+        value = value_of(self.text)
+        if value not in OFFSETS:
+            raise EntryError(tr("D{number:g} does not exist; offsets are D1…32").format(number=value))
+        self.number, self.step, self.text = int(value), Step.X, ""
+
+    def _take_value(self) -> None:
+        at, text = self.step - 1, self.text.strip()
+        new = old = (self.old or SecondaryRow())[at]
+        if text:
+            new = corrected(self.step, old, value_of(text), self.mode)
+            self._check(new)
+        typed = f"{self.step.name} {text}" if text else ""
+        if self.step is not Step.R:
+            self._answers.append(new)
+            self._typed.append(typed)
+            self.step, self.text = Step(self.step + 1), ""
+        else:
+            self._save(SecondaryRow(self._answers[0], self._answers[1], new), [*self._typed, typed])
+
+    def _check(self, mm: float) -> None:
+        """Raises EntryError for a value that is not kept."""
+        low, high = (0.0, RADIUS_MAX) if self.step is Step.R else (-SECONDARY_REACH, SECONDARY_REACH)
+        if not low <= mm <= high:
+            unit, name = self.mode.unit, f"D{self.number} {self.step.name}"
+            figure = length(mm, self.mode.metric)
+            raise EntryError(out_of_range(name, figure, self.mode.name, low / unit, high / unit))
+
+    def _save(self, new: SecondaryRow, typed: list[str]) -> None:
+        if new == self.old:
+            self.desk.say(tr("D{number} IS AS IT WAS").format(number=self.number))
+            self.drop()
+            return
+        reason = ("MM " if self.mode.metric else "") + " ".join(filter(None, typed))
+        why = self.book.change(self.kind, self.number, new._asdict(), reason)
+        if why:
+            self.desk.say(why)
+        else:
+            self.drop()

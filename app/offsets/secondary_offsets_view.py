@@ -1,4 +1,4 @@
-"""F9 SECCMP: 32 secondary offsets in the control's own words."""
+"""Secondary offsets, F9: 32 in two columns of sixteen; a finger has eight of them brought near first."""
 
 from __future__ import annotations
 
@@ -13,17 +13,13 @@ from app.desk.formats import length
 from app.desk.translation import tr
 from app.offsets.offset_values import Mode, signed
 from app.offsets.offsets_view import OffsetPage
-from app.offsets.secondary_dialogue import CHARACTERS
-from app.offsets.secondary_offsets import SeccmpDesk
+from app.offsets.secondary_offsets import SecondaryOffsets
 from app.screen import page_table
-from app.screen.entry_panel import Asked
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.page_base import Host
 from app.screen.panel import Panel
+from core.executor.snapshot import Snapshot
 from core.store.store_rows import SecondaryRow
-
-# --- Thirty-two secondary offsets in two columns of sixteen; a finger has eight of them brought near first.
-
 
 ROWS = 16
 NEAR = 8  # offsets that are shown large: half a column
@@ -32,7 +28,7 @@ BAR = 6.8  # units: a finger's height
 _NUMBER, _X, _Z = 0.09, 0.42, 0.73
 
 
-class OffsetTable(Panel):
+class SecondaryTable(Panel):
     """The row being changed is filled, the last changed has a bar.
 
     Sixteen rows leave a row a third of a finger's width, so that a finger on the table brings the eight
@@ -148,24 +144,17 @@ def _boxes(room: QRectF, rows: int, gap: float) -> list[QRectF]:
     ]
 
 
-class SeccmpPage(OffsetPage):
+class SecondaryOffsetsPage(OffsetPage):
     """F9, secondary offsets."""
 
     NAME = page_table.SECCMP
     LABELS = ("MENU", "", "", "UNDO", "HISTORY", "EFFECT", "ALARMS", "TOOLS", "", "ZERO")
+    model: SecondaryOffsets
+    table: SecondaryTable
 
     def __init__(self, host: Host, parent: QWidget) -> None:
-        self.model = SeccmpDesk(host.desk, host.desk.book)
-        super().__init__(host, parent, self.model)
-        self.table = OffsetTable(self.look, self.model.dialogue.choose, self)
-
-    def board(self) -> QWidget:
-        """The table of this page."""
-        return self.table
-
-    def takes(self, key: str) -> bool:
-        """Figures, signs, and C."""
-        return key in CHARACTERS or key == "C"
+        super().__init__(host, parent, SecondaryOffsets(host.desk))
+        self.table = SecondaryTable(self.look, self.model.choose, self)
 
     def escape(self) -> bool:
         """Eight offsets that were brought near go back first."""
@@ -179,12 +168,8 @@ class SeccmpPage(OffsetPage):
         self.table.bring_near(0)
         return super().leave()
 
-    def show_offsets(self) -> None:
-        """The table and the question as they are now."""
-        model, dialogue = self.model, self.model.dialogue
-        marked = {change.number for change in model.ledger.last}
-        self.table.show_offsets(model.book.secondary, dialogue.number, marked, dialogue.mode)
-        which = tr("Secondary offset number:")
-        if dialogue.number:
-            which = f"{which} {dialogue.number}"
-        self.asked.show_asked(Asked(which, dialogue.question, dialogue.text, model.old_to_new, model.foot))
+    def show_table(self, _snapshot: Snapshot) -> None:
+        """The table as it is now."""
+        model = self.model
+        marked = {change.number for change in model.history.last}
+        self.table.show_offsets(model.book.secondary, model.number, marked, model.mode)

@@ -1,4 +1,4 @@
-"""F8 TOOL OFFSETS: every field of 32 tools in one table."""
+"""Tool offsets, F8: some of the 32 tools, each field a cell that a finger or the cursor chooses."""
 
 from __future__ import annotations
 
@@ -10,20 +10,16 @@ from PySide6.QtGui import QPainter, QPolygonF, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.offsets import tool_offsets
-from app.offsets.offset_values import marked, not_set, word
+from app.offsets.offset_values import heading, not_set
 from app.offsets.offsets_view import OffsetPage
-from app.offsets.tool_offsets import COLUMNS, PAGE, ToolGrid
+from app.offsets.tool_offsets import COLUMNS, PAGE, ToolOffsets
 from app.screen import page_table
-from app.screen.entry_panel import Asked
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.page_base import Doings, Host
 from app.screen.panel import Panel
 from app.screen.tool_tip_drawing import draw_tip
+from core.executor.snapshot import Snapshot
 from core.store.store_rows import OFFSETS
-
-# --- F8's table: some of the 32 tools, each field a cell that a finger or the cursor chooses.
-
 
 NUMBER, SCROLL = 5.4, 7.4  # units: width of the column of numbers, of the arrows that leaf
 HEAD = 3.2  # units: height of the names of the columns
@@ -40,26 +36,26 @@ SHARES = {
 }
 
 
-class GridTable(Panel):
+class ToolTable(Panel):
     """Draws the model; redrawn when something of it has changed."""
 
-    def __init__(self, look: Look, model: ToolGrid, parent: QWidget) -> None:
+    def __init__(self, look: Look, model: ToolOffsets, parent: QWidget) -> None:
         super().__init__(look, parent)
         self._model = model
         self._shown: tuple[object, ...] = ()
         self.top = 1  # the first number that is shown
         self.choose: Callable[[int, int], None] = model.choose
 
-    def show_grid(self) -> None:
+    def show_tools(self) -> None:
         """The model as it is now; the cursor is always in sight."""
         model = self._model
         last = OFFSETS[-1] - PAGE + 1
         self.top = max(model.number - PAGE + 1, min(self.top, model.number, last), 1)
         shown = (
             model.book.tools,
-            (model.number, model.column, self.top, model.relative, model.ledger.mode),
-            dict(model.cells.new.values),
-            tuple(change.number for change in model.ledger.last),
+            (model.number, model.column, self.top, model.relative, model.mode),
+            dict(model.fields.new.values),
+            tuple(change.number for change in model.history.last),
         )
         if shown != self._shown:
             self._shown = shown
@@ -71,7 +67,7 @@ class GridTable(Panel):
 
     def draw(self, painter: QPainter) -> None:
         u, model = self.look.u, self._model
-        mode = model.ledger.mode
+        mode = model.mode
         x = tr("X IS A DIAMETER") if mode.diameter else tr("X IS A RADIUS")
         title = f"{tr('TOOL OFFSETS')}  ·  {tr('MM') if mode.metric else tr('INCH')}  ·  {x}"
         if model.relative:
@@ -89,11 +85,10 @@ class GridTable(Panel):
             self._row(painter, row, self.top + place, columns)
 
     def _head(self, painter: QPainter, head: QRectF, columns: dict[str, tuple[float, float]]) -> None:
-        look, u, mode = self.look, self.look.u, self._model.ledger.mode
+        look, u, mode = self.look, self.look.u, self._model.mode
         painter.setPen(look.colour("soft"))
         for name, (left, wide) in columns.items():
-            mark = marked(name, mode)
-            text = f"{word(name)} {mark}" if mark else word(name)
+            text = heading(name, mode)
             painter.setFont(look.fit(text, 1.5, wide - 0.6 * u, bold=True))
             put(painter, QRectF(left, head.y(), wide - 0.4 * u, head.height()), CENTRE, text)
 
@@ -132,7 +127,7 @@ class GridTable(Panel):
         here = number == model.number
         if here:
             painter.fillRect(row, look.colour("here"))
-        if number in {change.number for change in model.ledger.last}:
+        if number in {change.number for change in model.history.last}:
             painter.fillRect(QRectF(row.x(), row.y(), 0.5 * u, row.height()), look.colour("lit"))
         painter.setPen(look.colour("accent"))
         painter.setFont(look.font(2.2, bold=True))
@@ -146,14 +141,14 @@ class GridTable(Panel):
                 painter.setBrush(Qt.BrushStyle.NoBrush)
                 painter.drawRect(cell.adjusted(0.2 * u, 0.1 * u, -0.2 * u, -0.1 * u))
             self.place(cell, partial(self.choose, number, at))
-        if unset and number != model.cells.new.number:
+        if unset and number != model.fields.new.number:
             painter.setPen(look.colour("soft"))
             painter.setFont(look.font(1.9))
             put(painter, QRectF(columns["x"][0] + u, row.y(), 14 * u, row.height()), LEFT, not_set())
 
     def _cell(self, painter: QPainter, cell: QRectF, number: int, name: str) -> None:
         look, u = self.look, self.look.u
-        text = tool_offsets.cell(self._model, number, name)
+        text = self._model.cell(number, name)
         room = cell.adjusted(0.8 * u, 0, -0.9 * u, 0)
         if name == "quadrant" and text:
             draw_tip(
@@ -169,34 +164,22 @@ class GridTable(Panel):
         put(painter, room, LEFT if name == "remark" else RIGHT, text)
 
 
-class ToolsPage(OffsetPage):
+class ToolOffsetsPage(OffsetPage):
     """F8, tool offsets."""
 
     NAME = page_table.TOOLS
     LABELS = ("MENU", "ADD", "MASTER", "UNDO", "HISTORY", "EFFECT", "ALARMS", "", "SECCMP", "ZERO")
+    model: ToolOffsets
+    table: ToolTable
 
     def __init__(self, host: Host, parent: QWidget) -> None:
-        self.model = ToolGrid(host.desk, host.desk.book)
-        super().__init__(host, parent, self.model)
-        self.table = GridTable(self.look, self.model, self)
-
-    def board(self) -> QWidget:
-        """The table of this page."""
-        return self.table
-
-    def takes(self, key: str) -> bool:
-        """Figures and signs; every character while a remark is written."""
-        return self.model.takes(key)
+        super().__init__(host, parent, ToolOffsets(host.desk))
+        self.table = ToolTable(self.look, self.model, self)
 
     def doings(self) -> Doings:
         """Add to what is there; X and Z from the master; the rest as on F9."""
         return {**super().doings(), "F2": self.model.add, "F3": self.model.turn_relative}
 
-    def show_offsets(self) -> None:
-        """The table and the question as they are now."""
-        model = self.model
-        self.table.show_grid()
-        foot = tr("F2 adds what is typed; F3 shows X and Z from the master; Esc leaves")
-        self.asked.show_asked(
-            Asked("", tool_offsets.question(model), model.text, tool_offsets.old_to_new(model), foot)
-        )
+    def show_table(self, _snapshot: Snapshot) -> None:
+        """The table as it is now."""
+        self.table.show_tools()

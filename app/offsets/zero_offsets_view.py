@@ -1,4 +1,4 @@
-"""The page of G54 to G59: the table, the cell that is typed over, a pad of keys, and the history."""
+"""Zero offsets, G54 to G59: a row each, X, Z and C."""
 
 from __future__ import annotations
 
@@ -6,26 +6,19 @@ from collections.abc import Callable, Mapping
 from functools import partial
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QPainter, QResizeEvent
+from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
-from app.desk.machine_status import MachineStatus
-from app.desk.program_loading import Loaded
 from app.desk.translation import tr
-from app.offsets.offset_history_view import HistoryList
-from app.offsets.offset_values import shown_zero, zero_change_in_words
-from app.offsets.secondary_dialogue import CHARACTERS
-from app.offsets.zero_offsets import ZeroDesk
+from app.offsets.offset_values import signed_zero_offset
+from app.offsets.offsets_view import OffsetPage
+from app.offsets.zero_offsets import ZERO_FIELDS, ZeroOffsets
 from app.screen import page_table
-from app.screen.entry_panel import Asked, AskedPanel, KeyPad
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
-from app.screen.page_base import Doings, Host, Page
+from app.screen.page_base import Doings, Host
 from app.screen.panel import Panel
 from core.executor.snapshot import Snapshot
-from core.store.zero_offset_table import ZERO_CODES, ZERO_FIELDS, ZeroRow
-
-# --- G54 to G59, a row each: X, Z and C.
-
+from core.store.store_rows import ZERO_CODES, ZeroRow
 
 _NAME = 0.16  # share of the width for the code
 
@@ -82,7 +75,7 @@ class ZeroTable(Panel):
             here = (row, column) == self.cell
             painter.fillRect(cell, look.colour("here" if here else "key"))
             painter.setPen(look.colour("text" if offset is not None or here else "soft"))
-            figure = shown_zero(getattr(offset or ZeroRow(), name))
+            figure = signed_zero_offset(getattr(offset or ZeroRow(), name))
             painter.setFont(look.fit(figure, 3.0, cell.width() - 2.4 * u, bold=offset is not None))
             put(painter, cell.adjusted(0, 0, -1.2 * u, 0), RIGHT, figure)
             self.place(cell, partial(self._choose, row, column))
@@ -91,98 +84,24 @@ class ZeroTable(Panel):
 PAD, ASKED = 28.4, 12.4  # units: width of the pad, height of the entry
 
 
-class ZeroPage(Page):
-    """The model decides, this only shows it and hands the keys on."""
+class ZeroOffsetsPage(OffsetPage):
+    """G54 to G59."""
 
     NAME = page_table.ZERO
     LABELS = ("MENU", "HERE", "", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "")
+    model: ZeroOffsets
+    table: ZeroTable
 
     def __init__(self, host: Host, parent: QWidget) -> None:
-        super().__init__(host, parent)
-        self.model = ZeroDesk(host.desk)
+        super().__init__(host, parent, ZeroOffsets(host.desk))
         self.table = ZeroTable(self.look, self.model.choose, self)
-        self.history = HistoryList(self.look, self)
-        self.asked = AskedPanel(self.look, self)
-        self.pad = KeyPad(self.look, self._touched, own=("C", "C"), parent=self)
 
     def doings(self) -> Doings:
-        """The position of the machine, undo, history, and the other tables."""
-        return {
-            "F2": self.model.here,
-            "F4": self.model.undo,
-            "F5": self._toggle,
-            "F8": lambda: self._go(page_table.TOOLS),
-            "F9": lambda: self._go(page_table.SECCMP),
-        }
+        """The position of the machine; no effect is drawn of these."""
+        shared = {key: act for key, act in super().doings().items() if key not in {"F6", "F10"}}
+        return {**shared, "F2": self.model.here}
 
-    def _go(self, name: str) -> None:
-        self.host.go(name)
-
-    def _toggle(self) -> None:
-        self.model.ledger.toggle_history()
-        self.history.look_at(0)
-
-    def typed(self, key: str) -> bool:
-        """Figures and signs are the entry's; letters stay what they are everywhere, but for C."""
-        if self.history.isVisible() and key in {"Page up", "Page down"}:
-            self.history.look_at(self.history.top + (1 if key == "Page down" else -1) * self.history.rows)
-            return True
-        return self.model.typed(key)
-
-    def takes(self, key: str) -> bool:
-        """Figures, signs, and C."""
-        return key in CHARACTERS or key == "C"
-
-    def has_field(self) -> bool:
-        """Figures are always typed here."""
-        return True
-
-    def _touched(self, key: str) -> None:
-        if key == "Esc":
-            self.host.press(key)
-        else:
-            self.typed(key)
-
-    def prompt(self) -> str:
-        """From the model."""
-        return self.model.prompt(self.desk.snapshot())
-
-    def opened(self) -> None:
-        """What was changed elsewhere is no news here."""
-        self.model.ledger.opened()
-
-    def leave(self) -> bool:
-        """Nothing stays half entered."""
-        self.model.leave()
-        return True
-
-    def escape(self) -> bool:
-        """Esc goes one step back, and then to the Automatic page."""
-        if not self.model.escape():
-            self.host.go(page_table.AUTOMATIC)
-        return True
-
-    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
-        """The table as the store has it, and the entry."""
+    def show_table(self, snapshot: Snapshot) -> None:
+        """The table as it is now, and which offset is in force."""
         model = self.model
-        model.ledger.look()
-        changes = model.ledger.looking_back
-        self.history.setVisible(changes is not None)
-        self.table.setVisible(changes is None)
-        if changes is not None:
-            self.history.show_entries(tuple(zero_change_in_words(change) for change in changes))
-        self.table.show_rows(model.book.rows, (model.row, model.column), snapshot.modal.settable)
-        foot = tr(
-            "F2: where the machine stands reads what is typed        C: clear G54 to G59        Esc: exit"
-        )
-        self.asked.show_asked(Asked("", model.question, model.text, model.old_to_new, foot))
-
-    def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Table over entry, the pad at their right."""
-        u = self.look.u
-        pad, high, gap = round(PAD * u), round(ASKED * u), max(4, round(0.7 * u))
-        wide, table = self.width() - pad - gap, self.height() - high - gap
-        for part in (self.table, self.history):
-            part.setGeometry(0, 0, wide, table)
-        self.asked.setGeometry(0, table + gap, wide, high)
-        self.pad.setGeometry(wide + gap, 0, pad, self.height())
+        self.table.show_rows(model.book.zero, (model.row, model.column), snapshot.modal.settable)

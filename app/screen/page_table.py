@@ -56,7 +56,7 @@ PAGES = (
     ),
     PageEntry(
         TOOLS,
-        "app.offsets.tool_offsets_view.ToolsPage",
+        "app.offsets.tool_offsets_view.ToolOffsetsPage",
         "",
         "F8",
         "TOOLS",
@@ -64,7 +64,7 @@ PAGES = (
     ),
     PageEntry(
         SECCMP,
-        "app.offsets.secondary_offsets_view.SeccmpPage",
+        "app.offsets.secondary_offsets_view.SecondaryOffsetsPage",
         "",
         "F9",
         "SECCMP",
@@ -72,7 +72,7 @@ PAGES = (
     ),
     PageEntry(
         ZERO,
-        "app.offsets.zero_offsets_view.ZeroPage",
+        "app.offsets.zero_offsets_view.ZeroOffsetsPage",
         "",
         "G",
         "ZERO",

@@ -6,10 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
-from app.desk.arithmetic import LONGEST
+from app.desk.arithmetic import CHARACTERS, LONGEST
 from app.desk.desk import Desk
 from app.desk.machine_status import Tone
-from app.offsets.secondary_dialogue import CHARACTERS
 from core.executor.snapshot import Snapshot
 
 

@@ -12,8 +12,8 @@ from app.desk.desk import Desk
 from app.desk.program_folder import ProgramFolders
 from app.desk.program_loading import LoadingSteps, ProgramLoader, Proved
 from app.offsets.offset_book import OffsetBook
-from app.offsets.secondary_offsets import SeccmpDesk
-from app.offsets.tool_offsets import ToolGrid
+from app.offsets.secondary_offsets import SecondaryOffsets
+from app.offsets.tool_offsets import ToolOffsets
 from app.path.path_picture import Sketch
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import Snapshot, State
@@ -38,15 +38,15 @@ class Room:
         modal = self.now[0].modal._replace(metric=metric, diameter=diameter)
         self.now[0] = replace(self.now[0], state=state, modal=modal)
 
-    def page(self) -> SeccmpDesk:
+    def page(self) -> SecondaryOffsets:
         """F9, on the desk's book."""
-        return SeccmpDesk(self.desk, self.desk.book)
+        return SecondaryOffsets(self.desk)
 
-    def grid(self) -> ToolGrid:
+    def grid(self) -> ToolOffsets:
         """F8, on the desk's book."""
-        return ToolGrid(self.desk, self.desk.book)
+        return ToolOffsets(self.desk)
 
-    def enter(self, page: SeccmpDesk | ToolGrid, *answers: str) -> None:
+    def enter(self, page: SecondaryOffsets | ToolOffsets, *answers: str) -> None:
         """Type each answer with its Return, and wait until what they change is saved."""
         page.look(self.now[0])
         for answer in answers:
@@ -55,7 +55,7 @@ class Room:
             assert page.typed("Enter")
         self.settle(page)
 
-    def settle(self, page: SeccmpDesk | ToolGrid) -> None:
+    def settle(self, page: SecondaryOffsets | ToolOffsets) -> None:
         """Wait for the disk, then look as a frame would."""
         self.store.write(lambda _connection: None).result(LIMIT)
         self.desk.look()

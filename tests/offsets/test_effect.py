@@ -10,7 +10,7 @@ import pytest
 from app.compose.machine_setup import setup_for
 from app.compose.workshop import drawer
 from app.desk.latest import Watch
-from app.offsets.effect import Effect, Tables
+from app.offsets.offset_effect import Effect, Tables
 from app.path.path_picture import Picture
 from core.executor.job import Job, make_job
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_values import row
-from app.offsets.secondary_dialogue import Step
+from app.offsets.offset_values import Mode, in_words
+from app.offsets.secondary_offsets import Step
 from core.executor.snapshot import State
 from core.store.store_rows import Kind, SecondaryRow
 from tests.offsets.conftest import LIMIT, Room
@@ -19,10 +19,10 @@ def test_the_questions_in_their_order(room: Room) -> None:
     page = room.page()
     asked = []
     for key in ("1", "", "", ""):
-        asked.append(page.dialogue.question)
+        asked.append(page.question)
         room.enter(page, key)
     assert asked == ["Offset Number?", "X DIAMETER CORRECTION?", "Z CORRECTION?", "R?"]
-    assert page.dialogue.step is Step.NUMBER
+    assert page.step is Step.NUMBER
 
 
 def test_x_is_halved_and_added_z_added_r_replaced(room: Room) -> None:
@@ -31,12 +31,12 @@ def test_x_is_halved_and_added_z_added_r_replaced(room: Room) -> None:
     room.enter(page, "3", "-.001", ".002", ".0312")
     x, z, r = (value / 25.4 for value in room.store.secondary()[3])
     assert (x, z, r) == pytest.approx((-0.001, 0.004, 0.0312), abs=1e-12)
-    assert row(3, room.store.secondary()[3], metric=False) == "3  X: −0.00100 Z: +0.00400R: 0.03120"
+    assert in_words(room.store.secondary()[3], Mode()) == "X −0.00100  Z +0.00400  R 0.03120"
 
 
 def test_an_empty_row_reads_as_on_the_control() -> None:
-    assert row(1, SecondaryRow(), metric=False) == "1  X: +0.00000 Z: +0.00000R: 0.00000"
-    assert row(32, SecondaryRow(0.0, -0.01, 0.4), metric=True) == "32  X: +0.0000 Z: −0.0100R: 0.4000"
+    assert in_words(SecondaryRow(), Mode()) == "X +0.00000  Z +0.00000  R 0.00000"
+    assert in_words(SecondaryRow(0.0, -0.01, 0.4), Mode(metric=True)) == "X +0.0000  Z −0.0100  R 0.4000"
 
 
 def test_ten_small_corrections_are_one_large_one(room: Room) -> None:
@@ -63,7 +63,7 @@ def test_arithmetic_and_the_preview_of_old_and_new(room: Room) -> None:
         page.typed(key)
     assert page.old_to_new.endswith("→  X +0.24900  Z +0.00000  R 0.00000")
     page.typed("+")  # half a sum: the last figure that was one
-    assert page.dialogue.preview == (0.0, 0.0, 0.0)
+    assert page.preview == (0.0, 0.0, 0.0)
     page.typed("Back")
     room.enter(page, "", "", "")
     assert room.store.secondary()[1].x == pytest.approx(0.249 * 25.4)
@@ -90,7 +90,7 @@ def test_refusals_say_what_and_why_and_ask_again(room: Room, answers: tuple[str,
     page = room.page()
     room.enter(page, *answers)
     assert room.desk.notice == why
-    assert page.dialogue.text == answers[-1]
+    assert page.text == answers[-1]
     assert room.store.secondary() == {}
 
 
@@ -107,7 +107,7 @@ def test_a_unit_that_changes_in_the_middle_gives_the_entry_up(room: Room) -> Non
     room.enter(page, "1", ".02")
     room.at(metric=True)
     page.look(room.now[0])
-    assert page.dialogue.step is Step.NUMBER
+    assert page.step is Step.NUMBER
     assert "NOTHING WAS CHANGED" in room.desk.notice
     assert room.store.secondary() == {}
 
@@ -117,7 +117,7 @@ def test_escape_goes_back_step_by_step(room: Room) -> None:
     room.enter(page, "4", ".1")
     assert page.escape()
     assert room.desk.notice == "D4 IS AS IT WAS"
-    assert page.dialogue.question == "Offset Number?"
+    assert page.question == "Offset Number?"
     assert not page.escape()
     assert room.store.secondary() == {}
 
@@ -176,14 +176,14 @@ def test_undo_takes_back_secondary_offsets_only(room: Room) -> None:
 def test_the_history_has_time_from_to_and_reason(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".5-.002", "", "")
-    page.ledger.toggle_history()
-    assert page.ledger.looking_back is not None
-    at, which, change, why = page.ledger.told(page.ledger.looking_back[0])
+    page.history.toggle()
+    assert page.history.shown is not None
+    at, which, change, why = page.history.in_words(page.history.shown[0])
     assert at.startswith("20")
     assert (which, why) == ("D1", "X .5-.002")
     assert change == "not set  →  X +0.24900  Z +0.00000  R 0.00000"
     assert page.escape()
-    assert page.ledger.looking_back is None
+    assert page.history.shown is None
 
 
 def test_a_change_loads_the_program_again(room: Room) -> None:
@@ -281,8 +281,8 @@ def test_offsets_of_a_file_are_read_only(room: Room) -> None:
     page.typed("C")
     page.undo()
     assert room.desk.notice == "READ ONLY"
-    assert page.dialogue.old is None
-    assert page.book.of(Kind.SECONDARY, 1) == (0.0, 0.1, 0.0)
+    assert page.old is None
+    assert page.book.secondary.get(1) == (0.0, 0.1, 0.0)
 
 
 def test_a_change_before_the_last_is_saved_is_not_taken(room: Room) -> None:
@@ -292,7 +292,7 @@ def test_a_change_before_the_last_is_saved_is_not_taken(room: Room) -> None:
     assert book.undo(Kind.SECONDARY).startswith("STILL SAVING")
     room.store.write(lambda _connection: None).result(LIMIT)
     assert book.poll() == ""
-    assert book.of(Kind.SECONDARY, 1) == (0.1, 0.0, 0.0)
+    assert book.secondary.get(1) == (0.1, 0.0, 0.0)
 
 
 def test_a_store_that_is_closed_is_told(room: Room) -> None:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.offsets import tool_offsets
-from app.offsets.tool_offsets import ToolGrid
+from app.offsets.tool_offsets import ToolOffsets
 from core.executor.snapshot import State
 from core.store.store_rows import ToolRow
 from tests.offsets.conftest import LIMIT, Room
@@ -17,10 +16,10 @@ def set_tools(room: Room) -> None:
     """T1 and T2 stand in the table."""
     room.store.set_tool(1, "touched off", x=-12.7, z=-76.2, nose_radius=0.381)
     room.store.set_tool(2, "touched off", x=25.4, z=-50.8).result(LIMIT)
-    room.desk.book.__post_init__()  # as a desk that is opened now reads them
+    room.desk.book.read()  # as a desk that is opened now reads them
 
 
-def at(room: Room, number: int, name: str) -> ToolGrid:
+def at(room: Room, number: int, name: str) -> ToolOffsets:
     """F8 with the cursor on a cell."""
     grid = room.grid()
     grid.look(room.now[0])
@@ -29,7 +28,7 @@ def at(room: Room, number: int, name: str) -> ToolGrid:
     return grid
 
 
-def write(grid: ToolGrid, text: str) -> None:
+def write(grid: ToolOffsets, text: str) -> None:
     for key in text:
         assert grid.typed(key)
 
@@ -115,7 +114,7 @@ def test_half_a_tool_is_forgotten_when_it_is_left(room: Room) -> None:
     room.enter(grid, "1")
     grid.typed("Down")
     assert room.desk.notice == "T7 IS NOT SET: X AND Z BELONG TOGETHER"
-    assert tool_offsets.cell(grid, 7, "z") == ""
+    assert grid.cell(7, "z") == ""
     assert room.store.tools() == {}
 
 
@@ -138,8 +137,8 @@ def test_the_master_is_chosen_and_the_others_are_shown_from_it(room: Room) -> No
     assert {n: row.offset for n, row in room.store.tools().items()} == before
     grid.turn_relative()
     # T1 - T2: X (-.5 - 1) in, Z (-3 - -2) in
-    assert (tool_offsets.cell(grid, 1, "x"), tool_offsets.cell(grid, 1, "z")) == ("−1.50000", "−1.00000")
-    assert tool_offsets.cell(grid, 2, "x") == "+1.00000"
+    assert (grid.cell(1, "x"), grid.cell(1, "z")) == ("−1.50000", "−1.00000")
+    assert grid.cell(2, "x") == "+1.00000"
     room.enter(grid, "")
     assert room.desk.book.master == 0
     grid.choose(1, 0)
@@ -155,7 +154,7 @@ def test_the_cursor_does_not_leave_what_is_typed(room: Room) -> None:
     grid.typed("Down")
     assert (grid.number, grid.text) == (1, "1")
     assert room.desk.notice.startswith("PRESS RETURN TO SET IT")
-    assert tool_offsets.old_to_new(grid) == "−0.50000  →  +1.00000"
+    assert grid.old_to_new == "−0.50000  →  +1.00000"
     assert grid.escape()
     grid.typed("Page down")
     assert grid.number == 6
@@ -261,9 +260,9 @@ def test_undo_and_history(room: Room) -> None:
     room.settle(grid)
     assert room.store.tools()[1].wear_x == 0.0
     assert room.desk.notice == "T1 TAKEN BACK"
-    grid.ledger.toggle_history()
-    assert grid.ledger.looking_back is not None
-    at_, which, change, why = grid.ledger.told(grid.ledger.looking_back[1])
+    grid.history.toggle()
+    assert grid.history.shown is not None
+    at_, which, change, why = grid.history.in_words(grid.history.shown[1])
     assert (which, why) == ("T1", "WEAR X -.001")
     assert change == "WEAR X +0.00000 → −0.00100"
     assert at_.startswith("20")

@@ -15,7 +15,7 @@ from app.desk.program_folder import ProgramFolders
 from app.desk.program_loading import LoadingSteps, ProgramLoader, Proved
 from app.editor.editor import Editor
 from app.editor.versions import Archive, Bench, NoArchive
-from app.offsets.effect import Effect
+from app.offsets.offset_effect import Effect
 from app.path.path_picture import Picture, sketched
 from core.executor.job import Job
 from core.interpreter.dialects import ReadProgram

@@ -12,8 +12,8 @@ from PySide6.QtTest import QTest
 
 from app.desk.program_loading import Phase
 from app.offsets.offset_book import OffsetBook
-from app.offsets.secondary_offsets_view import SeccmpPage
-from app.offsets.tool_offsets_view import ToolsPage
+from app.offsets.secondary_offsets_view import SecondaryOffsetsPage
+from app.offsets.tool_offsets_view import ToolOffsetsPage
 from app.screen import page_table
 from app.screen.panel import Panel
 from app.screen.window_layout import FINGER
@@ -32,15 +32,15 @@ def store(hands: Hands, tmp_path: Path) -> Iterator[Store]:
         yield store
 
 
-def page_of(hands: Hands) -> SeccmpPage:
+def page_of(hands: Hands) -> SecondaryOffsetsPage:
     page = hands.frame.page
-    assert isinstance(page, SeccmpPage)
+    assert isinstance(page, SecondaryOffsetsPage)
     return page
 
 
-def tools_of(hands: Hands) -> ToolsPage:
+def tools_of(hands: Hands) -> ToolOffsetsPage:
     page = hands.frame.page
-    assert isinstance(page, ToolsPage)
+    assert isinstance(page, ToolOffsetsPage)
     return page
 
 
@@ -250,10 +250,10 @@ def test_a_finger_alone_enters_an_offset(hands: Hands, store: Store) -> None:
     page = page_of(hands)
     hands.sees(lambda: bool(page.pad._places) and len(page.table._places) == 4)
     touch(hands, page.table, 2)  # the upper half of the right column
-    assert page.model.dialogue.number == 0
+    assert page.model.number == 0
     assert page.table.near == 17
     touch(hands, page.table, 0)
-    assert page.model.dialogue.number == 17
+    assert page.model.number == 17
     assert page.table.near == 0
     point, two, enter = 13, 9, 20  # places on the pad, row by row
     for key in (point, two, enter, enter, enter):
@@ -283,7 +283,7 @@ def test_every_offset_is_reached_by_a_finger(
     for place in range(8):
         touch(hands, page.table, zone)
         touch(hands, page.table, place)
-        assert page.model.dialogue.number == first + place
+        assert page.model.number == first + place
         hands.key(Key.Key_Escape)
 
 
@@ -292,7 +292,7 @@ def test_offsets_that_were_brought_near_go_back_by_finger_and_by_escape(hands: H
     page = page_of(hands)
     touch(hands, page.table, 1)
     touch(hands, page.table, 8)  # ALL 32
-    assert (page.table.near, page.model.dialogue.number) == (0, 0)
+    assert (page.table.near, page.model.number) == (0, 0)
     touch(hands, page.table, 1)
     hands.key(Key.Key_Escape)
     assert page.table.near == 0
@@ -300,7 +300,7 @@ def test_offsets_that_were_brought_near_go_back_by_finger_and_by_escape(hands: H
     touch(hands, page.table, 3)
     answer(hands, "7")  # typed all the same
     hands.sees(lambda: page.table.near == 0)
-    assert page.model.dialogue.number == 7
+    assert page.model.number == 7
 
 
 def test_the_effect_of_what_is_typed_and_of_what_was_changed(hands: Hands, store: Store) -> None:

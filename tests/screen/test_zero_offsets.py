@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from app.offsets.offset_book import ZeroBook
-from app.offsets.zero_offsets_view import ZeroPage
+from app.offsets.offset_book import OffsetBook
+from app.offsets.zero_offsets_view import ZeroOffsetsPage
 from app.screen import page_table
 from core.executor.snapshot import State
 from core.store.store import Store
-from core.store.zero_offset_table import ZeroRow
+from core.store.store_rows import ZeroRow
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
 
@@ -21,16 +21,16 @@ from tests.screen.yes import yes
 @pytest.fixture
 def store(hands: Hands, tmp_path: Path) -> Iterator[Store]:
     with Store.open(tmp_path / "home") as store:
-        hands.desk.zero = ZeroBook(store)
+        hands.desk.book = OffsetBook(store)
         yield store
 
 
-def opened(hands: Hands) -> ZeroPage:
+def opened(hands: Hands) -> ZeroOffsetsPage:
     """From the main menu."""
     hands.key(Key.Key_F1)
     hands.key(Key.Key_G)
     page = hands.frame.page
-    assert isinstance(page, ZeroPage)
+    assert isinstance(page, ZeroOffsetsPage)
     assert hands.frame.title.page == page_table.ZERO
     return page
 
@@ -124,7 +124,7 @@ def test_from_the_other_tables_and_back(hands: Hands, store: Store) -> None:
     assert store.zero_offsets() == {}
     hands.key(Key.Key_F8)
     hands.key(Key.Key_F10)
-    assert isinstance(hands.frame.page, ZeroPage)
+    assert isinstance(hands.frame.page, ZeroOffsetsPage)
     hands.key(Key.Key_F9)
     assert hands.frame.title.page == page_table.SECCMP
 
@@ -132,7 +132,7 @@ def test_from_the_other_tables_and_back(hands: Hands, store: Store) -> None:
 def test_without_a_store_the_reason_is_told(hands: Hands) -> None:
     page = opened(hands)
     enter(hands, "3")
-    hands.sees(lambda: hands.prompt() == "NO ZERO OFFSETS ARE KEPT HERE")
+    hands.sees(lambda: hands.prompt() == "NO OFFSETS ARE KEPT HERE")
     assert page.table.rows == {}
 
 

@@ -17,6 +17,7 @@ from app.desk.readouts import Readout
 from app.editor.editor import Editor
 from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
+from core.store.store_rows import Kind
 from drivers.clocks import StepClock
 
 MAIN = """\
@@ -120,8 +121,8 @@ def test_single_block_stops_between_a_move_and_a_turn_of_c(bench: Bench) -> None
 
 
 def test_an_offset_of_c_turns_the_part(bench: Bench) -> None:
-    bench.desk.zero.change(54, {"c": 30.0, "z": -5.0}, "turned")
-    while not bench.desk.zero.rows:
+    bench.desk.book.change(Kind.ZERO, 54, {"c": 30.0, "z": -5.0}, "turned")
+    while not bench.desk.book.zero:
         bench.desk.look()
     bench.started()
     turned = bench.until(lambda s: s.line == 5)

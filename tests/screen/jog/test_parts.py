@@ -53,7 +53,7 @@ def cut(jog: JogBench) -> float:
 
 def test_a_wear_correction_between_two_parts(jog: JogBench, tmp_path: Path) -> None:
     jog.store.set_tool(1, "touched off", x=-1.0 * INCH, z=-2.0 * INCH).result(5)
-    jog.desk.book.__post_init__()
+    jog.desk.book.read()
     load(jog, tmp_path)
     first = cut(jog)
     assert first == pytest.approx((-1.0 + 0.25) * INCH, abs=1e-6)  # Ø .5 with the tip 1 in further in
@@ -71,7 +71,7 @@ def test_a_wear_correction_between_two_parts(jog: JogBench, tmp_path: Path) -> N
 def test_a_correction_at_a_stop_counts_in_the_next_part_of_the_repeat(jog: JogBench, tmp_path: Path) -> None:
     """Gauged at M00 with Cycle Repeat on: this part ends as it began, the next one has the new wear."""
     jog.store.set_tool(1, "touched off", x=-1.0 * INCH, z=-2.0 * INCH).result(5)
-    jog.desk.book.__post_init__()
+    jog.desk.book.read()
     load(jog, tmp_path, PROGRAM.replace("M30", "M00\nX.6Z.5\nM30"))
     jog.key(Key.Key_F1)
     jog.key(Key.Key_F2)
@@ -108,7 +108,7 @@ def test_a_correction_at_a_stop_counts_in_the_next_part_of_the_repeat(jog: JogBe
 
 def test_f8_under_a_running_cycle_is_refused(jog: JogBench, tmp_path: Path) -> None:
     jog.store.set_tool(1, "touched off", x=-1.0 * INCH, z=-2.0 * INCH).result(5)
-    jog.desk.book.__post_init__()
+    jog.desk.book.read()
     load(jog, tmp_path)
     jog.key(Key.Key_F1)
     jog.key(Key.Key_F2)
