@@ -1,4 +1,4 @@
-"""Lets no failure of the control pass in silence, and none kill the thread that watches the machine."""
+"""Attempts that may fail: no failure of the control is silent, and none ends the thread that runs it."""
 
 from __future__ import annotations
 

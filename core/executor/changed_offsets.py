@@ -1,4 +1,4 @@
-"""The program under way with other offsets: proved while it runs, taken up between two parts."""
+"""Wear and other offsets changed under a program: proved while it runs, in force from the next part on."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Outputs as they were commanded, beside what they are: a difference is somebody else's doing."""
+"""Outputs as they were commanded, beside what they are: where they differ, somebody else has switched."""
 
 from __future__ import annotations
 

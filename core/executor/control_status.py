@@ -1,4 +1,4 @@
-"""What the executor knows of job, modal state, alarms and counts."""
+"""What the control knows between two ticks: state, job, alarms, counts, and the modal state."""
 
 from __future__ import annotations
 

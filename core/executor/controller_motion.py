@@ -1,4 +1,8 @@
-"""The moving part of a cycle on a controller that plans by itself: it gets blocks, no more than it must."""
+"""Motion by a controller that plans by itself: it gets a cycle's blocks, no more than it must have.
+
+What has been handed over runs to its end whatever becomes of the host. So a long block goes out in parts of a
+fraction of a second on its own line or circle, between which the controller does not slow down.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +46,7 @@ class Turning(NamedTuple):
 def pieces_of(block: Block, turning: Turning, fastest: float = math.inf) -> Iterator[BlockPart]:
     """The pieces of one moving block, none faster than ``fastest`` mm/s.
 
-    Raises TroubleError for what has no speed or is not X and Z alone.
+    Raises AlarmError for what has no speed or is not X and Z alone.
     """
     if block.travel is not None or block.plane is not None or block.c != block.c0:
         raise AlarmError("program", "this controller moves X and Z only", block.line)
@@ -164,7 +168,7 @@ class ControllerMotion:
 
     @property
     def active(self) -> bool:
-        """Whether there is a stretch at all."""
+        """Whether there is a path section at all."""
         return self._active
 
     @property
@@ -180,7 +184,7 @@ class ControllerMotion:
 
     @property
     def following(self) -> Block | None:
-        """The block behind it, when it has been read into the stretch."""
+        """The block behind it, when it has been read into the path section."""
         if self._shown is None:
             return None
         cut = [*(each.piece.block for each in self._sent), *(each.block for each in self._pieces)]
@@ -189,12 +193,12 @@ class ControllerMotion:
 
     @property
     def complete(self) -> bool:
-        """Whether nothing of the stretch is left to be moved."""
+        """Whether nothing of the path section is left to be moved."""
         return not (self._waiting or self._pieces or self._sent)
 
     @property
     def ended_with(self) -> Block | None:
-        """At the end of the stretch: its last block."""
+        """At the end of the path section: its last block."""
         return self.block
 
     @property
@@ -205,7 +209,7 @@ class ControllerMotion:
     # --- what is asked ------------------------------------------------------------------------------------
 
     def begin(self, blocks: list[Block]) -> None:
-        """A new stretch, from rest. Raises TroubleError, DriverError."""
+        """A new path section, from rest. Raises AlarmError, DriverError."""
         self.forget()
         self._active, self._shown, self._seen = True, blocks[0], self._context.now
         self._thread = blocks[0].kind is Kind.THREAD
@@ -214,7 +218,7 @@ class ControllerMotion:
         self._hand_over()
 
     def go_on(self, behind: Block | None) -> None:  # noqa: ARG002  it always goes on where it rests
-        """From rest within the stretch: the controller goes on, or gets the next block."""
+        """From rest within the path section: the controller goes on, or gets the next block."""
         self._last, self._dry, self._seen = None, False, self._context.now
         if not self._still:
             self._sink.resume()
@@ -266,7 +270,7 @@ class ControllerMotion:
         self.brake()
 
     def retracted(self) -> None:
-        """At rest: draw back, or be done. Raises TroubleError("thread-lost") in the end."""
+        """At rest: draw back, or be done. Raises AlarmError("thread-lost") in the end."""
         assert self._lost is not None
         block, out = self._lost
         x, z = self._context.sample.actual[:2]
@@ -276,7 +280,7 @@ class ControllerMotion:
         self._hand_over()
 
     def forget(self) -> None:
-        """The stretch is over, or nothing of it holds any more: the controller forgets it too."""
+        """The path section is over, or nothing of it holds any more: the controller forgets it too."""
         self._look()
         if self._sent:
             self._sink.abort()

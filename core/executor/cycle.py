@@ -25,7 +25,7 @@ _SPINDLE_WORDS = (SpindleStop, SpindleLock, ProgramEnd)  # done whether it turns
 
 
 class Cycle:
-    """``step`` is called every tick; ``enter`` is told of each change of state, ``ended`` of the end.
+    """``step`` is called every tick, ``enter`` at each change of state, ``ended`` at the end of the program.
 
     ``begins`` is the modal state before its first block.
     """
@@ -118,7 +118,7 @@ class Cycle:
     # --- every tick ---------------------------------------------------------------------------------------
 
     def step(self) -> None:
-        """Keep the queue filled, then do what comes next. Raises TroubleError, MotionError, DriverError."""
+        """Keep the queue filled, then do what comes next. Raises AlarmError, MotionError, DriverError."""
         playing = self._motion.block if self._motion.moving else None
         if playing is not None:
             self._show(playing)
@@ -164,7 +164,7 @@ class Cycle:
                 self._stand()
 
     def _stand(self) -> None:
-        """At rest: wait, act, begin the next stretch, as far as this tick's budget goes."""
+        """At rest: wait, act, begin the next path section, as far as this tick's budget goes."""
         for _ in range(_ACTIONS):
             match self._still.next():
                 case Next.GO_ON:

@@ -1,4 +1,4 @@
-"""Standstill and following error of the axes: what each may be off its setpoint, at rest and in motion.
+"""Following error and standstill of the axes: what each may be off its setpoint, at rest and in motion.
 
 The drives watch themselves too, with one window for every speed; this is narrower, and holds at rest.
 """
@@ -30,7 +30,7 @@ class FollowingErrorWatch:
         self._enabled = False
 
     def look(self, sample: AxisSample, *, unpowered: bool) -> None:
-        """Raises TroubleError for the first axis that is not where it ought to be.
+        """Raises AlarmError for the first axis that is not where it ought to be.
 
         ``unpowered``: the drives are off and nothing else is the matter, so that nobody ought to move them.
         """
@@ -79,7 +79,7 @@ class _OneAxis:
         return self._dt > 0.0
 
     def powered(self, demand: float, actual: float) -> None:
-        """Raises TroubleError."""
+        """Raises AlarmError."""
         axis, error = self._axis, abs(demand - actual)
         if self._demand is None:
             self._demand, self._sent_at, self._counted = demand, self._t, (self._t, demand, actual)
@@ -111,7 +111,7 @@ class _OneAxis:
         self._since.pop("rest", None)
 
     def unasked(self, actual: float, *, at_rest: bool) -> None:
-        """At rest, without a setpoint that holds it there. Raises TroubleError."""
+        """At rest, without a setpoint that holds it there. Raises AlarmError."""
         axis = self._axis
         if not at_rest:
             self.sent()

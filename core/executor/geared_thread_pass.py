@@ -1,4 +1,4 @@
-"""One thread pass on a driver whose slides follow the spindle by themselves: a cam, planned once.
+"""A thread pass by gear: the driver's slides follow the spindle by themselves along a cam, planned once.
 
 The slide is in step when s = lead · turns: s along Z from the start of the pass, turns counted from an index
 that is chosen when the pass begins. Running up, pull-out and rest are on the cam too, so they only depend on
@@ -35,7 +35,7 @@ _ALLOWED = 0.01  # turns, between setpoints and spindle
 class GearedThreadPass:
     """Blocks of one pass: the thread, and behind it its pull-out or the rapid straight out.
 
-    Raises TroubleError where the spindle does not turn or has no encoder.
+    Raises AlarmError where the spindle does not turn or has no encoder.
     """
 
     def __init__(

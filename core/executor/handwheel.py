@@ -1,4 +1,4 @@
-"""The handwheel: clicks move one selected axis, as long as somebody asks and nothing speaks against it.
+"""Handwheel: clicks move one selected axis, as long as somebody asks and nothing speaks against it.
 
 The slide follows the wheel a tenth of a second behind, and what is queued is never more than that and the
 braking: clicks that come faster than the axis goes are dropped. Any end that was not asked for lasts until

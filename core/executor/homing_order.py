@@ -1,4 +1,4 @@
-"""Homing: the axes that do not know where they are, one after the other in the order of the machine file."""
+"""Homing: axes that do not know their position, one after the other in the machine file's order."""
 
 from __future__ import annotations
 

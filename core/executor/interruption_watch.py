@@ -1,4 +1,4 @@
-"""Watches the program under way for the interrupted job that it would leave, and declares it when it does."""
+"""Keeps what a power cut would leave as interrupted job, and declares a program that broke off to be one."""
 
 from __future__ import annotations
 

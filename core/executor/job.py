@@ -1,4 +1,7 @@
-"""A job is a program under fixed circumstances; a proof belongs to one job and to no other."""
+"""Job: a program under fixed circumstances, its proof, and its blocks as it is interpreted for a run.
+
+A proof belongs to one job and to no other.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Jog: one axis moves while somebody keeps asking; the queue already ends in the stop of a lost lease."""
+"""Jog: one axis moves by hand as long as its lease is renewed, or by one step of a given length.
+
+What is queued already ends in the stop of a lost lease. The setpoints of one axis are ramps, pieces of
+constant acceleration that always end at rest; a controller that plans by itself jogs by itself.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every part of the executor needs at hand: machine, ports, spindle, switches, and who keeps the log."""
+"""What every part of the executor has at hand in a tick: machine, ports, spindle, switches, event log."""
 
 from __future__ import annotations
 

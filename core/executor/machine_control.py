@@ -1,4 +1,4 @@
-"""Holds the state of the machine and everything that changes it: start, hold, reset, end, alarm, E-stop."""
+"""The state of the machine and all that changes it: start, feed hold, Reset, E-stop, alarms, end."""
 
 from __future__ import annotations
 
@@ -184,7 +184,7 @@ class MachineControl:
     # --- every tick ---------------------------------------------------------------------------------------
 
     def go_on(self) -> None:
-        """Whatever is under way. Raises TroubleError, MotionError, DriverError."""
+        """Whatever is under way. Raises AlarmError, MotionError, DriverError."""
         self._finish_stopping()
         self.program_run.look()
         if self.cycle is not None and self.state in CYCLE:

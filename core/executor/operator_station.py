@@ -1,4 +1,4 @@
-"""The operator station as the control believes it: edges of buttons, pots that may not run away."""
+"""The operator station as the control believes it: presses of buttons, pots that may not run away."""
 
 from __future__ import annotations
 

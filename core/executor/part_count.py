@@ -1,4 +1,4 @@
-"""The piece in the collet, and whether the end of its program makes a part."""
+"""The count of parts: the workpiece in the collet, and whether the end of its program makes it a part."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Blocks of one stretch of motion and their path; what overrides and stops make of its speeds."""
+"""A path section: its blocks, their path, and what overrides and stops make of its speeds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Passes through programs and lines of MDI, one at a time: begun, repeated, ended, given up."""
+"""Runs of programs and of lines of MDI, one at a time: begun, repeated (Cycle Repeat), ended, given up.
+
+Between two parts changed offsets are taken up, and what a run leaves in force is kept for the next.
+"""
 
 from __future__ import annotations
 

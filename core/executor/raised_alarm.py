@@ -1,4 +1,4 @@
-"""An alarm as it is raised and shown: what happened here, with what the catalogue says of it."""
+"""An alarm as it is raised: what happened here, with what the catalogue says of it, and its log entry."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Blocks of one pass through the program, pulled no further than the next standstill."""
+"""Read-ahead: the blocks of one pass through a program, read no further than the next standstill."""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""The one picture of the machine that every display is drawn from; immutable, published once a tick."""
+"""The one picture of the machine that every display is drawn from; immutable, published once a tick.
+
+Its state is one of a table that says which may follow which; what is not in the table is a mistake of the
+control and becomes an alarm.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The main spindle: what the program asked for, what the operator allows, what it really does."""
+"""The main spindle: what the program asks for, what the operator allows, what it really does.
+
+Also where it will be: its angle in the next moments, from the last readings of the encoder.
+"""
 
 from __future__ import annotations
 
@@ -68,7 +71,7 @@ class SpindleAngle:
         return base + turns + speed * (u - near), speed
 
     def turning_at(self, t: float) -> tuple[float, float]:
-        """The same of a spindle that turns. Raises TroubleError for one that stands or is not measured."""
+        """The same of a spindle that turns. Raises AlarmError for one that stands or is not measured."""
         state = self.at(t)
         if state is None:
             raise AlarmError("thread-no-encoder", "the encoder on the spindle counts nothing")
@@ -271,7 +274,7 @@ class SpindleControl:
     def update(self, now: float, radius: float) -> None:
         """Once a tick: send what has changed, and see what the drive does.
 
-        ``radius`` (mm) of the tool decides under constant surface speed. Raises TroubleError
+        ``radius`` (mm) of the tool decides under constant surface speed. Raises AlarmError
         when the drive has tripped or does not obey.
         """
         self._now = now

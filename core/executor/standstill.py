@@ -1,4 +1,7 @@
-"""What is done while nothing moves: waits, and what comes next in the order of blocks."""
+"""Standstill between path sections: M functions and dwell carried out, and what is waited for.
+
+Each wait has words for the screen, an end, and a time limit behind which it is an alarm.
+"""
 
 from __future__ import annotations
 
@@ -45,7 +48,7 @@ class Wait:
     alarm: Code = "internal"
 
     def over(self, now: float) -> bool:
-        """Whether it is over; raises TroubleError when it took too long."""
+        """Whether it is over; raises AlarmError when it took too long."""
         if self.done(now - self.since):
             return True
         if now - self.since > self.timeout:
@@ -87,7 +90,7 @@ def at_speed(context: MachineContext, *, thread: bool = False) -> Wait:
 
 
 def carry_out(block: Block, context: MachineContext) -> Wait | None:
-    """Do what an action block says; returns what has to be waited for. Raises TroubleError, DriverError.
+    """Do what an action block says; returns what has to be waited for. Raises AlarmError, DriverError.
 
     Stops and ends of the program are the cycle's own business and do nothing here; offsets, shifts and
     presets are in the blocks already.
@@ -189,7 +192,7 @@ class Standstill:
         return self._wait.label() if self._wait is not None else None
 
     def next(self) -> Next:
-        """One thing at a time. Raises TroubleError for a wait that takes too long and for bad blocks."""
+        """One thing at a time. Raises AlarmError for a wait that takes too long and for bad blocks."""
         feed = self._feed
         if self._wait is not None:
             return self._look(self._wait)

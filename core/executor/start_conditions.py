@@ -1,4 +1,8 @@
-"""Why a cycle may not start: every reason, in the order in which an operator has to remove them."""
+"""Why a cycle may not start: every reason, in the order in which an operator has to remove them.
+
+Of the machine, of the job that Cycle Start begins (the program, a restart in it, a line of MDI) and its
+proof, and of what a start would set going besides: that has to be announced first.
+"""
 
 from __future__ import annotations
 

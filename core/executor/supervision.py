@@ -1,4 +1,10 @@
-"""Looks after the machine every tick: one place for all drivers."""
+"""What is watched every tick besides the axes: faults of drives, the collet, outputs, the feeder.
+
+A feeder that heard nothing stops spindle and outputs; a terminal, a module or a controller may do so by
+itself. What was switched behind the back of the program holds the cycle, and its part is not counted: nothing
+is fed while an output is not what the program commanded, and what a start switches on again is announced.
+Axes have their own watch (``following_error``), and the spindle (``spindle_control``).
+"""
 
 from __future__ import annotations
 
@@ -17,7 +23,7 @@ from core.ports import AxisSample, Trip, code_of
 
 
 class Supervisor:
-    """Sees faults and raises them as TroubleError."""
+    """Sees faults and raises them as AlarmError."""
 
     def __init__(self, context: MachineContext) -> None:
         self._context = context
@@ -29,7 +35,7 @@ class Supervisor:
         self._axes.forget()
 
     def look(self, state: State) -> None:
-        """Raises TroubleError for the first thing that must stop the machine."""
+        """Raises AlarmError for the first thing that must stop the machine."""
         sample, context = self._context.sample, self._context
         if sample.fault:
             raise AlarmError(code_of(sample.fault, "axis"), sample.fault)
@@ -78,7 +84,7 @@ class OutputsWatch:
         )  # outputs of which it is known that they are not as commanded
 
     def look(self) -> None:
-        """Raises DriverError, TroubleError."""
+        """Raises DriverError, AlarmError."""
         trips = self._context.ports.trips
         trip = trips.tripped() if trips is not None else None
         if trips is not None and trip is not None:

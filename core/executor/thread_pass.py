@@ -1,4 +1,4 @@
-"""One thread pass, tied to the measured angle of the spindle and planned anew every tick.
+"""A thread pass by setpoints, tied to the measured angle of the spindle and planned anew every tick.
 
 The slide is in step when s = lead · (turns - index): s along Z from the start of the pass, turns as the
 encoder counts them. So every pass enters at the same angle, whatever the speed. The queue always holds the
@@ -33,7 +33,7 @@ _ALLOWED = 0.01  # of a lead, between setpoints and spindle
 class ThreadPass:
     """Blocks of one pass: the thread, and behind it its pull-out or the rapid straight out.
 
-    Raises TroubleError where the spindle does not turn or has no encoder.
+    Raises AlarmError where the spindle does not turn or has no encoder.
     """
 
     def __init__(

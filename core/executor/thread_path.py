@@ -1,4 +1,4 @@
-"""The way of one thread pass in its own measure: s along Z from the start, and X as a function of it.
+"""The path of one thread pass: s along Z from the start, X as a function of it, and the way out of it.
 
 Plans are lists of phases (seconds, acceleration); all mm and seconds, X as a radius, signs of the machine.
 """
@@ -183,13 +183,13 @@ def _until(phases: Phases, end: float) -> Phases:
     return kept
 
 
-def _trapezoid(way: float, v: float, top: float, a: float) -> Phases:
+def _trapezoid(length: float, v: float, top: float, a: float) -> Phases:
     """From speed ``v`` (towards the goal positive) to rest at the goal, no faster than ``top``."""
-    if way <= 0.0:
+    if length <= 0.0:
         return []
-    peak = min(math.sqrt(a * way + 0.5 * v * v), max(top, v))
+    peak = min(math.sqrt(a * length + 0.5 * v * v), max(top, v))
     up = max(peak - v, 0.0)
-    cruise = (way - (peak * peak - v * v) / (2.0 * a) - peak * peak / (2.0 * a)) / peak
+    cruise = (length - (peak * peak - v * v) / (2.0 * a) - peak * peak / (2.0 * a)) / peak
     return [(up / a, a), (max(cruise, 0.0), 0.0), (peak / a, -a)]
 
 

@@ -1,4 +1,8 @@
-"""Corners between two lines: chamfer and tangent fillet; roundings between lines and arcs."""
+"""Chamfer and rounding of the corner between two elements of a contour.
+
+Between two lines a chamfer, or a fillet tangent to both. Beside an arc the leg of a chamfer is straight too:
+a chord, as controls measure it that say how (G301 of Beckhoff's). Roundings lie between lines and arcs.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""A contour moved to one side by a fixed distance: outside corners become arcs, inside corners meet."""
+"""A contour moved to one side by a fixed distance: outside corners become arcs, inside corners meet.
+
+``offset_contour`` refuses a contour that the distance does not fit into; ``trimmed_offset``, for roughing,
+does not: a fillet smaller than what is left on the part, or a groove narrower than twice that, is passed by.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lines and arcs that make a contour in the plane of X and Z: mm, X a radius, angles from Z+ towards X+.
+"""Lines and arcs in the plane of X and Z, and contours of them: mm, X a radius, angles from Z+ towards X+.
 
 Seen from above (Z+ right, X+ down) that sense is clockwise, so a clockwise arc has a positive sweep. The
 left of a way X+ is Z+, the left of a way Z- is X+.

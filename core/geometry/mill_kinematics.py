@@ -2,7 +2,8 @@
 
 One rule holds for heads and tables: a frame seen from the workpiece is the product of Rot(axis, +angle) over
 the chain from the workpiece to the tool. A head at +t turns the tool by +t; a table at +t turns the workpiece
-by -t in the machine, so that the tool, seen from the workpiece, turns by +t as well.
+by -t in the machine, so that the tool, seen from the workpiece, turns by +t as well. With ``PivotMove`` the
+slides follow a turn, so that a point keeps its place on the workpiece (MOVE).
 """
 
 from __future__ import annotations

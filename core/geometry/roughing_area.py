@@ -1,4 +1,4 @@
-"""Which stretches of a line parallel to Z a tool may run beside a contour.
+"""Roughing: which spans of a line parallel to Z a tool may run beside a contour.
 
 All points here are (depth, way) as seen from the tool's start point: the depth grows along X towards the
 contour, the way along Z towards it; the contour runs so that the tool is on its left.
@@ -40,13 +40,13 @@ class Area:
 
     @property
     def turns_back(self) -> bool:
-        """Whether the path runs back along Z: behind such an edge no stretch reaches."""
+        """Whether the path runs back along Z: behind such an edge no span reaches."""
         return any(
             element.box[2] < element.start[1] - _TOUCH or element.box[3] > element.end[1] + _TOUCH
             for element in self.path
         )
 
-    def stretches(self, depth: float) -> list[Span]:
+    def spans(self, depth: float) -> list[Span]:
         """Where a tool at ``depth`` may run: above it, to depth 0, there is no contour either."""
         met = [wall for least, wall in self._walls if least <= depth - _TOUCH]
         walls = [reach for wall in met if (reach := _reach(wall, depth - _TOUCH)) is not None]

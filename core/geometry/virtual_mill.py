@@ -1,4 +1,8 @@
-"""Lines and arcs of a virtual mill (plane switching), and where lathe X, Z and C stand along them."""
+"""Plane switching: lines and arcs of a virtual mill, and where lathe X, Z and C stand along them.
+
+XC mills on the face of the part, ZC on its side, unrolled at a diameter. The live tool stands on the negative
+X side of the lathe; mill X is to the right and Y up for a tool that looks at the part from there.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +21,11 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Face:
-    """``c0`` (degrees) is C at the entry, ``h`` (mm) the height of the tool's centre line."""
+    """XC, the face. ``c0`` (degrees) is C at the entry, ``h`` (mm) the tool's height above the axis.
+
+    A point (X, Y) of the part at the distance rho from the axis comes under the tool when X stands at
+    -sqrt(rho² - h²) and C has turned the point there.
+    """
 
     c0: float
     h: float = 0.0
@@ -46,7 +54,11 @@ class Face:
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """``c0`` (degrees) and ``z0`` (mm) are C and lathe Z of X0 Y0; Y is measured at ``diameter`` (mm)."""
+    """ZC, the side. ``c0`` (degrees) and ``z0`` (mm) are C and lathe Z of X0 Y0; Y is measured at
+    ``diameter``.
+
+    Mill X is towards the spindle; Z is how far out the tip stands. mm.
+    """
 
     c0: float
     z0: float

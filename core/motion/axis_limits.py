@@ -1,4 +1,4 @@
-"""What the axes can do: the numbers from which the time law follows."""
+"""What the axes can do: speeds and accelerations from which the time law follows."""
 
 from __future__ import annotations
 

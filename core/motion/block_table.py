@@ -1,4 +1,7 @@
-"""What the time law reads from elementary blocks: one row of numbers a block."""
+"""What the time law reads from elementary blocks: a table with a row of numbers a block.
+
+Blocks come in one by one or in rows of their own, and are put together to batches that are planned at once.
+"""
 
 from __future__ import annotations
 

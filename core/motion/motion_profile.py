@@ -1,4 +1,7 @@
-"""A planned motion: path distance over time, in phases of constant acceleration."""
+"""A planned motion: distance along the path over time, in phases of constant acceleration, and its setpoints.
+
+Setpoints are what a driver takes: the motion of each axis in pieces of constant acceleration.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""Speed and acceleration limits of pieces and of the corners between them.
+"""Speed and acceleration limits of pieces, of the corners between them and of runs of short chords.
+
+Words are rounded to the step, and on chords of a hundredth the rounding turns the direction to and fro at
+every joint far more than the curve does. An axis never sees these turns: between two setpoints it gets their
+sum. What it is asked for is the second difference of the setpoints, |P(s+r) - 2·P(s) + P(s-r)| / interval²
+with r the way of one interval, and that is what is held against its limit here.
 
 The formulas and their reasons: docs/decisions/0003-time-law.md. Nothing here depends on an override, so that
 a plan made from a moving state meets the same limits as the plan it replaces.

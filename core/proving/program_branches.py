@@ -73,43 +73,43 @@ def cycle_range(first: Branch) -> Range:
     known: dict[tuple[int, int], Range] = {}
     todo: list[_Node] = [(first, 0)]
     while todo:
-        way, at = node = todo[-1]
+        branch, at = node = todo[-1]
         missing = [n for n, _ in _next(node) if (id(n[0]), n[1]) not in known]
         if missing:
             todo += missing
             continue
         todo.pop()
         ends = [(t + known[id(n[0]), n[1]][0], t + known[id(n[0]), n[1]][1]) for n, t in _next(node)]
-        if at == len(way.forks) and way.merged is None:
-            ends = [(way.duration - _time(node),) * 2]
-        known[id(way), at] = (min(low for low, _ in ends), max(high for _, high in ends))
+        if at == len(branch.forks) and branch.merged is None:
+            ends = [(branch.duration - _time(node),) * 2]
+        known[id(branch), at] = (min(low for low, _ in ends), max(high for _, high in ends))
     low, high = known[id(first), 0]
     before = _time((first, 0))
     return before + low, before + high
 
 
 def _time(node: _Node) -> float:
-    way, at = node
-    if at < len(way.forks):
-        return way.forks[at].t
-    return way.forks[-1].t if way.forks else way.start
+    branch, at = node
+    if at < len(branch.forks):
+        return branch.forks[at].t
+    return branch.forks[-1].t if branch.forks else branch.start
 
 
 def _next(node: _Node) -> list[tuple[_Node, float]]:
     """What comes from there, each with the seconds to it."""
-    way, at = node
-    if at < len(way.forks):
-        here, other = way.forks[at].t, way.forks[at].other
-        follows: list[tuple[_Node, float]] = [((way, at + 1), _time((way, at + 1)) - here)]
+    branch, at = node
+    if at < len(branch.forks):
+        here, other = branch.forks[at].t, branch.forks[at].other
+        follows: list[tuple[_Node, float]] = [((branch, at + 1), _time((branch, at + 1)) - here)]
         if other.gone and not other.failed:
             follows.append(((other, 0), _time((other, 0)) - other.start))
         return follows
-    if way.merged is None:
+    if branch.merged is None:
         return []
-    there, blocks = way.merged
+    there, blocks = branch.merged
     fork = next((k for k, each in enumerate(there.forks) if each.blocks >= blocks), len(there.forks))
     node = there, fork
-    return [(node, way.duration - _time((way, at)) + _time(node) - there.at(blocks))]
+    return [(node, branch.duration - _time((branch, at)) + _time(node) - there.at(blocks))]
 
 
 # --- uncalled subroutines -------------------------------------------------------------------------------
@@ -159,7 +159,7 @@ MOST_WORK = 200_000
 """Blocks of all ways but the first together; three times those of the first where that is more. A motion from
 rest to rest is as much work as a hundred blocks."""
 
-_STRETCH = 100
+_SPAN = 100
 
 _MOST_WAITING = 2000
 _MOST_STATES = 500_000
@@ -181,15 +181,15 @@ class Choice:
 
 
 @dataclass(slots=True)
-class _Going:
+class _BranchPass:
     """A way that is gone, or waits to be."""
 
-    way: Branch
+    branch: Branch
     source: Branching | None
     choices: tuple[Choice, ...] = ()
     standing: RestState | None = None  # None: nothing comes there, because the way before it has errors
     checks: CuttingChecks | None = None
-    asked: list[_Going | None] = field(default_factory=list)  # in the order of its questions
+    asked: list[_BranchPass | None] = field(default_factory=list)  # in the order of its questions
     answered: int = 0
 
 
@@ -206,9 +206,9 @@ class Branches:
     def __init__(self, reading: ReadProgram, setup: Setup, machine: Machine, *, ideal: bool) -> None:
         self._reading, self._setup, self._machine, self._ideal = reading, setup, machine, ideal
         self.root = reading.branching(setup, self)
-        self._now = _Going(Branch(), self.root)
+        self._now = _BranchPass(Branch(), self.root)
         self._known: dict[Hashable, tuple[Branch, int]] = {}
-        self._waiting: list[tuple[tuple[int, ...], _Going]] = []
+        self._waiting: list[tuple[tuple[int, ...], _BranchPass]] = []
         self._seen: Counter[tuple[int, bool]] = Counter()  # how often the other way of a line was kept
         self._covered: set[tuple[int, bool]] = set()  # lines, and the states of their inputs that were proved
         self._turn = count()
@@ -222,22 +222,22 @@ class Branches:
 
     # what the interpreter asks
 
-    def known(self, way: Branching) -> bool:
+    def known(self, branch: Branching) -> bool:
         """Whether another way has been in this state."""
-        key = way.key
+        key = branch.key
         found = self._known.get(key)
-        if found is not None and found[0] is not self._now.way:
-            self._now.way.merged = found
+        if found is not None and found[0] is not self._now.branch:
+            self._now.branch.merged = found
             return True
         if len(self._known) < _MOST_STATES:
-            self._known[key] = self._now.way, way.count
+            self._known[key] = self._now.branch, branch.count
         return False
 
-    def asked(self, way: Branching, made: Statement, takes: bool) -> None:
+    def asked(self, branch: Branching, made: Statement, takes: bool) -> None:
         """Keep a copy for the other way."""
         on = takes == (made.flow == "M95" or made.value("C") == 1)
         self._covered.add((made.line, on))
-        if way.stopped:
+        if branch.stopped:
             return
         seen = self._seen[made.line, not on]
         if len(self._waiting) >= _MOST_WAITING and seen:
@@ -246,8 +246,8 @@ class Branches:
             return
         self._seen[made.line, not on] += 1
         choice = Choice(made.line, terminal(made), not on)
-        other = way.other(made, takes)
-        going = _Going(Branch(first=way.count), other, (*self._now.choices, choice), asked=[None])
+        other = branch.other(made, takes)
+        going = _BranchPass(Branch(first=branch.count), other, (*self._now.choices, choice), asked=[None])
         self._now.asked.append(going)
         rank = (int(other.unlikely), seen, len(going.choices), next(self._turn))
         heapq.heappush(self._waiting, (rank, going))
@@ -255,34 +255,34 @@ class Branches:
     # what proving asks
 
     def gone(self, one: ProofPass, timeline: Timeline) -> Iterator[MotionSpan | RestSpan]:
-        """The stretches of a way, which is gone while they are taken."""
+        """The spans of a way, which is gone while they are taken."""
         if self.root is None:
             yield from timeline.spans()
             return
         now = self._now
-        for stretch in timeline.spans():
-            yield stretch
-            if isinstance(stretch, MotionSpan):
-                shift = stretch.t0 - stretch.chunk.t
-                self._work += _STRETCH + len(stretch.chunk.t1)
-                now.way.ends.extend((stretch.chunk.t1 + shift).tolist())
-            elif stretch.block is not None:
-                now.way.ends.append(stretch.t1)
-                if isinstance(stretch.block.action, AskInput):
+        for span in timeline.spans():
+            yield span
+            if isinstance(span, MotionSpan):
+                shift = span.t0 - span.chunk.t
+                self._work += _SPAN + len(span.chunk.t1)
+                now.branch.ends.extend((span.chunk.t1 + shift).tolist())
+            elif span.block is not None:
+                now.branch.ends.append(span.t1)
+                if isinstance(span.block.action, AskInput):
                     self._stands(now, one, timeline)
-        now.way.duration = timeline.t
-        if now.way.merged is not None and one.last is one.last_move:
-            now.way.duration -= 0.0 if self._ideal else SETTLING  # the motion would have gone on
-        now.way.failed = timeline.errors
+        now.branch.duration = timeline.t
+        if now.branch.merged is not None and one.last is one.last_move:
+            now.branch.duration -= 0.0 if self._ideal else SETTLING  # the motion would have gone on
+        now.branch.failed = timeline.errors
 
-    def _stands(self, now: _Going, one: ProofPass, timeline: Timeline) -> None:
+    def _stands(self, now: _BranchPass, one: ProofPass, timeline: Timeline) -> None:
         """The way has come to its next question: from here the copy goes on."""
         going = now.asked[now.answered] if now.answered < len(now.asked) else None
         now.answered += 1
         if going is not None:
             going.standing, going.checks = timeline.standing, one.checks.twin()
-            going.way.start = timeline.t
-            now.way.forks.append(Fork(going.way.first, timeline.t, going.way))
+            going.branch.start = timeline.t
+            now.branch.forks.append(Fork(going.branch.first, timeline.t, going.branch))
 
     def proved(self, report: Report, progress: Callable[[float], None] | None) -> Report:
         """The report of the first way, with what was found in all the others."""
@@ -290,7 +290,7 @@ class Branches:
         if self.root is None:
             return replace(report, diagnostics=in_order(found), ways=Ways(cycle=(report.times.cycle,) * 2))
         self._told = {(each.line, each.code) for each in report.diagnostics}
-        first = self._now.way
+        first = self._now.branch
         needs = report.needs
         most, self._work = max(MOST_WORK, 3 * self._work), 0
         while self._waiting and self._gone < MOST_WAYS and self._work < most:
@@ -308,7 +308,7 @@ class Branches:
             ways=Ways(self._gone, self._left + len(self._waiting), cycle_range(first)),
         )
 
-    def _go(self, going: _Going, most: int, progress: Callable[[float], None] | None) -> Report:
+    def _go(self, going: _BranchPass, most: int, progress: Callable[[float], None] | None) -> Report:
         assert going.source is not None
         assert going.standing is not None
         assert going.checks is not None
@@ -317,15 +317,15 @@ class Branches:
         timeline = Timeline(going.source, self._setup, self._machine, ideal=self._ideal)
         timeline.go_on(going.standing)
         one = ProofPass(self._machine, going.checks)
-        for stretch in self.gone(one, timeline):
-            one.add(stretch)
+        for span in self.gone(one, timeline):
+            one.add(span)
             if progress is not None and one.last is not None:
                 progress(one.last.n)
             if self._work > most:
                 self._left += 1
-                going.way.failed = True  # its time is not known
+                going.branch.failed = True  # its time is not known
                 break
-        going.way.gone = True
+        going.branch.gone = True
         report = one.report(timeline, self._reading.source)
         self._tools.update(report.tools)
         self._missing.update(report.missing_tools)
@@ -333,7 +333,7 @@ class Branches:
         going.source = None
         return report
 
-    def _tell(self, going: _Going, report: Report) -> None:
+    def _tell(self, going: _BranchPass, report: Report) -> None:
         unlikely = going.source is not None and going.source.unlikely
         for each in report.diagnostics:
             if each.severity is Severity.NOTE or (each.line, each.code) in self._told:

@@ -70,7 +70,7 @@ TimedBlock = tuple[Block, float, float]
 
 
 class MotionSpan(NamedTuple):
-    """A stretch of motion from ``t0`` on, and the blocks that end in it with when they start and end."""
+    """A span of motion from ``t0`` on, and the blocks that end in it with when they start and end."""
 
     t0: float
     chunk: Chunk
@@ -88,7 +88,7 @@ class MotionSpan(NamedTuple):
 
     @property
     def t1(self) -> float:
-        """When the stretch ends; the next one may go on without a stop."""
+        """When the span ends; the next one may go on without a stop."""
         return self.t0 + self.chunk.profile.duration
 
     def times(self) -> Iterator[TimedBlock]:
@@ -134,7 +134,7 @@ class RestState(NamedTuple):
 
 
 class Timeline:
-    """One pass through a program, once. Constant memory: stretches are handed out as they are settled.
+    """One pass through a program, once. Constant memory: spans are handed out as they are settled.
 
     Where the machine cannot do what a block asks, the pass ends with an error in ``diagnostics``. An
     ``ideal`` machine needs no time to accelerate, to settle or to plan; its limits of speed are the same.
@@ -244,12 +244,12 @@ class Timeline:
         return self._rest(THREAD_EARLY + (math.ceil(ahead - 1e-9) - ahead) / turn)
 
     def _moved(self, start: float, chunk: Chunk) -> MotionSpan:
-        stretch = MotionSpan(start + chunk.t, chunk, self._moving.take(len(chunk.n)))
-        self.t = stretch.t1
-        last = stretch.last
+        span = MotionSpan(start + chunk.t, chunk, self._moving.take(len(chunk.n)))
+        self.t = span.t1
+        last = span.last
         if last is not None and last.css is not None:
             self._follow(last.rpm)
-        return stretch
+        return span
 
     def _follow(self, rpm: float) -> None:
         """Constant surface speed has led to this speed; one not reached yet is still being ramped to."""
@@ -269,9 +269,9 @@ class Timeline:
         return 0.0 if self._ideal else seconds
 
     def _rest(self, seconds: float, block: Block | None = None) -> RestSpan:
-        stretch = RestSpan(self.t, self.t + seconds, block)
-        self.t = stretch.t1
-        return stretch
+        span = RestSpan(self.t, self.t + seconds, block)
+        self.t = span.t1
+        return span
 
     def _action(self, block: Block) -> RestSpan:
         assert block.action is not None
@@ -314,17 +314,17 @@ def _like(each: Block | Series) -> Block:
 
 def timed_blocks(timeline: Timeline) -> Iterator[TimedBlock]:
     """Every elementary block with its start and end, s; waits belong to no block."""
-    for stretch in timeline.spans():
-        if isinstance(stretch, MotionSpan):
-            yield from stretch.times()
-        elif stretch.block is not None:
-            yield stretch.block, stretch.t0, stretch.t1
+    for span in timeline.spans():
+        if isinstance(span, MotionSpan):
+            yield from span.times()
+        elif span.block is not None:
+            yield span.block, span.t0, span.t1
 
 
 def timed_series(timeline: Timeline) -> Iterator[TimedBlock | TimedSeries]:
     """The same, series of moves in one."""
-    for stretch in timeline.spans():
-        if isinstance(stretch, MotionSpan):
-            yield from stretch.times_of_parts()
-        elif stretch.block is not None:
-            yield stretch.block, stretch.t0, stretch.t1
+    for span in timeline.spans():
+        if isinstance(span, MotionSpan):
+            yield from span.times_of_parts()
+        elif span.block is not None:
+            yield span.block, span.t0, span.t1

@@ -56,7 +56,7 @@ class Tally:
         return Reach(self.x.range, self.z.range, self.c.range, self.rpm.range, self.feed.range)
 
     def add(self, parts: Sequence[Part]) -> None:
-        """Count the moving blocks of a stretch."""
+        """Count the moving blocks of a span."""
         if not parts:
             return
         table = np.concatenate([_rows(part) for part in parts])
@@ -163,25 +163,25 @@ class ProofPass:
         """Those of cutting, as far as the program has passed by."""
         return self._checks
 
-    def add(self, stretch: MotionSpan | RestSpan) -> None:
-        """The next stretch of the timeline."""
-        if isinstance(stretch, MotionSpan):
-            self._moved(stretch)
+    def add(self, span: MotionSpan | RestSpan) -> None:
+        """The next span of the timeline."""
+        if isinstance(span, MotionSpan):
+            self._moved(span)
         else:
-            self._rested(stretch)
+            self._rested(span)
 
-    def _moved(self, stretch: MotionSpan) -> None:
-        spent = stretch.chunk.t1 - stretch.chunk.t0
-        rapid = float(spent[_rapid(stretch.parts)].sum())
+    def _moved(self, span: MotionSpan) -> None:
+        spent = span.chunk.t1 - span.chunk.t0
+        rapid = float(spent[_rapid(span.parts)].sum())
         self._rapid += rapid
         self._cutting += float(spent.sum()) - rapid
-        self._unseen += stretch.parts
-        for part in stretch.parts:
+        self._unseen += span.parts
+        for part in span.parts:
             self._checks.look(part)
         self._waiting += len(spent)
         self.elementary += len(spent)
-        if stretch.last is not None:
-            self.last = self.last_move = stretch.last
+        if span.last is not None:
+            self.last = self.last_move = span.last
         if self._waiting >= _AT_ONCE:
             self._see()
 
@@ -205,19 +205,19 @@ class ProofPass:
             self._needs = first_needs((*self._needs, *needs_of(unlike, self._before)))
             self._before = blocks[-1]
 
-    def _rested(self, stretch: RestSpan) -> None:
-        spent = stretch.t1 - stretch.t0
-        if stretch.block is None:
+    def _rested(self, span: RestSpan) -> None:
+        spent = span.t1 - span.t0
+        if span.block is None:
             self._wait += spent
             return
         self.elementary += 1
-        self.last = stretch.block
-        self._checks.look([stretch.block])
-        self._need([stretch.block])
-        if isinstance(stretch.block.action, ProgramStop):
-            self._optional_stops += stretch.block.action.optional
-            self._stops += not stretch.block.action.optional
-        if isinstance(stretch.block.action, Dwell):
+        self.last = span.block
+        self._checks.look([span.block])
+        self._need([span.block])
+        if isinstance(span.block.action, ProgramStop):
+            self._optional_stops += span.block.action.optional
+            self._stops += not span.block.action.optional
+        if isinstance(span.block.action, Dwell):
             self._dwell += spent
         else:
             self._wait += spent

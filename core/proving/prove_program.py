@@ -56,8 +56,8 @@ def _proved(
     single = setup.begin is not None and setup.begin.single
     checks = CuttingChecks(machine, reading.source.dialect, single, placed=setup.begin is not None)
     one = ProofPass(machine, checks)
-    for stretch in branches.gone(one, timeline):
-        one.add(stretch)
+    for span in branches.gone(one, timeline):
+        one.add(span)
         if progress is not None and one.last is not None:
             progress(one.last.n)
     report = one.report(timeline, reading.source)

@@ -24,16 +24,16 @@ def setpoints(timeline: Timeline, dt: float) -> Iterator[list[Row]]:
     on from the start.
     """
     sampler = _Sampler(timeline, dt)
-    for stretch in timeline.spans():
-        if isinstance(stretch, MotionSpan):
-            yield sampler.moved(stretch)
+    for span in timeline.spans():
+        if isinstance(span, MotionSpan):
+            yield sampler.moved(span)
         else:
-            yield from sampler.rested(stretch)
+            yield from sampler.rested(span)
     yield sampler.last()
 
 
 class _Sampler:
-    """Walks the grid of sampling times along the stretches of a timeline."""
+    """Walks the grid of sampling times along the spans of a timeline."""
 
     def __init__(self, timeline: Timeline, dt: float) -> None:
         self._timeline = timeline
@@ -44,26 +44,26 @@ class _Sampler:
         self._angle = 0.0
         self._rpm = 0.0  # at the last row
 
-    def moved(self, stretch: MotionSpan) -> list[Row]:
+    def moved(self, span: MotionSpan) -> list[Row]:
         _, positions, numbers = sample_positions(
-            stretch.chunk.profile, self._dt, max(0.0, self._row * self._dt - stretch.t0)
+            span.chunk.profile, self._dt, max(0.0, self._row * self._dt - span.t0)
         )
-        owners = _Owners(stretch.blocks)
+        owners = _Owners(span.blocks)
         rows = []
         for at, number in zip(positions.tolist(), numbers.tolist(), strict=True):
             block = owners.find(number)
             self._line = block.line
             rows.append(self._emit(tuple(at), block))
-        profile = stretch.chunk.profile
+        profile = span.chunk.profile
         self._at = tuple(profile.position(profile.duration)[0].tolist())
         return rows
 
-    def rested(self, stretch: RestSpan) -> Iterator[list[Row]]:
-        if stretch.block is not None:
-            self._line = stretch.block.line
-        count = max(0, math.ceil((stretch.t1 - self._row * self._dt) / self._dt - 1e-9))
+    def rested(self, span: RestSpan) -> Iterator[list[Row]]:
+        if span.block is not None:
+            self._line = span.block.line
+        count = max(0, math.ceil((span.t1 - self._row * self._dt) / self._dt - 1e-9))
         for done in range(0, count, BATCH):
-            yield [self._emit(self._at, stretch.block) for _ in range(min(BATCH, count - done))]
+            yield [self._emit(self._at, span.block) for _ in range(min(BATCH, count - done))]
 
     def last(self) -> list[Row]:
         """The row at rest with which the table ends."""
@@ -94,7 +94,7 @@ class _Sampler:
 
 
 class _Owners:
-    """Blocks of a stretch by number."""
+    """Blocks of a span by number."""
 
     def __init__(self, blocks: list[Block]) -> None:
         self._numbers = np.array([block.n for block in blocks])

@@ -79,7 +79,7 @@ def test_a_number_that_is_not_there_has_no_entry() -> None:
 
 def raised(tree: ast.AST) -> Iterator[tuple[str, int]]:
     """Every code that a source hands to an alarm, a fault or a driver's refusal, as a plain word."""
-    place = {"TroubleError": 0, "Fault": 1, "DriverError": 1, "code_of": 1}
+    place = {"AlarmError": 0, "Fault": 1, "DriverError": 1, "code_of": 1}
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in place:
             at = place[node.func.id]

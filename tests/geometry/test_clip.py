@@ -21,19 +21,19 @@ STEP = polyline((10, 1), (6, 1), (6, 20), (2, 20))
 
 def test_passes_end_at_the_shoulder_and_at_the_face() -> None:
     area = Area(STEP, 0.5)
-    assert area.stretches(1) == [(0, pytest.approx(19.5))]
-    assert area.stretches(5) == [(0, pytest.approx(19.5))]
-    assert area.stretches(5.5) == [(0, pytest.approx(19.5))]  # on the offset of the cylinder itself
-    assert area.stretches(5.6) == [(0, pytest.approx(1 - sqrt(0.25 - 0.4**2), abs=1e-5))]
-    assert area.stretches(9) == [(0, pytest.approx(0.5))]
-    assert area.stretches(10.1) == []
+    assert area.spans(1) == [(0, pytest.approx(19.5))]
+    assert area.spans(5) == [(0, pytest.approx(19.5))]
+    assert area.spans(5.5) == [(0, pytest.approx(19.5))]  # on the offset of the cylinder itself
+    assert area.spans(5.6) == [(0, pytest.approx(1 - sqrt(0.25 - 0.4**2), abs=1e-5))]
+    assert area.spans(9) == [(0, pytest.approx(0.5))]
+    assert area.spans(10.1) == []
 
 
 def test_nothing_left_is_the_contour_itself() -> None:
     area = Area(STEP, 0)
     assert area.path == STEP
-    assert area.stretches(5.9) == [(0, pytest.approx(20))]
-    assert area.stretches(7) == [(0, pytest.approx(1))]
+    assert area.spans(5.9) == [(0, pytest.approx(20))]
+    assert area.spans(7) == [(0, pytest.approx(1))]
 
 
 def test_a_rise_divides_a_pass_in_two() -> None:
@@ -41,8 +41,8 @@ def test_a_rise_divides_a_pass_in_two() -> None:
     assert bump[1].point(bump[1].length / 2) == pytest.approx((4, 12))
     area = Area(bump, 1)
     half = sqrt(3**2 - 1**2)  # the offset circle of radius 3 about (6, 12), cut at depth 5
-    assert area.stretches(2.9) == [(0, 30)]
-    assert area.stretches(5) == [
+    assert area.spans(2.9) == [(0, 30)]
+    assert area.spans(5) == [
         (0, pytest.approx(12 - half, abs=1e-5)),
         (pytest.approx(12 + half, abs=1e-5), 30),
     ]
@@ -54,7 +54,7 @@ def test_no_stretch_reaches_under_an_edge() -> None:
     hook = polyline((6, 0), (6, 20), (2, 20), (2, 12), (1, 12))
     area = Area(hook, 0)
     assert area.turns_back
-    assert area.stretches(4) == [(0, 12)]
+    assert area.spans(4) == [(0, 12)]
 
 
 def test_the_way_along_goes_round_outside_corners_and_meets_in_inside_ones() -> None:
@@ -164,13 +164,13 @@ def test_stretches_are_far_from_the_contour_and_reach_it(
 ) -> None:
     """No point of a stretch, nor above it, is too near; just past its ends there is a reason to stop."""
     area = area_of(contour, left)
-    for start, end in area.stretches(depth):
+    for start, end in area.spans(depth):
         for k in range(21):
             way = start + (end - start) * k / 20
             for level in (depth, depth * 0.7, depth * 0.3):
                 assert min(distance(each, (level, way)) for each in contour) >= left - 0.002
     if left > 0:
-        for start, end in area.stretches(depth):
+        for start, end in area.spans(depth):
             at_wall = [start] * (start > 0) + [end] * (end < area.path[-1].end[1] - 1e-6)
             for way in at_wall:
                 if way == pytest.approx(area.path[0].start[1]):
@@ -185,6 +185,6 @@ def test_deeper_stretches_lie_within_shallower_ones(
     contour: list[Element], left: float, depth: float, more: float
 ) -> None:
     area = area_of(contour, left)
-    shallow = area.stretches(depth)
-    for start, end in area.stretches(depth + more):
+    shallow = area.spans(depth)
+    for start, end in area.spans(depth + more):
         assert any(a - 1e-6 <= start and end <= b + 1e-6 for a, b in shallow)

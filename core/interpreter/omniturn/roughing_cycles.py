@@ -51,11 +51,11 @@ class Rougher:
         self._rapid, self._lift = rapid, lift
         self._at = 0.0, 0.0
         self._done: list[tuple[float, list[Span]]] = []
-        self._free = area.stretches(0.0)
+        self._free = area.spans(0.0)
 
     def cut(self, depth: float) -> None:
         """One pass at a depth greater than those before it, through all its stretches."""
-        stretches = self._area.stretches(depth)
+        stretches = self._area.spans(depth)
         before = self._done[-1][0] if self._done else 0.0
         for start, end in stretches:
             self._over(start)
@@ -151,7 +151,7 @@ class Rougher:
         depth, ways = max(here[0], there[0]) - _TOUCHING, (here[1], there[1])
         if way.length <= 2 * _TOUCHING:
             return False
-        if _covering(self._area.stretches(depth), max(min(ways), 0.0), max(ways)):
+        if _covering(self._area.spans(depth), max(min(ways), 0.0), max(ways)):
             return False
         inner = Line(way.point(_TOUCHING), way.point(way.length - _TOUCHING))
         return any(intersections(inner, element) for element in self._area.contour)
