@@ -1,8 +1,8 @@
 """The executor's thread, and the watchdog that sees when it is dead or stuck and makes the machine safe.
 
-The watchdog is a thread of its own. It counts its own looks, not time: when the whole process stands still, so
-does it, and nobody is blamed. It touches no driver that belongs to the executor but by ``MachinePorts.halt``,
-which any thread may call.
+The watchdog is a thread of its own. It counts its own looks, not time: when the whole process stands still, it
+does so too, and nobody is blamed. It touches no driver that belongs to the executor but by
+``MachinePorts.halt``, which any thread may call.
 """
 
 from __future__ import annotations
