@@ -64,7 +64,7 @@ class ChangedOffsets:
             setup = asked.job.setup
             status.job = asked.job
             status.modal = modal_with_offsets(status.modal, setup.tools, setup.secondary)
-            self._context.say("offsets", "the changed offsets are in force")
+            self._context.log("offsets", "the changed offsets are in force")
 
     def forget(self) -> None:
         """Another program is loaded."""

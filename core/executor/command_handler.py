@@ -79,7 +79,7 @@ class CommandHandler:
         self._methods[type(command)](command)
 
     def _refuse(self, why: str) -> None:
-        self._context.say("refused", why)
+        self._context.log("refused", why)
 
     # --- start, drives, switches --------------------------------------------------------------------------
 
@@ -108,7 +108,7 @@ class CommandHandler:
             self._refuse(f"there is no switch {name!r}")
             return
         setattr(self._context.switches, name, on)
-        self._context.say("switch", f"{name.replace('_', ' ')} {'on' if on else 'off'}")
+        self._context.log("switch", f"{name.replace('_', ' ')} {'on' if on else 'off'}")
 
     def _override(self, command: FeedOverride) -> None:
         if not 0.0 <= command.fraction <= 1.5:
@@ -126,7 +126,7 @@ class CommandHandler:
             self._refuse("the spindle limit is raised only while the spindle stands")
             return
         spindle.limit = rpm
-        self._context.say("override", f"spindle limit {rpm or highest:g} rpm")
+        self._context.log("override", f"spindle limit {rpm or highest:g} rpm")
 
     # --- what Cycle Start will begin ----------------------------------------------------------------------
 
@@ -141,7 +141,7 @@ class CommandHandler:
         self._control.program_run.changed_offsets.forget()
         if status.starts is Starts.RESTART:
             self._prepare(Prepare(Starts.RESTART))
-        self._context.say("load", command.job.source.name)
+        self._context.log("load", command.job.source.name)
 
     def _prove(self, command: GiveProof) -> None:
         self._control.status.proof = command.proof
@@ -170,7 +170,7 @@ class CommandHandler:
         if why:
             self._refuse(why)
         elif command.at:
-            self._context.say("confirmed", "a start at the first line is meant")
+            self._context.log("confirmed", "a start at the first line is meant")
 
     def _count(self, command: PartsMade) -> None:
         self._control.counters.made = max(0, command.parts)
@@ -231,14 +231,14 @@ class CommandHandler:
             return
         status = self._control.status
         status.modal = modal_with_offsets(status.modal, command.tools, command.secondary)
-        self._context.say("offsets", "the offsets of the tables are in force")
+        self._context.log("offsets", "the offsets of the tables are in force")
 
     def _stop_spindle(self, _: SpindleStop) -> None:
         if self._control.state in CYCLE:
             self._refuse("a program is under way: its spindle is stopped by feed hold and reset")
             return
         self._context.spindle.stop()
-        self._context.noted("by-hand", "the spindle was stopped by hand")
+        self._context.log_stop("by-hand", "the spindle was stopped by hand")
 
     def _force(self, command: ForceOutput) -> None:
         why = self._output_refusal(command.name, command.on)
@@ -246,7 +246,7 @@ class CommandHandler:
             self._refuse(why)
             return
         self._context.ports.io.write(command.name, command.on)
-        self._context.say("force", f"{command.name} {'on' if command.on else 'off'} by hand")
+        self._context.log("force", f"{command.name} {'on' if command.on else 'off'} by hand")
 
     def _output_refusal(self, name: str, on: bool) -> str:
         """Why an output is not switched by hand now; empty when it is."""

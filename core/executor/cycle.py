@@ -205,7 +205,7 @@ class Cycle:
             return False
         if isinstance(action, ProgramStop) and (context.switches.optional_stop or not action.optional):
             self.message = action.message
-            context.stopped("optional-stop" if action.optional else "program-stop", action.message)
+            context.show_stop("optional-stop" if action.optional else "program-stop", action.message)
             self._change(State.PROGRAM_STOP)
             return False
         self._still.carry_out(block)

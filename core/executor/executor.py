@@ -32,7 +32,7 @@ _STALL = 0.2  # s between two ticks that tell of a stalled host
 _STALE = 0.5  # s after which nobody expects a press to move the machine any more
 _STARTS = (CycleStart, EnableDrives, Home, Jog, JogStep, Wheel)
 _WAITED_FOR = (EnableDrives, Home, Reset)  # a driver answers them when its drives have obeyed
-_TOLD = 0.1  # change of the feed override that is worth an entry in the log
+_WORTH_AN_ENTRY = 0.1  # change of the feed override that is worth an entry in the log
 _COMMANDS = 100  # looked at in one tick
 _POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
 
@@ -75,7 +75,7 @@ class Executor:
         self._control = MachineControl(self._context, passes, note, left)
         self._handler = CommandHandler(self._context, self._control, self._station)
         self._publisher = Publisher()
-        self._told = 1.0
+        self._logged_override = 1.0
         self.ticks = 0  # so many have ended: what the watchdog looks at
         self.patient = False  # it waits for drives, which may take seconds
         self._silent = ""  # why the watchdog has halted the machine
@@ -111,7 +111,7 @@ class Executor:
         log_alarm(alarm)
         shown = replace(self.snapshot, state=State.FAULT, alarms=(*self.snapshot.alarms, alarm))
         self.snapshot = shown
-        self._context.tell(Event(shown.t, "alarm", log_line(alarm), alarm.line, alarm))
+        self._context.log_event(Event(shown.t, "alarm", log_line(alarm), alarm.line, alarm))
 
     def _mind_watchdog(self) -> None:
         if self._silent:
@@ -156,20 +156,22 @@ class Executor:
         context.outputs.look(context.now)
         context.spindle.guard_open = guard_open(context)
         context.spindle.look()
-        context.signals = self._station.hear(self._ports.station.snapshot(), context.now)
+        context.signals = self._station.read(self._ports.station.snapshot(), context.now)
         context.spindle.override, context.spindle.auto = context.signals.spindle, context.signals.auto
         self._tell_override()
         if self._control.state in ACTIVE:
             self._control.counters.cycle += context.now - before
             if context.now - before > _STALL:
-                context.say("starved", f"the control was away for {context.now - before:.2f} s")
+                context.log("starved", f"the control was away for {context.now - before:.2f} s")
 
     def _tell_override(self) -> None:
         """A turned pot goes to the log in steps worth reading."""
         fraction = self._context.feed_override
-        if abs(fraction - self._told) >= _TOLD or (fraction == 0.0) != (self._told == 0.0):
-            self._told = fraction
-            self._context.say("override", f"feed {100 * fraction:.0f} %")
+        if abs(fraction - self._logged_override) >= _WORTH_AN_ENTRY or (fraction == 0.0) != (
+            self._logged_override == 0.0
+        ):
+            self._logged_override = fraction
+            self._context.log("override", f"feed {100 * fraction:.0f} %")
 
     def _obey(self) -> None:
         """E-stop first, then what was posted, then the station's buttons."""
@@ -197,7 +199,7 @@ class Executor:
             except queue.Empty:
                 return
             if isinstance(command, _STARTS) and self._context.now - posted > _STALE:
-                self._context.say("refused", f"{type(command).__name__} came too late to be obeyed")
+                self._context.log("refused", f"{type(command).__name__} came too late to be obeyed")
             else:
                 yield command
 

@@ -59,7 +59,7 @@ class FeedHold:
         whom.
         """
         self.reason, self._since = reason, self._context.now
-        self._context.stopped(*(code_of_hold(reason, by) if code is None else (code, reason.lower())))
+        self._context.show_stop(*(code_of_hold(reason, by) if code is None else (code, reason.lower())))
         if self._motion.moving:
             self._motion.hold()
             return State.HOLDING
@@ -69,11 +69,11 @@ class FeedHold:
     def starve(self, code: Code, detail: str) -> None:
         """The queue was not refilled in time: its tail stops the slides."""
         self.reason, self._since = CATALOGUE[code].text.upper(), self._context.now
-        self._context.stopped(code, detail)
+        self._context.show_stop(code, detail)
 
     def retract(self, block: Block) -> None:
         """The spindle is lost in a thread: brake along it, then draw X back."""
-        self._context.say("thread", "spindle lost in a thread")
+        self._context.log("thread", "spindle lost in a thread")
         self._motion.retract(block)
         self._retracting = True
 

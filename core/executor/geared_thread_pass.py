@@ -51,7 +51,7 @@ class GearedThreadPass:
         self._ramp = 0.0  # turns of running up
         self._leaves = math.inf  # turns at which the thread itself ends
         self._stopped = False
-        self._told = False
+        self._reported = False
         self.worst = 0.0  # turns by which the slides were behind the spindle
 
     @property
@@ -92,8 +92,8 @@ class GearedThreadPass:
 
     def lost_step(self) -> bool:
         """Whether setpoints and spindle have come too far apart for a good thread; True once a pass."""
-        told, self._told = self._told, self.worst > _ALLOWED
-        return self._told and not told
+        before, self._reported = self._reported, self.worst > _ALLOWED
+        return self._reported and not before
 
     def hold(self) -> None:
         """A pass that has not begun to move does not begin; any other is finished."""

@@ -74,7 +74,7 @@ class Handwheel:
         self._step = 0.0
         self._until = 0.0
         self._ready = False  # it has stood still since it was selected
-        self._told = ""  # what was said once of this motion
+        self._reported = ""  # what was said once of this motion
         self._apart = -math.inf  # until then no key jogs: it came together with the wheel
 
     def select(self, command: Wheel, state: State) -> None:
@@ -97,7 +97,7 @@ class Handwheel:
         """Take it away, and say why. Raises DriverError."""
         self._stop(state)
         self.axis, self.ended = "", why
-        self._context.say("refused", f"handwheel: {why}")
+        self._context.log("refused", f"handwheel: {why}")
 
     def turn(self, state: State) -> bool:
         """Once a tick; True when the axis moves. Raises DriverError."""
@@ -110,7 +110,7 @@ class Handwheel:
             return False
         if state is State.IDLE:
             jogger.forget()
-            self._told = ""
+            self._reported = ""
         self._ready = self._ready or self._clicks.still >= _STILL
         if not clicks or not self._ready or jogger.ending:
             return False
@@ -174,7 +174,7 @@ class Handwheel:
         jogger.chase(self.axis, found.pieces, wanted)
         if jogger.goal is not None and found.goal != wanted:
             jogger.goal = found.goal
-            self._tell(f"turned faster than {self.axis} goes; clicks are dropped")
+            self._refuse_once(f"turned faster than {self.axis} goes; clicks are dropped")
         return jogger.goal is not None
 
     def _top(self, index: int) -> float:
@@ -189,13 +189,13 @@ class Handwheel:
         low, high = axis.travel[0] + jogging.LIMIT_MARGIN, axis.travel[1] - jogging.LIMIT_MARGIN
         allowed = min(max(wanted, min(low, here)), max(high, here))
         if allowed != wanted:
-            self._tell(at_the_end(axis.name, wanted - allowed))
+            self._refuse_once(at_the_end(axis.name, wanted - allowed))
         return allowed
 
-    def _tell(self, what: str) -> None:
-        if what != self._told:
-            self._told = what
-            self._context.say("refused", f"handwheel: {what}")
+    def _refuse_once(self, what: str) -> None:
+        if what != self._reported:
+            self._reported = what
+            self._context.log("refused", f"handwheel: {what}")
 
 
 class _Ride:

@@ -88,10 +88,10 @@ class InterruptionWatch:
             self._stopped = stopped
 
     def _worth_a_note(self, block: Block, *, just_stopped: bool) -> bool:
-        noted, at = self._noted, self._context.sample.actual
-        if noted is None or noted.tool != block.modal.tool or noted.block == 0 or just_stopped:
+        log_stop, at = self._noted, self._context.sample.actual
+        if log_stop is None or log_stop.tool != block.modal.tool or log_stop.block == 0 or just_stopped:
             return True
-        moved = noted.block != block.n or math.dist(noted.where, at) > _MOVED
+        moved = log_stop.block != block.n or math.dist(log_stop.where, at) > _MOVED
         return moved and self._context.now >= self._next
 
     def finished(self) -> None:
@@ -113,7 +113,7 @@ class InterruptionWatch:
         self._settled, self._rests_since = False, None
         self._status.interrupted = found
         self._keep(found)
-        self._context.say("interrupted", found.words)
+        self._context.log("interrupted", found.words)
 
     def _settle(self) -> None:
         """The slides still brake when an E-stop is seen: the tool stands where it has come to rest."""
@@ -174,7 +174,7 @@ class InterruptionWatch:
         self._status.interrupted = None
         self._settled = True
         self._keep(None)
-        self._context.say("cleared", words)
+        self._context.log("cleared", words)
 
     # --- what is noted ------------------------------------------------------------------------------------
 

@@ -254,7 +254,7 @@ class Jogger:
     def ended(self) -> None:
         """It rests; a step that was cut short is said to be so."""
         if self._short:
-            self._context.say("refused", f"{self.axis} was stopped before the end of its step")
+            self._context.log("refused", f"{self.axis} was stopped before the end of its step")
         self.forget()
 
     def forget(self) -> None:

@@ -56,11 +56,11 @@ class MachineContext:
         fraction = min(self.signals.feed * self.soft_override, 1.5)
         return round(fraction / _LEAST) * _LEAST
 
-    def say(self, kind: str, text: str) -> None:
+    def log(self, kind: str, text: str) -> None:
         """Put something into the log."""
-        self.tell(Event(self.now, kind, text, self.line))
+        self.log_event(Event(self.now, kind, text, self.line))
 
-    def stopped(self, code: Code, detail: str = "") -> None:
+    def show_stop(self, code: Code, detail: str = "") -> None:
         """A hold, a stop or the E-stop: it is shown until something goes on, and it goes into the log.
 
         Of blocks that are stepped through one by one the first alone: they would push all else out of it.
@@ -68,17 +68,17 @@ class MachineContext:
         if code == "single-block" == self._noted:
             self.stop = make_alarm(code, detail, self.line, self.now)
         else:
-            self.stop = self.noted(code, detail)
+            self.stop = self.log_stop(code, detail)
 
-    def noted(self, code: Code, detail: str = "") -> Alarm:
+    def log_stop(self, code: Code, detail: str = "") -> Alarm:
         """A stop that is over at once: it only goes into the log."""
         stop = make_alarm(code, detail, self.line, self.now)
         self._noted = code
         kind = "estop" if code == "estop" else "stop"
-        self.tell(Event(self.now, kind, log_line(stop), self.line, stop))
+        self.log_event(Event(self.now, kind, log_line(stop), self.line, stop))
         return stop
 
-    def tell(self, event: Event) -> None:
+    def log_event(self, event: Event) -> None:
         """Hand an event to who keeps the log; that it cannot be kept stops nothing."""
         with Attempt() as trial:
             self.on_event(event)

@@ -78,10 +78,10 @@ class MachineControl:
         demand_allowed(self.state, state)
         self.status.state = state
         if state is State.BLOCK_END:
-            self._context.stopped("single-block")
+            self._context.show_stop("single-block")
         elif state in _GOES_ON:
             self._context.stop = None
-        self._context.say("state", state.value)
+        self._context.log("state", state.value)
 
     # --- what is asked ------------------------------------------------------------------------------------
 
@@ -105,7 +105,7 @@ class MachineControl:
         """Keep and log why a start is refused; False when there is no reason."""
         self.status.start_refused = why
         if why:
-            self._context.say("refused", why)
+            self._context.log("refused", why)
         return bool(why)
 
     def spindle_switch(self) -> None:
@@ -117,7 +117,7 @@ class MachineControl:
             self._context.now, SPINDLE
         )
         if why:
-            self._context.say("refused", why)
+            self._context.log("refused", why)
         else:
             self.announcement.begin(SPINDLE)
 
@@ -157,7 +157,7 @@ class MachineControl:
             self._acknowledge()
         elif self.cycle is not None and self.state in CYCLE:
             job = self.status.job
-            self._context.noted("reset", f"{job.source.name} was given up" if job is not None else "")
+            self._context.log_stop("reset", f"{job.source.name} was given up" if job is not None else "")
             self._giving_up = True
             self.cycle.abandon()
             self._leave()
@@ -175,7 +175,7 @@ class MachineControl:
         """The hardware has stopped everything; the control follows, and nothing starts on release."""
         if pressed and self.state is not State.ESTOP:
             self.safe.react(Reaction.OFF)
-            self._context.stopped("estop")
+            self._context.show_stop("estop")
             self._give_up(ESTOP)
             self.enter(State.ESTOP)
         elif not pressed and self.state is State.ESTOP:
@@ -205,7 +205,7 @@ class MachineControl:
         left = motion.starving - self._context.now
         if motion.active and left < self._context.machine.timing.low_water:
             self.counters.underruns += 1
-            self._context.say("starved", "setpoints ran low; the slides stop on the path")
+            self._context.log("starved", "setpoints ran low; the slides stop on the path")
             cycle.starve()
 
     def _leave(self) -> None:
@@ -233,7 +233,7 @@ class MachineControl:
         self._give_up(f"ALARM {alarm.number}: {alarm.text}")
         if self.state not in {State.ESTOP, State.FAULT}:
             self.enter(State.FAULT)
-        context.tell(Event(context.now, "alarm", log_line(alarm), alarm.line, alarm))
+        context.log_event(Event(context.now, "alarm", log_line(alarm), alarm.line, alarm))
 
     def _holds(self, trouble: AlarmError) -> bool:
         """What need not cost the part is a hold; False where there is nothing that could be held."""
@@ -241,8 +241,8 @@ class MachineControl:
             self.cycle.starve(trouble.code, trouble.detail)
         elif self.state in BY_HAND:
             self.jogger.stop()
-            stop = self._context.noted(trouble.code, trouble.detail)
-            self._context.say("refused", stop.text.lower())
+            stop = self._context.log_stop(trouble.code, trouble.detail)
+            self._context.log("refused", stop.text.lower())
         else:
             return False
         return True
@@ -260,7 +260,7 @@ class MachineControl:
             self.program_run.forget(why)
         if trial.error is not None:
             self.program_run.drop()
-            self._context.say("alarm", f"while giving the program up: {trial.error}")
+            self._context.log("alarm", f"while giving the program up: {trial.error}")
 
     def _finish_stopping(self) -> None:
         """A safe stop that a driver keeps from being done is tried on, and is an alarm of its own."""
@@ -280,7 +280,7 @@ class MachineControl:
         """Reset with an alarm: only at rest, and drives that an alarm has switched off stay off."""
         context, status = self._context, self.status
         if context.sample.moving:
-            context.say("refused", "reset: wait until the slides are at rest")
+            context.log("refused", "reset: wait until the slides are at rest")
             return
         if status.power_off:
             context.ports.axes.enable(False)

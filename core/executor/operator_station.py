@@ -78,20 +78,20 @@ class StationWatch:
         self._started = True  # a start that is on when the control begins to look is no press
         self._last_start = -1e9
         self._auto = True  # where the spindle switch stood when the station last spoke
-        self._heard = -1e9  # when it last spoke
+        self._spoke = -1e9  # when it last spoke
 
-    def hear(self, state: StationState, now: float) -> StationSignals:
+    def read(self, state: StationState, now: float) -> StationSignals:
         """One look at the station."""
         silent = not (state.age <= _SILENT and math.isfinite(state.feed_pot + state.spindle_pot))
         if not silent:
             self._feed.read(state.feed_pot, now)
             self._spindle.read(state.spindle_pot, now)
-        live = not silent and now - self._heard <= _AWAY
+        live = not silent and now - self._spoke <= _AWAY
         edge = live and state.start and not self._started
         turned = live and state.spindle_auto and not self._auto
         self._started = state.start
         if not silent:
-            self._auto, self._heard = state.spindle_auto, now
+            self._auto, self._spoke = state.spindle_auto, now
         noisy = self._feed.noisy or self._spindle.noisy
         trouble = "OPERATOR STATION SILENT" if silent else "OVERRIDE POT JUMPS" if noisy else ""
         return StationSignals(

@@ -66,9 +66,9 @@ class PartCount:
         if not self.piece.restarted:
             counters.last_cycle = seconds
         if why:
-            self._context.say("uncounted", f"{why}; {seconds:.2f} s")
+            self._context.log("uncounted", f"{why}; {seconds:.2f} s")
         else:
             counters.parts += 1
             counters.made += 1
-            self._context.say("part", f"part {counters.parts}, {seconds:.2f} s")
+            self._context.log("part", f"part {counters.parts}, {seconds:.2f} s")
         self.piece.end()

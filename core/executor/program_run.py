@@ -72,10 +72,10 @@ class ProgramRun:
             self.interruption.begin(job.setup.begin)
         self._open(job)
         self._enter(State.RUN)
-        context.say("mdi" if self._line else "start", job.source.text if self._line else job.source.name)
+        context.log("mdi" if self._line else "start", job.source.text if self._line else job.source.name)
         begin = job.setup.begin
         if begin is not None and not begin.single:
-            context.say("restart", f"from line {begin.line}")
+            context.log("restart", f"from line {begin.line}")
 
     @property
     def will_count(self) -> bool:
@@ -95,7 +95,7 @@ class ProgramRun:
         kind = "mdi" if self._line else "end"
         self.forget(GIVEN_UP)
         self._enter(State.IDLE)
-        self._context.say(kind, said)
+        self._context.log(kind, said)
         return True
 
     def forget(self, why: str) -> None:
@@ -193,8 +193,8 @@ class ProgramRun:
 
     def _program_ended(self, no_repeat: str = "") -> None:
         if no_repeat:
-            self._context.say("refused", f"no repeat: {no_repeat}")
-        self._context.say("end", "program end")
+            self._context.log("refused", f"no repeat: {no_repeat}")
+        self._context.log("end", "program end")
         self._put_away(self.modal)
         self._enter(State.IDLE)
 
@@ -205,7 +205,7 @@ class ProgramRun:
         modal = self.modal if left is None else modal_as_machine(left.modal, self._context)
         self._put_away(modal, tool_open=left is not None and left.tool_line != 0)
         self._enter(State.IDLE)
-        self._context.say("mdi", "done")
+        self._context.log("mdi", "done")
 
     @property
     def modal(self) -> Modal:

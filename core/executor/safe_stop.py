@@ -72,7 +72,7 @@ class SafeStop:
         if error is not None and self._tries == 1:
             if not isinstance(error, DriverError):
                 _log.error("while stopping %s", name, exc_info=error)
-            self._context.say("alarm", f"while stopping {name}: {str(error) or type(error).__name__}")
+            self._context.log("alarm", f"while stopping {name}: {str(error) or type(error).__name__}")
         return error is None
 
     def _brake(self, how: Stop) -> None:

@@ -244,7 +244,7 @@ class SetpointMotion:
             self._go(soon=False)
         self._extend(now)
         if self._pass is not None and self._pass.lost_step():
-            self._context.say(
+            self._context.log(
                 "thread",
                 "the spindle changed its speed faster than the slides could follow: check the thread",
             )

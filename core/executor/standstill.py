@@ -110,7 +110,7 @@ def carry_out(block: Block, context: MachineContext) -> Wait | None:
             return _move_collet(closed, context)
         case RepeatOff():
             context.switches.cycle_repeat = False
-            context.say("switch", "cycle repeat off by M31")
+            context.log("switch", "cycle repeat off by M31")
         case Dwell(seconds=seconds):
             return Wait(lambda: "DWELL", lambda passed: passed >= seconds - 1e-9, context.now)
         case WaitInput(terminal=terminal, closed=closed):

@@ -79,7 +79,7 @@ class OutputsWatch:
     def __init__(self, context: MachineContext, program_run: ProgramRun) -> None:
         self._context = context
         self._program_run = program_run
-        self._told: frozenset[str] = (
+        self._known_off: frozenset[str] = (
             frozenset()
         )  # outputs of which it is known that they are not as commanded
 
@@ -91,13 +91,13 @@ class OutputsWatch:
             trips.acknowledge(trip)  # first: the hold is setpoints too
             self._tripped(trip)
         if self._program_run.status.state not in CYCLE:
-            self._told = frozenset()
+            self._known_off = frozenset()
             for each in self._context.outputs.accept():
-                self._context.say("disturbed", f"{each.words} BY ITSELF")
+                self._context.log("disturbed", f"{each.words} BY ITSELF")
             return
         differing = self._context.outputs.differing()
-        new = [each for each in differing if each.name not in self._told]
-        self._told = frozenset(each.name for each in differing)
+        new = [each for each in differing if each.name not in self._known_off]
+        self._known_off = frozenset(each.name for each in differing)
         if new:
             self._disturbed("switched-off", " AND ".join(each.words for each in new))
 
@@ -115,19 +115,19 @@ class OutputsWatch:
         if trip.spindle:
             context.spindle.dropped("THE FEEDER HAS SWITCHED OFF")
         context.outputs.fell(trip.outputs)
-        self._told |= set(trip.outputs)
+        self._known_off |= set(trip.outputs)
         self._disturbed(
             "feeder-tripped", f"CONTROL WAS SILENT FOR {trip.away:.1f} S, SWITCHED OFF: {', '.join(off)}"
         )
 
     def _disturbed(self, code: Code, words: str) -> None:
         program_run, state = self._program_run, self._program_run.status.state
-        self._context.say("disturbed", words)
+        self._context.log("disturbed", words)
         if program_run.cycle is None or state not in CYCLE:
             return
         program_run.disturb(words.lower())
         if state in ACTIVE:
             self._context.spindle.break_off()
         else:
-            self._context.stopped(code, words.lower())
+            self._context.show_stop(code, words.lower())
         program_run.cycle.hold(words, code=code)

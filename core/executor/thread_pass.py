@@ -52,7 +52,7 @@ class ThreadPass:
         self._ends = math.inf
         self._cost = 0.0
         self._stopped = False
-        self._told = False
+        self._reported = False
         self._free = False  # too near its end for another plan
         self.worst = 0.0  # deviation from the spindle in step, leads
 
@@ -110,8 +110,8 @@ class ThreadPass:
 
     def lost_step(self) -> bool:
         """Whether setpoints and spindle have come too far apart for a good thread; True once a pass."""
-        told, self._told = self._told, self.worst > _ALLOWED
-        return self._told and not told
+        before, self._reported = self._reported, self.worst > _ALLOWED
+        return self._reported and not before
 
     def hold(self) -> None:
         """A pass that has not begun to move does not begin; any other is finished."""

@@ -1,7 +1,7 @@
 """The executor's thread, and the watchdog that sees when it is dead or stuck and makes the machine safe.
 
-The watchdog is a thread of its own. It counts its own looks, not time: when the whole process stands still, it
-does so too, and nobody is blamed. It touches no driver that belongs to the executor but by
+The watchdog is a thread of its own. It counts its own looks, not time: when the whole process stands
+still, it does so too, and nobody is blamed. It touches no driver that belongs to the executor but by
 ``MachinePorts.halt``, which any thread may call.
 """
 

@@ -45,7 +45,7 @@ class CuttingChecks:
     _tool_off: int = 0  # line of a T0
     _preset: bool = False  # G92 has said where the point stands since the last T
     _has_run: bool = False  # the program has turned the spindle
-    _told: frozenset[str] = frozenset()  # what is wrong now and has been told
+    _reported: frozenset[str] = frozenset()  # what is wrong now and has been told
     _cut_before_collet: int = 0  # line of the first cut in the collet as the program has met it
     _collet: bool = False  # M12 or M13 has come
     _asked: frozenset[str] = frozenset()
@@ -129,18 +129,18 @@ class CuttingChecks:
         if self._tool_off:
             after = f"the T0 on line {self._tool_off}"
             text = f"This move cuts after {after}: its numbers count from the machine's home."
-        if "no-tool" not in self._told:
+        if "no-tool" not in self._reported:
             self._without_tool.append(_finding(block, Severity.ERROR, "no-tool", text, hint))
-        self._told |= {"no-tool"}
+        self._reported |= {"no-tool"}
 
     def _collet_open(self, block: Block) -> None:
         """Bar work moves a stop or a gripper while the collet is open; nothing is cut in it."""
         if block.per_rev or block.kind in _METAL or block.modal.c_locked:
             text = "This move cuts with the collet open: the part is held by nothing."
-            self._tell(block, Severity.ERROR, "collet-open", text, "Close the collet with M12 before it.")
+            self._report(block, Severity.ERROR, "collet-open", text, "Close the collet with M12 before it.")
         elif block.x != block.x0 or block.z < block.z0:
             text = "This move feeds with the collet open, and not away from the spindle as a bar is pulled."
-            self._tell(block, Severity.WARNING, "collet-open", text, "Close the collet with M12 before it.")
+            self._report(block, Severity.WARNING, "collet-open", text, "Close the collet with M12 before it.")
 
     def _live_tool_off(self, block: Block) -> None:
         codes = sorted(
@@ -151,14 +151,14 @@ class CuttingChecks:
         hint = f"Switch it on with {' or '.join(f'M{code:02d}' for code in codes)} before it."
         if block.kind in _MILLING:
             text = "This move mills, and no live tool is on."
-            self._tell(block, Severity.ERROR, "live-tool-off", text, hint)
+            self._report(block, Severity.ERROR, "live-tool-off", text, hint)
         else:
             text = "This move cuts with the spindle held as C, and no live tool is on."
-            self._tell(block, Severity.WARNING, "live-tool-off", text, hint)
+            self._report(block, Severity.WARNING, "live-tool-off", text, hint)
 
     def _spindle_off(self, block: Block) -> None:
         text = "This move cuts after the program has stopped the spindle, and no live tool is on."
-        self._tell(block, Severity.WARNING, "spindle-off", text, "Start it with M03 or M04 before it.")
+        self._report(block, Severity.WARNING, "spindle-off", text, "Start it with M03 or M04 before it.")
 
     def _input(self, block: Block, terminal: str) -> None:
         if terminal in self.machine.inputs or terminal in self._asked:
@@ -181,15 +181,15 @@ class CuttingChecks:
             _finding(block, Severity.WARNING, "collet-open", text, "Write M12 at its end or its start.")
         )
 
-    def _tell(self, block: Block, severity: Severity, check: str, text: str, hint: str) -> None:
+    def _report(self, block: Block, severity: Severity, check: str, text: str, hint: str) -> None:
         """Once until it is right again; an error also behind a warning."""
         key = f"{check} {severity}"
-        if key not in self._told:
-            self._told |= {key}
+        if key not in self._reported:
+            self._reported |= {key}
             self._add(_finding(block, severity, check, text, hint))
 
     def _clear(self, *checks: str) -> None:
-        self._told = frozenset(each for each in self._told if each.split()[0] not in checks)
+        self._reported = frozenset(each for each in self._reported if each.split()[0] not in checks)
 
     def _add(self, found: Diagnostic) -> None:
         if len(self._found) < _MOST:

@@ -215,7 +215,7 @@ class Branches:
         self._left = 0
         self._gone = 1
         self._found: list[Diagnostic] = []
-        self._told: set[tuple[int, str]] = set()
+        self._reported: set[tuple[int, str]] = set()
         self._tools: set[int] = set()
         self._missing: set[int] = set()
         self._work = 0
@@ -289,7 +289,7 @@ class Branches:
         found = [*report.diagnostics, *uncalled(self._reading)]
         if self.root is None:
             return replace(report, diagnostics=in_order(found), ways=Ways(cycle=(report.times.cycle,) * 2))
-        self._told = {(each.line, each.code) for each in report.diagnostics}
+        self._reported = {(each.line, each.code) for each in report.diagnostics}
         first = self._now.branch
         needs = report.needs
         most, self._work = max(MOST_WORK, 3 * self._work), 0
@@ -329,16 +329,16 @@ class Branches:
         report = one.report(timeline, self._reading.source)
         self._tools.update(report.tools)
         self._missing.update(report.missing_tools)
-        self._tell(going, report)
+        self._report(going, report)
         going.source = None
         return report
 
-    def _tell(self, going: _BranchPass, report: Report) -> None:
+    def _report(self, going: _BranchPass, report: Report) -> None:
         unlikely = going.source is not None and going.source.unlikely
         for each in report.diagnostics:
-            if each.severity is Severity.NOTE or (each.line, each.code) in self._told:
+            if each.severity is Severity.NOTE or (each.line, each.code) in self._reported:
                 continue
-            self._told.add((each.line, each.code))
+            self._reported.add((each.line, each.code))
             weight = Severity.WARNING if unlikely else each.severity
             self._found.append(replace(each, severity=weight, message=_with(going.choices, each.message)))
 
