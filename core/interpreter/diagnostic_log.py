@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Protocol
 
 from core.interpreter.modal_state import Modal
-from core.language.diagnostics import Diagnostic, Severity
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
 
 MOST_OF_A_KIND = 100
 MOST_COUNTED = 10_000
@@ -100,6 +100,11 @@ class Log:
 def refusal(line: int, column: int, code: str, message: str, hint: str = "") -> Diagnostic:
     """An error diagnostic."""
     return Diagnostic(line, column, Severity.ERROR, code, message, hint)
+
+
+def program_error(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
+    """The exception that carries an error diagnostic."""
+    return ProgramError(refusal(line, column, code, message, hint))
 
 
 # --- What every interpreter tells of its pass, whatever language it reads.

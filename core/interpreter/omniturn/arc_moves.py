@@ -7,14 +7,12 @@ from math import dist
 
 from core.geometry.lines_and_arcs import Point, arc_length, centre_from_radius
 from core.interpreter import units
-from core.interpreter.diagnostic_log import refusal
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.feeds import check_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.spindle_speed import rpm_at
 from core.interpreter.omniturn.straight_moves import check_tool, go, on_step, warn_of_title_rapid
-from core.language.diagnostics import ProgramError
 
 _TOLERANCE = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)
 _SAME = 1e-9  # mm
@@ -60,19 +58,19 @@ def _centre_by_radius(state: State, made: Statement, start: Point, *, clockwise:
     _check_mode(state, made)
     for letter in ("I", "K"):
         if letter in made.words:
-            raise _refused(made, letter, "arc-both", f"The arc has R and {letter}.", "Keep one way.")
+            raise made.refuse(letter, "arc-both", f"The arc has R and {letter}.", "Keep one way.")
     radius = on_step(state, made, "R")
     if radius is None or radius <= 0:
-        raise _refused(made, "R", "arc-r-sign", "R must be a number over 0.", "Give larger arcs I and K.")
+        raise made.refuse("R", "arc-r-sign", "R must be a number over 0.", "Give larger arcs I and K.")
     chord = dist(start, (state.x, state.z))
     if chord <= _SAME:
         text = "The arc by R ends where it starts."
-        raise _refused(made, "R", "arc-no-chord", text, "A full circle takes I and K.")
+        raise made.refuse("R", "arc-no-chord", text, "A full circle takes I and K.")
     if chord > 2 * radius + _TOLERANCE:
         metric = state.modal.metric
         shown, half = units.length(radius, metric=metric), units.length(chord / 2, metric=metric)
         text = f"R is {shown}, and the ends are so far apart that it takes {half} at least."
-        raise _refused(made, "R", "arc-radius", text, "Correct R or the end point.")
+        raise made.refuse("R", "arc-radius", text, "Correct R or the end point.")
     return centre_from_radius(start, (state.x, state.z), radius, clockwise=clockwise)
 
 
@@ -81,32 +79,29 @@ def _centre_by_words(state: State, made: Statement, start: Point) -> Point:
     _check_mode(state, made)
     i, k = on_step(state, made, "I"), on_step(state, made, "K")
     if i is None and k is None:
-        column = made.code.column if made.code else 0
         text = "The arc has neither R nor I and K."
-        raise ProgramError(refusal(made.line, column, "arc-centre-missing", text, "Add R, or I and K."))
+        raise made.refuse("", "arc-centre-missing", text, "Add R, or I and K.")
     if state.modal.diameter or not state.absolute:
         return start[0] + (i or 0.0) + state.dx, start[1] + (k or 0.0) + state.dz
     if i is None or k is None:
         letter = "I" if i is None else "K"
         given = "K" if i is None else "I"
         text = f"{letter} is missing: under G90 and G73, I and K are the centre's coordinates."
-        raise _refused(made, given, "arc-coordinate-missing", text, f"Add {letter}.")
+        raise made.refuse(given, "arc-coordinate-missing", text, f"Add {letter}.")
     return i + state.dx, k + state.dz
 
 
 def _check_mode(state: State, made: Statement) -> None:
     if state.modal.diameter and not state.absolute:
-        column = made.code.column if made.code else 0
         text = "Arcs cannot be incremental in diameter mode."
-        raise ProgramError(refusal(made.line, column, "arc-mode", text, "Use G90 or G73 for the arc."))
+        raise made.refuse("", "arc-mode", text, "Use G90 or G73 for the arc.")
 
 
 def _check_radii(state: State, made: Statement, first: float, last: float) -> None:
     metric = state.modal.metric
-    column = made.code.column if made.code else 0
     if first <= _SAME:
         text = "The centre of the arc is its start point."
-        raise ProgramError(refusal(made.line, column, "arc-no-radius", text, "Correct I and K."))
+        raise made.refuse("", "arc-no-radius", text, "Correct I and K.")
     if abs(first - last) <= _TOLERANCE:
         return
     text = (
@@ -117,8 +112,4 @@ def _check_radii(state: State, made: Statement, first: float, last: float) -> No
         hint = "I and K are distances from the start here."
     else:
         hint = "I and K are the centre's coordinates here."
-    raise ProgramError(refusal(made.line, column, "arc-radius", text, hint))
-
-
-def _refused(made: Statement, letter: str, code: str, text: str, hint: str) -> ProgramError:
-    return ProgramError(refusal(made.line, made.column(letter), code, text, hint))
+    raise made.refuse("", "arc-radius", text, hint)

@@ -7,14 +7,12 @@ from math import copysign, hypot
 
 from core.interpreter import units
 from core.interpreter.actions import SpindleLock
-from core.interpreter.diagnostic_log import refusal
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.dwell import expect_arrival, warn_of_short_dwell
 from core.interpreter.omniturn.feeds import check_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import check_tool, go, on_step, warn_of_title_rapid
-from core.language.diagnostics import ProgramError
 from core.language.omniturn import Word
 
 C_WORDS = ("C", "CA", "CI")
@@ -34,10 +32,10 @@ def lock(state: State, made: Statement) -> Iterator[Block]:
     name = word.text.upper() if word else "M19"
     if not state.setup.limits.c_enabled:
         text = f"{name} needs a C axis, and the machine file switches it off."
-        raise ProgramError(refusal(made.line, column, "c-disabled", text, "Set axis.C.enabled."))
+        raise made.refuse(column, "c-disabled", text, "Set axis.C.enabled.")
     if made.one_shot == 89 and made.m is not None:
         text = "G89 locks the spindle and stands without M codes."
-        raise ProgramError(refusal(made.line, column, "not-alone", text, "Split the line."))
+        raise made.refuse(column, "not-alone", text, "Split the line.")
     rpm = speed_of_c(state, made)
     modal = state.modal
     state.adopt(modal._replace(spindle=0, c_locked=True, c_rpm=rpm))
@@ -54,7 +52,7 @@ def speed_of_c(state: State, made: Statement) -> float | None:
     most = state.setup.limits.c_max_rpm
     if not 0.0 < abs(word.value) <= most * (1.0 + 1e-9):
         text = f"{word.text}: C turns at more than 0 and at most {most:g} rpm."
-        raise ProgramError(refusal(made.line, word.column, "speed-range", text, "Correct S."))
+        raise made.refuse(word, "speed-range", text, "Correct S.")
     return abs(word.value)
 
 
@@ -123,15 +121,13 @@ def _c_word(state: State, made: Statement) -> Word:
     found = [made.words[letter] for letter in C_WORDS if letter in made.words]
     if len(found) > 1:
         text = f"The line holds {found[0].text} and {found[1].text}."
-        raise ProgramError(refusal(made.line, found[1].column, "word-twice", text, "Keep one of them."))
+        raise made.refuse(found[1], "word-twice", text, "Keep one of them.")
     if not state.modal.c_locked:
         text = f"{found[0].text} turns the spindle, which is not locked."
-        raise ProgramError(
-            refusal(made.line, found[0].column, "c-unlocked", text, "Write M19 or M89 before.")
-        )
+        raise made.refuse(found[0], "c-unlocked", text, "Write M19 or M89 before.")
     if found[0].value is None:
         text = f"{found[0].text} has no number."
-        raise ProgramError(refusal(made.line, found[0].column, "number-missing", text, "Write the degrees."))
+        raise made.refuse(found[0], "number-missing", text, "Write the degrees.")
     return found[0]
 
 
@@ -153,15 +149,15 @@ def _check_turns(state: State, made: Statement, word: Word, way: float, turn: fl
     feed = modal.feed or 0.0
     if modal.c_rpm is None:
         text = "The slide is fed by the turns of C, and no S has said how fast it turns."
-        raise ProgramError(refusal(made.line, word.column, "speed-missing", text, "Write S on the line."))
+        raise made.refuse(word, "speed-missing", text, "Write S on the line.")
     needed = way / feed * _TURN
     if turn < needed * (1.0 - 1e-9):
         text = f"C turns {turn:g} degrees; the way of the slide at this feed needs {round(needed, 4):g}."
         hint = "Turn C further, or raise F: the slide would stop on its way."
-        raise ProgramError(refusal(made.line, word.column, "c-too-little", text, hint))
+        raise made.refuse(word, "c-too-little", text, hint)
     speed = feed * modal.c_rpm / 60.0
     if speed > limits.max_feed * (1.0 + 1e-9):
         shown = units.feed(speed, per_rev=False, metric=modal.metric)
         most = units.feed(limits.max_feed, per_rev=False, metric=modal.metric)
         text = f"At {modal.c_rpm:g} rpm of C this feed is {shown}; {most} is the most."
-        raise ProgramError(refusal(made.line, 0, "feed-over-speed", text, "Lower F or S."))
+        raise made.refuse(0, "feed-over-speed", text, "Lower F or S.")

@@ -9,14 +9,12 @@ from typing import NamedTuple
 from core.geometry.lines_and_arcs import Arc, Line, Point, arc_length
 from core.interpreter import units
 from core.interpreter.adjusted_moves import move_words
-from core.interpreter.diagnostic_log import refusal
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.feeds import check_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.spindle_speed import rpm_at
 from core.interpreter.omniturn.straight_moves import on_step
-from core.language.diagnostics import ProgramError
 
 LIFT = 0.02 * units.MM_PER_INCH
 """How far a tool is drawn off the cut before it goes back, mm."""
@@ -35,12 +33,6 @@ class Move(NamedTuple):
     clockwise: bool = False
 
 
-def refused(made: Statement, letter: str, code: str, text: str, hint: str) -> ProgramError:
-    """An error at a word of the cycle's line, at its code where the word is missing."""
-    column = made.column(letter) or (made.code.column if made.code else 0)
-    return ProgramError(refusal(made.line, column, code, text, hint))
-
-
 def name(made: Statement) -> str:
     """The cycle's code as messages call it."""
     return f"G{made.one_shot}"
@@ -50,17 +42,17 @@ def check_ready(state: State, made: Statement) -> None:
     """Refuse a cycle where its start point or its feed is not known, or nose compensation is active."""
     if state.modal.nose_comp != 40:
         text = f"{name(made)} cannot run while nose compensation is active."
-        raise refused(made, "G", "cycle-nose-comp", text, "Put G40 and a departure before it.")
+        raise made.refuse("G", "cycle-nose-comp", text, "Put G40 and a departure before it.")
     tool_line = state.tool_line
     if tool_line:
         state.tool_line = 0
         text = (
             f"{name(made)} is the first move after the T on line {tool_line}: its start point is not known."
         )
-        raise refused(made, "G", "tool-first-move", text, "Move to X and Z of the start point before it.")
+        raise made.refuse("G", "tool-first-move", text, "Move to X and Z of the start point before it.")
     if "F" not in made.words and (not state.cut or state.modal.feed is None):
         text = f"{name(made)} has no feed: none for cutting is in force."
-        raise refused(made, "G", "feed-missing", text, f"Write F on the {name(made)} line.")
+        raise made.refuse("G", "feed-missing", text, f"Write F on the {name(made)} line.")
 
 
 def positive(state: State, made: Statement, letter: str, meaning: str) -> float:
@@ -68,10 +60,10 @@ def positive(state: State, made: Statement, letter: str, meaning: str) -> float:
     value = on_step(state, made, letter)
     if value is None:
         text = f"{name(made)} needs {letter}, {meaning}."
-        raise refused(made, letter, "word-missing", text, f"Add {letter}.")
+        raise made.refuse(letter, "word-missing", text, f"Add {letter}.")
     if value <= 0:
         text = f"{made.words[letter].text}: {letter}, {meaning}, must be over 0."
-        raise refused(made, letter, "cycle-length", text, f"Correct {letter}.")
+        raise made.refuse(letter, "cycle-length", text, f"Correct {letter}.")
     return value
 
 
@@ -80,7 +72,7 @@ def left_over(state: State, made: Statement) -> float:
     value = on_step(state, made, "U") or 0.0
     if value < 0:
         text = f"{made.words['U'].text}: U is what the cycle leaves on a side, which is never negative."
-        raise refused(made, "U", "cycle-length", text, "Take the sign out.")
+        raise made.refuse("U", "cycle-length", text, "Take the sign out.")
     return value
 
 
@@ -88,7 +80,7 @@ def check_count(made: Statement, letter: str, count: int, what: str) -> None:
     """Refuse a cycle of more passes than anyone means."""
     if count > MOST_PASSES:
         text = f"{name(made)} would make {count:,} {what}; {MOST_PASSES:,} are the most."
-        raise refused(made, letter, "cycle-passes", text, f"Look for a lost decimal point in {letter}.")
+        raise made.refuse(letter, "cycle-passes", text, f"Look for a lost decimal point in {letter}.")
 
 
 def blocks_of_moves(state: State, made: Statement, moves: Sequence[Move]) -> Iterator[Block]:

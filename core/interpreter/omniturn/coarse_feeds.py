@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from core.interpreter import units
-from core.interpreter.diagnostic_log import refusal
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
-from core.language.diagnostics import ProgramError
 
 COARSE = frozenset({35, 36})
 _SAME = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)  # mm; the coarsest step
@@ -47,24 +45,24 @@ def _change(state: State, made: Statement, ahead: Sequence[ReadyLine]) -> None:
 def _refuse_tool(made: Statement) -> None:
     """A T between G35 and G36 would leave its tool on the coarse step."""
     text = "A T stands between G35 and G36."
-    raise ProgramError(refusal(made.line, made.column("T"), "coarse-tool", text, "Write G36 before it."))
+    raise made.refuse("T", "coarse-tool", text, "Write G36 before it.")
 
 
 def _check_alone(made: Statement, code: int) -> None:
     others = set(made.words) - ({"F"} if code == 35 else set())
     if others or made.one_shot is not None or made.m is not None or len(made.modal) > 1:
         text = f"G{code} stands alone on its line."
-        raise ProgramError(refusal(made.line, 1, "not-alone", text, "Put the rest on a line of its own."))
+        raise made.refuse(1, "not-alone", text, "Put the rest on a line of its own.")
     if "F" in made.words and made.value("F") != 2:
         text = f"{made.words['F'].text}: beside G35 only F2 has a meaning (leads to 2 in/rev)."
-        raise ProgramError(refusal(made.line, made.column("F"), "coarse-range", text, "Write G35 or G35F2."))
+        raise made.refuse("F", "coarse-range", text, "Write G35 or G35F2.")
 
 
 def _check_change(state: State, made: Statement, code: int) -> None:
     on = bool(state.modal.coarse)
     if on == (code == 35):
         text = "G35 is in force already." if on else "No G35 is in force that G36 could end."
-        raise ProgramError(refusal(made.line, 1, "coarse-order", text, "Take the line out."))
+        raise made.refuse(1, "coarse-order", text, "Take the line out.")
     if code == 35 or state.coarse_at is None:
         return
     x, z = state.coarse_at
@@ -76,7 +74,7 @@ def _check_change(state: State, made: Statement, code: int) -> None:
         )
         state.adopt(state.modal._replace(coarse=0))  # so that the rest is judged as it was meant
         text = f"G36 stands elsewhere than its G35, which was at radius {place[0]}, Z {place[1]}."
-        raise ProgramError(refusal(made.line, 1, "coarse-place", text, "Move back there before G36."))
+        raise made.refuse(1, "coarse-place", text, "Move back there before G36.")
 
 
 def _check_preset(state: State, made: Statement, code: int, ahead: Sequence[ReadyLine]) -> None:
@@ -85,10 +83,10 @@ def _check_preset(state: State, made: Statement, code: int, ahead: Sequence[Read
     hint = "Write G92 with the present X and Z on the next line."
     if not isinstance(line, Statement) or line.one_shot != 92 or not {"X", "Z"}.issubset(line.words):
         text = f"G{code} is not followed by a G92 with X and Z."
-        raise ProgramError(refusal(made.line, 1, "coarse-preset", text, hint))
+        raise made.refuse(1, "coarse-preset", text, hint)
     x, z = (line.value("X") or 0.0) * state.scale_x, (line.value("Z") or 0.0) * state.scale_z
     if max(abs(x - state.px), abs(z - state.pz)) > _SAME or line.modal:
         metric = state.modal.metric
         here = units.length(state.px, metric=metric), units.length(state.pz, metric=metric)
         text = f"The G92 behind G{code} says another place than radius {here[0]}, Z {here[1]}."
-        raise ProgramError(refusal(line.line, line.column("X"), "coarse-preset", text, hint))
+        raise line.refuse("X", "coarse-preset", text, hint)

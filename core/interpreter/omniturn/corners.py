@@ -17,7 +17,7 @@ from core.geometry.lines_and_arcs import Element, Line
 from core.interpreter import units
 from core.interpreter.actions import AskInput, Preset, ProgramEnd, ToolChange
 from core.interpreter.adjusted_moves import inserted_after, moved_along, standstill_at
-from core.interpreter.diagnostic_log import Log, refusal
+from core.interpreter.diagnostic_log import Log, program_error
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.omniturn_state import CompensationSwitch, Corner, Item, State
 from core.interpreter.omniturn.omniturn_statement import Statement
@@ -40,14 +40,14 @@ def read_corner(state: State, made: Statement) -> None:
     chamfers = None if state.modal.c_locked else made.words.get("C")
     if word is not None and chamfers is not None:
         text = "The line has both C and R."
-        raise ProgramError(refusal(made.line, chamfers.column, "corner-both", text, "Keep one of them."))
+        raise made.refuse(chamfers, "corner-both", text, "Keep one of them.")
     word = word or chamfers
     if word is None:
         return
     size = on_step(state, made, word.letter)
     if size is None or size <= 0:
         text = f"{word.text}: a corner's size must be a number over 0."
-        raise ProgramError(refusal(made.line, word.column, "corner-size", text, "Write the size in full."))
+        raise made.refuse(word, "corner-size", text, "Write the size in full.")
     state.shape.corner = Corner(word.letter, size, word.column)
     state.shape.active, state.fast = True, False
 
@@ -58,7 +58,7 @@ def refuse_radius(made: Statement) -> None:
     if word is not None:
         text = f"{word.text} makes a corner at the end of a straight move, and the line has none."
         hint = "Put it on the line with X or Z."
-        raise ProgramError(refusal(made.line, word.column, "corner-without-move", text, hint))
+        raise made.refuse(word, "corner-without-move", text, hint)
 
 
 @dataclass(slots=True)
@@ -172,13 +172,15 @@ class Corners:
 
 
 def _refused(held: _Held, code: str, why: str) -> ProgramError:
-    name = f"{held.corner.letter} cannot make a corner: {why}."
+    return _impossible(*held.place, held.corner.letter, code, why)
+
+
+def _impossible(line: int, column: int, letter: str, code: str, why: str) -> ProgramError:
     hint = "Make it smaller." if code == "corner-too-large" else "A corner needs two straight moves in a row."
-    return ProgramError(refusal(*held.place, code, name, hint))
+    return program_error(line, column, code, f"{letter} cannot make a corner: {why}.", hint)
 
 
-# --- Corners C and R between the lines of a contour that a cycle reads.
-
+# --- corners of a contour that a cycle reads: see ``cycle_contour``
 
 _SHORTEST = 1e-6  # mm
 
@@ -205,13 +207,13 @@ def cut_corners(pieces: Sequence[ContourPiece], log: Log) -> list[Element]:
         done.append(element)
         asked = piece if piece.corner is not None else None
     if asked is not None:
-        raise _refused_contour_corners(asked, "corner-next", "the contour ends here")
+        raise _refused_in_contour(asked, "corner-next", "the contour ends here")
     return [element for element in done if element.length > _SHORTEST]
 
 
 def _corner(asked: ContourPiece, before: Element, after: Element, log: Log) -> Sequence[Element]:
     if not isinstance(before, Line) or not isinstance(after, Line):
-        raise _refused_contour_corners(asked, "corner-next", "the next move is an arc")
+        raise _refused_in_contour(asked, "corner-next", "the next move is an arc")
     make = chamfer if asked.corner is not None and asked.corner.letter == "C" else fillet
     try:
         return make(before, after, asked.size)
@@ -224,17 +226,15 @@ def _corner(asked: ContourPiece, before: Element, after: Element, log: Log) -> S
         left = units.length((before if problem.first else after).length, metric=asked.metric)
         which = "this move" if problem.first else "the next move"
         why = f"it takes {needed} of {which}, which has {left} left"
-        raise _refused_contour_corners(asked, "corner-too-large", why) from None
+        raise _refused_in_contour(asked, "corner-too-large", why) from None
     except CornerError as problem:
-        raise _refused_contour_corners(asked, "corner-next", str(problem)) from None
+        raise _refused_in_contour(asked, "corner-next", str(problem)) from None
 
 
 def _column(asked: ContourPiece) -> int:
     return asked.corner.column if asked.corner else 0
 
 
-def _refused_contour_corners(asked: ContourPiece, code: str, why: str) -> ProgramError:
-    name = asked.corner.letter if asked.corner else "C"
-    hint = "Make it smaller." if code == "corner-too-large" else "A corner needs two straight moves in a row."
-    text = f"{name} cannot make a corner: {why}."
-    return ProgramError(refusal(asked.line, _column(asked), code, text, hint))
+def _refused_in_contour(asked: ContourPiece, code: str, why: str) -> ProgramError:
+    letter = asked.corner.letter if asked.corner else "C"
+    return _impossible(asked.line, _column(asked), letter, code, why)

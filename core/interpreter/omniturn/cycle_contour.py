@@ -7,7 +7,6 @@ from collections import deque
 from collections.abc import Sequence
 
 from core.geometry.lines_and_arcs import Element, Line, Point, arc_between
-from core.interpreter.diagnostic_log import refusal
 from core.interpreter.omniturn.arc_moves import arc_move
 from core.interpreter.omniturn.code_table import Acts
 from core.interpreter.omniturn.corners import ContourPiece, cut_corners
@@ -37,9 +36,7 @@ def read_contour(state: State, made: Statement, lines: Sequence[Statement]) -> l
     elements = reader.finish()
     if not elements:
         text = f"The contour of G{made.one_shot} has no line or arc."
-        raise ProgramError(
-            refusal(made.line, _column(made), "cycle-contour-empty", text, "Write its points.")
-        )
+        raise made.refuse("", "cycle-contour-empty", text, "Write its points.")
     return elements
 
 
@@ -82,7 +79,7 @@ class _Reader:
         for mode in _MODES:
             if getattr(self._own.modal, mode) != getattr(self._state.modal, mode):
                 text = "The contour changes modes or coordinates; after the cycle those before it hold again."
-                self._state.log.warn(self._made.line, _column(self._made), "cycle-modes", text)
+                self._state.log.warn(self._made.line, self._made.code_column, "cycle-modes", text)
                 break
         return cut_corners(self._pieces, self._state.log)
 
@@ -110,12 +107,12 @@ class _Reader:
     def _size(self, line: Statement, corner: Word) -> float:
         if line.words.keys() >= _CORNERS:
             text = "The line has both C and R."
-            raise ProgramError(refusal(line.line, corner.column, "corner-both", text, "Keep one of them."))
+            raise line.refuse(corner, "corner-both", text, "Keep one of them.")
         size = on_step(self._own, line, corner.letter)
         if size is None or size <= 0:
             text = f"{corner.text}: a corner's size must be a number over 0."
             hint = "Write the size in full."
-            raise ProgramError(refusal(line.line, corner.column, "corner-size", text, hint))
+            raise line.refuse(corner, "corner-size", text, hint)
         return size
 
     def _begin(self, line: Statement, corner: Word | None) -> None:
@@ -148,11 +145,7 @@ class _Reader:
         return self._own.x + dx, self._own.z + dz
 
 
-def _column(made: Statement) -> int:
-    return made.code.column if made.code else 0
-
-
 def _refused(
     line: Statement, column: int, what: str, hint: str, code: str = "cycle-contour-line"
 ) -> ProgramError:
-    return ProgramError(refusal(line.line, column, code, f"{what}.", hint))
+    return line.refuse(column, code, f"{what}.", hint)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import ceil
 
 from core.interpreter import units
-from core.interpreter.omniturn.canned_cycles import LIFT, Move, check_count, name, positive, refused
+from core.interpreter.omniturn.canned_cycles import LIFT, Move, check_count, name, positive
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import on_step
@@ -57,7 +57,7 @@ def _depth(state: State, made: Statement) -> float:
     z = on_step(state, made, "Z")
     if z is None:
         text = f"{name(made)} needs Z, the bottom of the hole."
-        raise refused(made, "Z", "word-missing", text, "Add Z.")
+        raise made.refuse("Z", "word-missing", text, "Add Z.")
     depth = z + (state.dz if state.absolute else state.z)
     if depth >= state.z:
         metric = state.modal.metric
@@ -65,7 +65,7 @@ def _depth(state: State, made: Statement) -> float:
             f"The bottom of the hole at {units.length(depth, metric=metric)} is not beyond the start point"
             f" at {units.length(state.z, metric=metric)}."
         )
-        raise refused(made, "Z", "cycle-depth", text, "Correct Z, or start farther out.")
+        raise made.refuse("Z", "cycle-depth", text, "Correct Z, or start farther out.")
     return depth
 
 
@@ -77,7 +77,7 @@ def _retract(state: State, made: Statement, first: float) -> float:
     out = r + (state.dz if state.absolute else state.z)
     if out <= first:
         text = f"{made.words['R'].text} lies in the hole, not before the depth of the first peck."
-        raise refused(made, "R", "cycle-retract", text, "R is where the drill comes out of the hole.")
+        raise made.refuse("R", "cycle-retract", text, "R is where the drill comes out of the hole.")
     return out
 
 
@@ -90,5 +90,5 @@ def _rate(state: State, made: Statement) -> float:
     if not 0 < rate <= most * (1 + 1e-9):
         shown = units.feed(most, per_rev=False, metric=state.modal.metric)
         text = f"{made.words['L'].text}: the rate of the retract goes from over 0 to {shown}."
-        raise refused(made, "L", "cycle-rate", text, "Correct L.")
+        raise made.refuse("L", "cycle-rate", text, "Correct L.")
     return rate

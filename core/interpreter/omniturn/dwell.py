@@ -6,13 +6,11 @@ from collections.abc import Iterator
 from math import ceil, sqrt
 
 from core.interpreter.actions import Dwell
-from core.interpreter.diagnostic_log import refusal
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.omniturn.code_table import G_CODES
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.spindle_speed import rpm_at
-from core.language.diagnostics import ProgramError
 
 _SHORTEST, _LONGEST = G_CODES[4].bounds["F"]  # s
 _DONE = 1e-9  # s, degrees
@@ -22,12 +20,11 @@ def dwell(state: State, made: Statement) -> Iterator[Block]:
     """The block of G04. Raises ProgramError where F is missing or out of range."""
     seconds = made.value("F")
     if seconds is None:
-        column = made.code.column if made.code else 0
         text = "G04 does not say how long."
-        raise ProgramError(refusal(made.line, column, "word-missing", text, "Write G04Fn, n in seconds."))
+        raise made.refuse("", "word-missing", text, "Write G04Fn, n in seconds.")
     if not _SHORTEST <= seconds <= _LONGEST:
         text = f"A dwell of {seconds:g} s is out of range: 0.1 s to an hour."
-        raise ProgramError(refusal(made.line, made.column("F"), "dwell-range", text, "Correct F."))
+        raise made.refuse("F", "dwell-range", text, "Correct F.")
     _shorten_arrival(state, seconds)
     yield state.action(made.line, made.part("move"), Dwell(seconds), rpm_at(state, state.x))
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from core.interpreter import units
-from core.interpreter.diagnostic_log import refusal
+from core.interpreter.diagnostic_log import program_error
 from core.interpreter.omniturn.dwell import warn_of_short_dwell
 from core.interpreter.omniturn.omniturn_state import HIGH_FEED, State
 from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
 from core.interpreter.omniturn.spindle_speed import rpm_at
-from core.language.diagnostics import ProgramError
+from core.language.omniturn import Word
 
 _LEAST = 0.00005 * units.MM_PER_INCH  # per minute or per revolution
 _MOST_PER_REV = 0.2 * units.MM_PER_INCH, 1.0 * units.MM_PER_INCH, 2.0 * units.MM_PER_INCH
@@ -27,11 +27,11 @@ def feed_words(state: State, made: Statement, *, first: bool) -> None:
         return
     if 0 in modes and not first and (word is not None or modes - {0}):
         message = "G00 stands with F, G94 or G95, each of which ends the rapid."
-        raise ProgramError(refusal(made.line, 1, "rapid-and-feed", message, "Split the line."))
+        raise made.refuse(1, "rapid-and-feed", message, "Split the line.")
     if modes:
         _modes(state, made, modes, has_feed=word is not None)
     if word is not None and word.value is not None:
-        _feed(state, made, word.value, word.column, first=first)
+        _feed(state, made, word, first=first)
     if 0 in modes:
         _rapid(state, made)
 
@@ -45,7 +45,7 @@ def _modes(state: State, made: Statement, modes: set[int], *, has_feed: bool) ->
         elif not has_feed:
             state.adopt(state.modal._replace(rapid=False))
             message = "G01 goes back to the last cutting feed, and none has been set after the first line."
-            raise ProgramError(refusal(made.line, 1, "no-cut-feed", message, "Set one with G95Fn or G94Fn."))
+            raise made.refuse(1, "no-cut-feed", message, "Set one with G95Fn or G94Fn.")
     elif modes & {94, 95} and per_rev != (95 in modes):
         per_rev = 95 in modes
         feed = modal.cut_feed if 1 in modes and modal.cut_per_rev == per_rev else None
@@ -67,9 +67,9 @@ def _rapid(state: State, made: Statement) -> None:
     state.adopt(state.modal._replace(rapid=True))
 
 
-def _feed(state: State, made: Statement, value: float, column: int, *, first: bool) -> None:
+def _feed(state: State, made: Statement, word: Word, *, first: bool) -> None:
     modal = state.modal
-    feed = state.feed_word(value)
+    feed = state.feed_word(word.value or 0.0)
     most = _MOST_PER_REV[modal.coarse] if modal.per_rev else state.setup.limits.max_feed
     state.title_rapid = 0
     state.told.discard("feed-missing")
@@ -92,7 +92,7 @@ def _feed(state: State, made: Statement, value: float, column: int, *, first: bo
         message = f"Feed {shown} is out of range: {low} to {high}."
         otherwise = "Lower F." if feed > most else "Raise F."
         hint = "Look for a lost decimal point, or G94 for G95." if modal.per_rev else otherwise
-        raise ProgramError(refusal(made.line, column, "feed-range", message, hint))
+        raise made.refuse(word, "feed-range", message, hint)
 
 
 def warn_of_crash_feed(state: State, made: Statement, ahead: Sequence[ReadyLine]) -> None:
@@ -153,7 +153,7 @@ def check_move(state: State, line: int, x0: float, x: float, length: float) -> N
         else:
             shown = units.feed(speed, per_rev=False, metric=modal.metric)
             message = f"Feed {shown} is over {limit}."
-        raise ProgramError(refusal(line, 0, "feed-over-speed", message, "Lower F or S."))
+        raise program_error(line, 0, "feed-over-speed", message, "Lower F or S.")
     _warn_slow(state, line, length, speed)
 
 
@@ -161,7 +161,7 @@ def _once(state: State, line: int, code: str, message: str, hint: str) -> None:
     """Refuse a move; the moves after it that lack the same thing say nothing new."""
     if code not in state.told:
         state.told.add(code)
-        raise ProgramError(refusal(line, 0, code, message, hint))
+        raise program_error(line, 0, code, message, hint)
 
 
 def _warn_slow(state: State, line: int, length: float, speed: float) -> None:

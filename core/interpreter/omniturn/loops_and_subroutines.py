@@ -8,9 +8,9 @@ from copy import copy
 from typing import NamedTuple
 
 from core.interpreter.checkpoint import FlowLevel, FlowPlace
-from core.interpreter.diagnostic_log import DEEPEST_CALL, refusal
+from core.interpreter.diagnostic_log import DEEPEST_CALL
 from core.interpreter.omniturn.omniturn_statement import UNREADABLE, Statement
-from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.diagnostics import Diagnostic, Severity
 
 _CONTOUR_CYCLE = re.compile(r"G7[58](?![0-9])", re.IGNORECASE)
 
@@ -307,9 +307,7 @@ class Flow:
             return  # told when the program was read
         if len(self._calls) >= DEEPEST_CALL:
             text = f"Subroutines call each other more than {DEEPEST_CALL} deep."
-            raise ProgramError(
-                refusal(made.line, made.column("P"), "recursion", text, "A subroutine must not call itself.")
-            )
+            raise made.refuse("P", "recursion", text, "A subroutine must not call itself.")
         self._calls.append((made.line, self._run_end, self._loops))
         self._loops = []
         self.at = self._structure.subroutines[number] + 1

@@ -54,9 +54,8 @@ def collet(state: State, made: Statement) -> Iterator[Block]:
     """M12 and M13. Raises ProgramError where it may not be opened while the spindle turns."""
     opens = made.m == 13
     if opens and state.modal.spindle and not state.setup.limits.unclamp_while_turning:
-        column = made.m_word.column if made.m_word else 0
         text = "M13 opens the collet while the spindle turns."
-        raise ProgramError(refusal(made.line, column, "unclamp-turning", text, "Stop it with M05 first."))
+        raise made.refuse("M", "unclamp-turning", text, "Stop it with M05 first.")
     state.adopt(state.modal._replace(collet_closed=not opens))
     yield _done(state, made, Collet(closed=not opens))
 

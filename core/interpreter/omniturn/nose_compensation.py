@@ -14,7 +14,7 @@ from core.geometry.lines_and_arcs import SAME_POINT, Element, Line, Point
 from core.interpreter import units
 from core.interpreter.actions import ToolChange
 from core.interpreter.adjusted_moves import element_of, inserted_after, moved_along, standstill_at
-from core.interpreter.diagnostic_log import Log, refusal
+from core.interpreter.diagnostic_log import Log, program_error
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.code_table import FLOW_CODES
 from core.interpreter.omniturn.corners import STRAIGHT
@@ -45,7 +45,7 @@ class ApproachOrDeparture(NamedTuple):
 
     def refused(self, why: str, text: str, hint: str) -> ProgramError:
         """An error of this way."""
-        return ProgramError(refusal(self.block.line, 0, f"comp-{self.name}{why}", text, hint))
+        return program_error(self.block.line, 0, f"comp-{self.name}{why}", text, hint)
 
 
 def check_distance(lead: ApproachOrDeparture, free: Point, corner: Point, log: Log) -> None:
@@ -85,7 +85,7 @@ def check_clear(lead: ApproachOrDeparture, way: Line) -> None:
         if clearance(way, element) < least - SAME_POINT:
             text = f"On the {lead.name} the nose of G{lead.code} cuts into the part."
             hint = f"Choose another way for the {lead.name}, or the other side."
-            raise ProgramError(refusal(lead.block.line, 0, "comp-gouge", text, hint))
+            raise program_error(lead.block.line, 0, "comp-gouge", text, hint)
 
 
 _FOLLOWED = STRAIGHT | {Kind.ARC}
@@ -267,7 +267,7 @@ class Compensation:
 
 
 def _refused(block: Block, code: str, text: str, hint: str) -> ProgramError:
-    return ProgramError(refusal(block.line, 0, code, text, hint))
+    return program_error(block.line, 0, code, text, hint)
 
 
 # --- G41, G42 and G40 as words: where they may stand, and what may not stand under them.
@@ -292,15 +292,13 @@ def switch(state: State, made: Statement, code: int, *, called: bool) -> Compens
         return None
     if made.words or made.code or made.m_word or len(made.modal) > 1:
         text = f"G{code} does not stand alone on its line."
-        raise _refused_nose(made, "not-alone", text, "Put the rest on a line of its own.")
+        raise made.refuse(1, "not-alone", text, "Put the rest on a line of its own.")
     if code != 40 and on != 40:
         text = f"G{code} comes while G{on} is on."
-        raise _refused_nose(made, "comp-on", text, f"End G{on} first: a move off the part, then G40.")
+        raise made.refuse(1, "comp-on", text, f"End G{on} first: a move off the part, then G40.")
     if called:
         text = f"G{code} stands in a subroutine."
-        raise _refused_nose(
-            made, "comp-subroutine", text, "Write the compensated contour in the main program."
-        )
+        raise made.refuse(1, "comp-subroutine", text, "Write the compensated contour in the main program.")
     state.adopt(state.modal._replace(nose_comp=code))
     state.shape.approach = 0 if code == 40 else made.line
     state.shape.active, state.fast = True, False
@@ -314,26 +312,24 @@ def check_under_nose(state: State, made: Statement) -> None:
         return
     if made.ends_program:
         text = f"The program ends while G{on} is on."
-        raise _refused_nose(made, "comp-open", text, "Move off the part and write G40 before it.")
+        raise made.refuse(1, "comp-open", text, "Move off the part and write G40 before it.")
     if made.flow and made.flow not in FLOW_CODES:
-        raise _refused_nose(
-            made, "comp-with", f"Plane switching stands while G{on} is on.", "Write G40 before it."
+        raise made.refuse(
+            1, "comp-with", f"Plane switching stands while G{on} is on.", "Write G40 before it."
         )
     if made.calls:
         text = f"A subroutine is called while G{on} is on."
-        raise _refused_nose(
-            made, "comp-subroutine", text, "Write the compensated contour in the main program."
-        )
+        raise made.refuse(1, "comp-subroutine", text, "Write the compensated contour in the main program.")
     refused = made.one_shot is not None and not made.entry.under_nose
     if refused or made.locks or _TURNS_C & made.words.keys():
         word = made.code or made.m_word
         what = word.text if word is not None else "C"
-        raise _refused_nose(made, "comp-with", f"{what} stands while G{on} is on.", "Write G40 before it.")
+        raise made.refuse(1, "comp-with", f"{what} stands while G{on} is on.", "Write G40 before it.")
     other = made.value("D") not in {None, state.modal.secondary}
     if other and "T" not in made.words and not state.shape.approach:
         text = f"D changes while G{on} is on."
         hint = "D belongs on the first move after G41 or G42 alone."
-        raise ProgramError(refusal(made.line, made.column("D"), "comp-d", text, hint))
+        raise made.refuse("D", "comp-d", text, hint)
 
 
 def check_approach(state: State, block: Block) -> None:
@@ -344,14 +340,14 @@ def check_approach(state: State, block: Block) -> None:
     on = state.modal.nose_comp
     if block.kind not in STRAIGHT:
         text = f"The first move after G{on} on line {line} is no straight line."
-        raise _of(block, "comp-approach", text, "Approach on a straight line with D.")
+        raise _refused(block, "comp-approach", text, "Approach on a straight line with D.")
     if state.shape.d_line != block.line or not state.modal.secondary:
         text = f"The first move after G{on} on line {line} names no D."
-        raise _of(block, "comp-approach", text, "Write Dn: its R is the nose radius.")
+        raise _refused(block, "comp-approach", text, "Write Dn: its R is the nose radius.")
     radius = state.setup.secondary[state.modal.secondary].r if _known(state) else 0.0
     if radius < 0:
         text = f"R of D{state.modal.secondary} is negative."
-        raise _of(
+        raise _refused(
             block, "comp-radius", text, "Enter the nose radius without a sign; G41 and G42 say the side."
         )
     if not radius:
@@ -366,11 +362,3 @@ def nose_radius(state: State) -> float:
 
 def _known(state: State) -> bool:
     return state.modal.secondary in state.setup.secondary
-
-
-def _refused_nose(made: Statement, code: str, text: str, hint: str) -> ProgramError:
-    return ProgramError(refusal(made.line, 1, code, text, hint))
-
-
-def _of(block: Block, code: str, text: str, hint: str) -> ProgramError:
-    return ProgramError(refusal(block.line, 0, code, text, hint))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from core.interpreter.diagnostic_log import program_error
 from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES, M_CODES, PLAIN, Acts, Code, FWord, SWord
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Line, Word, other_controls
@@ -98,6 +99,20 @@ class Statement:
         """Column of a word, 0 where the line does not hold it."""
         word = self.words.get(letter)
         return 0 if word is None else word.column
+
+    def refuse(self, at: Word | str | int, code: str, message: str, hint: str = "") -> ProgramError:
+        """An error of this line, to be raised: at a word, at the word of a letter, or at a column.
+
+        M stands for the M code; where the line has no such word the error is at its one-shot code.
+        """
+        if isinstance(at, str):
+            at = (self.m_word if at == "M" else self.words.get(at)) or self.code or 0
+        return program_error(self.line, at if isinstance(at, int) else at.column, code, message, hint)
+
+    @property
+    def code_column(self) -> int:
+        """Column of the one-shot code, 0 where the line does not hold one."""
+        return 0 if self.code is None else self.code.column
 
     def part(self, name: str) -> str:
         """Text of one of the blocks that the line makes."""

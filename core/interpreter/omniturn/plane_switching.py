@@ -10,7 +10,6 @@ import numpy as np
 
 from core.geometry.virtual_mill import CENTRE, Face, PlaneMove, Side, Spot
 from core.interpreter import units
-from core.interpreter.diagnostic_log import refusal
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Mill
 from core.interpreter.omniturn.c_axis import rotation
@@ -150,7 +149,7 @@ def plane_refusal(made: Statement, code: str, text: str, hint: str, letter: str 
     """An error of a plane's line, at the column of its word where one is to blame."""
     assert made.plane is not None
     word = made.plane.words.get(letter)
-    return ProgramError(refusal(made.line, word.column if word else 1, code, text, hint))
+    return made.refuse(word.column if word else 1, code, text, hint)
 
 
 _LEAST_FEED = 0.00005 * units.MM_PER_INCH / 60

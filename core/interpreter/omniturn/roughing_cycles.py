@@ -18,7 +18,6 @@ from core.interpreter.omniturn.canned_cycles import (
     left_over,
     name,
     positive,
-    refused,
 )
 from core.interpreter.omniturn.cycle_contour import read_contour
 from core.interpreter.omniturn.omniturn_state import State
@@ -224,19 +223,19 @@ def contour_moves(state: State, made: Statement, lines: Sequence[Statement]) -> 
     """
     if "P" in made.words and made.value("P") is None:
         text = "P does not say which subroutine describes the contour."
-        raise refused(made, "P", "word-missing", text, "Write its number after P.")
+        raise made.refuse("P", "word-missing", text, "Write its number after P.")
     cut = positive(state, made, "I", "the greatest depth of cut") if made.one_shot == 75 else None
     left = left_over(state, made)
     contour = read_contour(state, made, lines)
     if len(contour) > _MOST_ELEMENTS:
         text = f"The contour has {len(contour):,} lines and arcs; {_MOST_ELEMENTS:,} are the most."
-        raise refused(made, "G", "cycle-contour-long", text, "Run it with fewer, longer moves.")
+        raise made.refuse("G", "cycle-contour-long", text, "Run it with fewer, longer moves.")
     view = _view(state, made, contour)
     try:
         area = Area(view.seen(contour), left)
     except TrimError:
         text = f"{name(made)} finds no unbroken way along the contour at the distance U."
-        raise refused(made, "U", "cycle-no-way", text, "Lower U, or open the narrow place.") from None
+        raise made.refuse("U", "cycle-no-way", text, "Lower U, or open the narrow place.") from None
     rougher = Rougher(area, state.modal.rapid_rate, LIFT)
     if cut is not None:
         _passes(state, made, rougher, area, cut, len(contour))
@@ -245,27 +244,27 @@ def contour_moves(state: State, made: Statement, lines: Sequence[Statement]) -> 
     except StartNearError:
         text = "On the way from the start point to the contour and back the tool comes nearer to it than U."
         hint = "Move the start point away from the contour."
-        raise refused(made, "G", "cycle-start-near", text, hint) from None
+        raise made.refuse("G", "cycle-start-near", text, hint) from None
     if area.turns_back:
         text = "The contour runs back along Z: behind that edge the pass along it cuts all that is there."
-        state.log.warn(made.line, _column(made), "cycle-undercut", text, "Look whether the tool fits.")
+        state.log.warn(made.line, made.code_column, "cycle-undercut", text, "Look whether the tool fits.")
     return [view.placed(move) for move in rougher.moves]
 
 
 def _passes(state: State, made: Statement, rougher: Rougher, area: Area, cut: float, elements: int) -> None:
     if area.deepest <= 0:
         text = "The contour leaves nothing to cut between it and the start point."
-        raise refused(made, "G", "cycle-nothing", text, "Start farther from the contour in X.")
+        raise made.refuse("G", "cycle-nothing", text, "Start farther from the contour in X.")
     count = ceil(area.deepest / cut - _WHOLE)
     check_count(made, "I", count, "passes")
     if count * elements > _MOST_LOOKS:
         text = f"{count:,} passes beside a contour of {elements:,} lines and arcs are too many to work out."
-        raise refused(made, "I", "cycle-passes", text, "Raise I, or describe the contour in fewer moves.")
+        raise made.refuse("I", "cycle-passes", text, "Raise I, or describe the contour in fewer moves.")
     for k in range(1, count + 1):
         rougher.cut(area.deepest * k / count)
     if rougher.plunged:
         text = "The contour rises and falls again: the tool plunges into the material behind the rise."
-        state.log.warn(made.line, _column(made), "cycle-plunge", text, "Look whether the tool can do so.")
+        state.log.warn(made.line, made.code_column, "cycle-plunge", text, "Look whether the tool can do so.")
 
 
 def _view(state: State, made: Statement, contour: list[Element]) -> ContourView:
@@ -275,15 +274,11 @@ def _view(state: State, made: Statement, contour: list[Element]) -> ContourView:
         to_first, to_last = first[axis] - start[axis], last[axis] - start[axis]
         if to_first * to_last < 0:
             text = f"The start point lies between the ends of the contour in {letter}, not outside of both."
-            raise refused(made, "G", "cycle-quadrant", text, "Move the start point beyond both ends.")
+            raise made.refuse("G", "cycle-quadrant", text, "Move the start point beyond both ends.")
         if to_first == to_last == 0:
             text = f"Both ends of the contour have the {letter} of the start point: there is no area to cut."
-            raise refused(made, "G", "cycle-nothing", text, "Move the start point away from the contour.")
+            raise made.refuse("G", "cycle-nothing", text, "Move the start point away from the contour.")
     return view_from(start, first, last)
-
-
-def _column(made: Statement) -> int:
-    return made.code.column if made.code else 0
 
 
 # --- G74: a rectangle taken off in passes parallel to Z.
@@ -304,7 +299,7 @@ def box_moves(state: State, made: Statement) -> list[Move]:
     depth = abs(x - state.x) - left
     if depth <= 0:
         text = f"{made.words['U'].text} leaves nothing of the box to cut."
-        raise refused(made, "U", "cycle-nothing", text, "U is less than the way from the start to X.")
+        raise made.refuse("U", "cycle-nothing", text, "U is less than the way from the start to X.")
     count = ceil(depth / cut - _WHOLE_BOX_CYCLE)
     check_count(made, "I", count, "passes")
     rapid = state.modal.rapid_rate
@@ -321,9 +316,9 @@ def _corner(state: State, made: Statement, letter: str, start: float, offset: fl
     value = on_step(state, made, letter)
     if value is None:
         text = f"{name(made)} needs {letter} of the corner opposite to the start point."
-        raise refused(made, letter, "word-missing", text, f"Add {letter}.")
+        raise made.refuse(letter, "word-missing", text, f"Add {letter}.")
     end = value + (offset if state.absolute else start)
     if end == start:
         text = f"The box has no size along {letter}: its corner lies at the start point."
-        raise refused(made, letter, "cycle-nothing", text, f"Correct {letter} or the start point.")
+        raise made.refuse(letter, "cycle-nothing", text, f"Correct {letter} or the start point.")
     return end

@@ -6,13 +6,11 @@ from collections.abc import Iterator
 
 from core.geometry.surface_speed import surface_rpm
 from core.interpreter.actions import SpindleRun, SpindleStop
-from core.interpreter.diagnostic_log import refusal
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.modal_state import Modal
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.units import FEET_PER_MINUTE, METRES_PER_MINUTE
-from core.language.diagnostics import ProgramError
 
 _FASTEST_SURFACE = 100_000.0  # mm/s; ten times what any tool stands
 
@@ -47,17 +45,16 @@ def spindle_modes(state: State, made: Statement) -> None:
         state.adopt(state.modal._replace(css_max=_limit(made, 77)))
     modal = state.modal
     if modal.css_max is not None and modal.css_min > modal.css_max:
-        column = made.column("S")
         message = f"G76 ({modal.css_min:g} rpm) is over G77 ({modal.css_max:g} rpm)."
         state.adopt(state.modal._replace(css_min=modal.css_max))
-        raise ProgramError(refusal(made.line, column, "speed-limits", message, "Correct one of them."))
+        raise made.refuse("S", "speed-limits", message, "Correct one of them.")
 
 
 def _limit(made: Statement, code: int) -> float:
     speed = made.value("S")
     if speed is None or speed < 0:
         message = f"G{code} needs S, a speed in rpm."
-        raise ProgramError(refusal(made.line, made.column("S"), "word-missing", message, f"Write G{code}Sn."))
+        raise made.refuse("S", "word-missing", message, f"Write G{code}Sn.")
     return speed
 
 
@@ -66,15 +63,15 @@ def speed_word(state: State, made: Statement) -> None:
     word = made.words.get("S")
     if word is None or word.value is None or made.s_is_limit:
         return
-    modal, column = state.modal, word.column
+    modal = state.modal
     if word.value < 0:
         message = f"{word.text}: the speed has no sign; M03 and M04 say the direction."
-        raise ProgramError(refusal(made.line, column, "speed-sign", message, "Take the sign out."))
+        raise made.refuse(word, "speed-sign", message, "Take the sign out.")
     if modal.css:
         unit = METRES_PER_MINUTE if modal.metric else FEET_PER_MINUTE
         if word.value * unit > _FASTEST_SURFACE:
             message = f"{word.text} is no surface speed that a tool can stand."
-            raise ProgramError(refusal(made.line, column, "speed-range", message, "G97 makes S rpm."))
+            raise made.refuse(word, "speed-range", message, "G97 makes S rpm.")
         state.adopt(state.modal._replace(surface_speed=word.value * unit))
         return
     highest = state.setup.limits.max_rpm
@@ -83,7 +80,7 @@ def speed_word(state: State, made: Statement) -> None:
             state.modal._replace(rpm=highest)
         )  # so that what follows is judged by the spindle that there is
         message = f"{word.text} is over the spindle's {highest:g} rpm."
-        raise ProgramError(refusal(made.line, column, "speed-range", message, "Lower S."))
+        raise made.refuse(word, "speed-range", message, "Lower S.")
     state.adopt(state.modal._replace(rpm=word.value))
 
 
@@ -103,18 +100,16 @@ def run_block(state: State, made: Statement) -> Iterator[Block]:
 
 
 def _check_start(state: State, made: Statement) -> None:
-    modal, column = state.modal, made.m_word.column if made.m_word else 0
+    modal = state.modal
     if modal.c_locked:
         message = f"M{made.m:02d} starts the spindle, which is locked as the axis C."
-        raise ProgramError(
-            refusal(made.line, column, "spindle-locked", message, "Release it with M05 first.")
-        )
+        raise made.refuse("M", "spindle-locked", message, "Release it with M05 first.")
     if not (modal.surface_speed if modal.css else modal.rpm):
         message = f"M{made.m:02d} starts the spindle and no S has said how fast."
-        raise ProgramError(refusal(made.line, column, "speed-missing", message, "Write S on the line."))
+        raise made.refuse("M", "speed-missing", message, "Write S on the line.")
     if not modal.collet_closed and not state.setup.limits.start_with_collet_open:
         message = f"M{made.m:02d} starts the spindle with the collet open."
-        raise ProgramError(refusal(made.line, column, "collet-open", message, "Close it with M12 first."))
+        raise made.refuse("M", "collet-open", message, "Close it with M12 first.")
 
 
 def stop_block(state: State, made: Statement) -> Iterator[Block]:

@@ -5,13 +5,12 @@ from __future__ import annotations
 from math import copysign, floor, hypot, isfinite
 
 from core.interpreter import units
-from core.interpreter.diagnostic_log import refusal
+from core.interpreter.diagnostic_log import program_error
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.omniturn.feeds import check_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import PlainMove, Statement
 from core.interpreter.omniturn.spindle_speed import rpm_at
-from core.language.diagnostics import ProgramError
 from core.language.omniturn import Word, lex_line
 
 _COARSE = (0.00005, 0.00025, 0.0005)  # inches of radius, by G36, G35, G35F2
@@ -99,7 +98,7 @@ def check_tool(state: State, line: int, x: float | None, z: float | None) -> Non
     if tool_line and (x is None or z is None):
         where = f"the T on line {tool_line}" if tool_line > 0 else "the T"
         text = f"The first move after {where} lacks {'X' if x is None else 'Z'}."
-        raise ProgramError(refusal(line, 0, "tool-first-move", text, "Write both X and Z, or G92 before it."))
+        raise program_error(line, 0, "tool-first-move", text, "Write both X and Z, or G92 before it.")
 
 
 def warn_of_title_rapid(state: State, line: int) -> None:

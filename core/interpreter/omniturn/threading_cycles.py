@@ -10,14 +10,12 @@ from dataclasses import dataclass, replace
 from math import ceil, copysign, radians, tan
 
 from core.interpreter import units
-from core.interpreter.diagnostic_log import refusal
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.code_table import G_CODES
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.spindle_speed import rpm_at
 from core.interpreter.omniturn.straight_moves import check_tool, on_step
-from core.language.diagnostics import Diagnostic, ProgramError
 
 # --- The words of G33 and G34, and everything that has to be right before a thread may be cut.
 
@@ -70,7 +68,7 @@ def read_thread(state: State, made: Statement) -> Thread:
     first = _across(state, made, "I")
     if not first or (first < 0 and not single):
         text = "I, the depth of the first pass, must be above 0." if first is not None else "I is missing."
-        raise _refused(made, "I", "thread-depth", text, "Write I, the depth of the first pass.")
+        raise made.refuse("I", "thread-depth", text, "Write I, the depth of the first pass.")
     depth, out = (0.0, copysign(1.0, first)) if single else _depth(state, made)
     angle = _angle(made)
     thread = Thread(
@@ -89,7 +87,7 @@ def read_thread(state: State, made: Statement) -> Thread:
     )
     if along * (z1 - state.z) <= depth * tan(angle) + _NEAR:
         text = "The flank angle moves the start of the last pass beyond its end."
-        raise _refused(made, "C", "thread-angle", text, "Start farther away from Z.")
+        raise made.refuse("C", "thread-angle", text, "Start farther away from Z.")
     return thread
 
 
@@ -98,7 +96,7 @@ def _check_bare(made: Statement) -> None:
         word = made.words.get(letter)
         if word is not None and word.value is not None:
             text = f"{word.text}: {letter} stands without a number here."
-            raise _refused(made, letter, "thread-word", text, f"Write {letter} alone.")
+            raise made.refuse(letter, "thread-word", text, f"Write {letter} alone.")
 
 
 def _lead(state: State, made: Statement) -> float:
@@ -107,13 +105,13 @@ def _lead(state: State, made: Statement) -> float:
         feed = made.words.get("F")
         text = f"K is missing, and {feed.text} is there." if feed else "K, the lead, is missing."
         hint = f"Was K{feed.text[1:]} meant?" if feed else "Write K, the lead per revolution."
-        raise _refused(made, "F", "thread-lead-missing", text, hint)
+        raise made.refuse("F", "thread-lead-missing", text, hint)
     lead *= state.scale_z
     if not 0 < lead <= MOST_LEAD[coarse] * _ROUNDING:
         most = units.feed(MOST_LEAD[coarse], per_rev=True, metric=state.modal.metric)
         text = f"{made.words['K'].text}: the lead must be above 0 and at most {most}."
         hint = ("G35 allows more.", "G35F2 allows more.", "Correct K.")[coarse if lead > 0 else 2]
-        raise _refused(made, "K", "thread-lead-range", text, hint)
+        raise made.refuse("K", "thread-lead-range", text, hint)
     return lead
 
 
@@ -121,31 +119,31 @@ def _check_spindle(state: State, made: Statement, lead: float) -> None:
     modal = state.modal
     if modal.css:
         text = "G96 is active, and a thread needs one speed from first pass to last."
-        raise _refused(made, "", "thread-under-css", text, "Write G97S before it.")
+        raise made.refuse("", "thread-under-css", text, "Write G97S before it.")
     if modal.nose_comp != 40:
         text = f"G{modal.nose_comp} is active, and a thread is cut without nose compensation."
-        raise _refused(made, "", "thread-under-comp", text, "Write G40 before it.")
+        raise made.refuse("", "thread-under-comp", text, "Write G40 before it.")
     rpm = abs(rpm_at(state, state.x))
     if not rpm:
         text = "The spindle stands, and a thread is cut by its turns."
-        raise _refused(made, "", "spindle-stopped", text, "Start it with M03 or M04.")
+        raise made.refuse("", "spindle-stopped", text, "Start it with M03 or M04.")
     speed, most = lead * rpm / 60, state.setup.limits.max_feed
     if speed > most * _ROUNDING:
         shown = units.feed(speed, per_rev=False, metric=modal.metric)
         limit = units.feed(most, per_rev=False, metric=modal.metric)
         text = f"At {rpm:.0f} rpm this lead is {shown}; {limit} is the most."
-        raise _refused(made, "K", "feed-over-speed", text, "Lower S.")
+        raise made.refuse("K", "feed-over-speed", text, "Lower S.")
 
 
 def _way(state: State, made: Statement) -> tuple[float, float]:
     """Sign of the cutting direction, and Z of the end."""
     z = on_step(state, made, "Z")
     if z is None:
-        raise _refused(made, "", "word-missing", "Z, the end of the thread, is missing.", "Write Z.")
+        raise made.refuse("", "word-missing", "Z, the end of the thread, is missing.", "Write Z.")
     z1 = (z if state.absolute else state.pz + z) + state.dz
     if abs(z1 - state.z) <= _NEAR:
         text = "The thread ends at the Z where it starts."
-        raise _refused(made, "Z", "thread-length", text, "Correct Z, or move away before the G33.")
+        raise made.refuse("Z", "thread-length", text, "Correct Z, or move away before the G33.")
     return copysign(1.0, z1 - state.z), z1
 
 
@@ -153,16 +151,16 @@ def _depth(state: State, made: Statement) -> tuple[float, float]:
     """Depth of the last pass below S, and the sign of X away from the work."""
     x = on_step(state, made, "X")
     if x is None:
-        raise _refused(made, "", "word-missing", "X of the last pass is missing.", "Write X.")
+        raise made.refuse("", "word-missing", "X of the last pass is missing.", "Write X.")
     x1 = (x if state.absolute else state.px + x) + state.dx
     metric = state.modal.metric
     here = f"the tool stands at radius {units.length(state.x, metric=metric)}"
     if abs(x1 - state.x) <= _NEAR:
         text = f"{made.words['X'].text} leaves nothing to cut: {here}."
-        raise _refused(made, "X", "thread-side", text, "Start at the depth of the first pass.")
+        raise made.refuse("X", "thread-side", text, "Start at the depth of the first pass.")
     if x1 * state.x < 0:
         text = f"{made.words['X'].text} lies on the other side of the spindle axis: {here}."
-        raise _refused(made, "X", "thread-side", text, "Look at the sign of X and at where the tool starts.")
+        raise made.refuse("X", "thread-side", text, "Look at the sign of X and at where the tool starts.")
     return abs(x1 - state.x), copysign(1.0, state.x - x1)
 
 
@@ -173,7 +171,7 @@ def _angle(made: Statement) -> float:
     angle = _BARE_C if word.value is None else word.value
     if not 0.0 <= angle <= MOST_ANGLE:
         text = f"{word.text}: the angle of infeed goes from 0 to 30 degrees."
-        raise _refused(made, "C", "thread-angle", text, "Correct C; bare C is 29 degrees.")
+        raise made.refuse("C", "thread-angle", text, "Correct C; bare C is 29 degrees.")
     return radians(angle)
 
 
@@ -181,7 +179,7 @@ def _count(made: Statement, depth: float, first: float) -> int:
     count = max(ceil((depth / first + 1.0) ** 2 - _CLICK), 1)
     if count > _MOST_PASSES:
         text = f"The thread would take {count:,} passes; {_MOST_PASSES:,} are the most."
-        raise _refused(made, "I", "thread-passes", text, "Correct I.")
+        raise made.refuse("I", "thread-passes", text, "Correct I.")
     return count
 
 
@@ -189,12 +187,6 @@ def _across(state: State, made: Statement, letter: str) -> float | None:
     """I or A: lengths across the axis, a diameter under G72."""
     value = on_step(state, made, letter)
     return None if value is None else value * state.scale_x / state.scale_z
-
-
-def _refused(made: Statement, letter: str, code: str, text: str, hint: str) -> ProgramError:
-    column = made.column(letter) or (made.code.column if made.code else 0)
-    finding: Diagnostic = refusal(made.line, column, code, text, hint)
-    return ProgramError(finding)
 
 
 MANY_PASSES = 60
@@ -282,11 +274,10 @@ class _Cutter:
 
 
 def _warn(state: State, made: Statement, thread: Thread) -> None:
-    column = made.code.column if made.code else 0
     if thread.passes > MANY_PASSES:
         text = f"The thread takes {thread.passes} passes."
         hint = "A larger I takes fewer; look at I and at the X where the tool starts."
-        state.log.warn(made.line, column, "thread-passes", text, hint)
+        state.log.warn(made.line, made.code_column, "thread-passes", text, hint)
     speed = thread.lead * abs(rpm_at(state, state.x)) / 60
     needed = speed**2 / (2 * state.setup.limits.slide_accel)
     run_up = _run_up(thread)
@@ -296,7 +287,7 @@ def _warn(state: State, made: Statement, thread: Thread) -> None:
             f"The run-up is {units.length(max(run_up, 0.0), metric=metric)}; the slide needs "
             f"{units.length(needed, metric=metric)} to reach the speed of the lead."
         )
-        state.log.warn(made.line, column, "thread-run-up", text, "Start farther away, or lower S.")
+        state.log.warn(made.line, made.code_column, "thread-run-up", text, "Start farther away, or lower S.")
 
 
 def _run_up(thread: Thread) -> float:

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from core.interpreter.actions import Preset, ToolChange, WorkShift
-from core.interpreter.diagnostic_log import refusal
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.spindle_speed import rpm_at
 from core.interpreter.omniturn.straight_moves import on_step
-from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.diagnostics import Diagnostic, Severity
 from core.language.omniturn import Word
 
 
@@ -98,9 +97,8 @@ def secondary(state: State, made: Statement) -> None:
 
 def _demand_place(made: Statement) -> None:
     if "X" not in made.words and "Z" not in made.words:
-        column = made.code.column if made.code else 0
         text = f"G{made.one_shot} needs X or Z."
-        raise ProgramError(refusal(made.line, column, "word-missing", text, "Write the coordinates."))
+        raise made.refuse("", "word-missing", text, "Write the coordinates.")
 
 
 def work_shift(state: State, made: Statement) -> Iterator[Block]:
