@@ -11,7 +11,6 @@ from core.interpreter import units
 from core.interpreter.actions import SpindleRun
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
-from core.interpreter.omniturn.spindle_speed import surface_rpm_at
 
 # --- Generated moves as lines of the program would say them, in the mode and unit in force.
 
@@ -131,4 +130,4 @@ def _along(block: Block, element: Element, text: str, max_rpm: float) -> Block:
 def _rpm(block: Block, x: float, max_rpm: float) -> float:
     if block.css is None or not block.modal.spindle:
         return block.rpm
-    return surface_rpm_at(block.modal, x, max_rpm)
+    return block.modal.surface_rpm_at(x, max_rpm)

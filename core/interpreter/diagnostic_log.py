@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Protocol
 
+from core.interpreter.job_setup import ToolOffset
 from core.interpreter.modal_state import Modal
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 
@@ -107,9 +108,6 @@ def program_error(line: int, column: int, code: str, message: str, hint: str = "
     return ProgramError(refusal(line, column, code, message, hint))
 
 
-# --- What every interpreter tells of its pass, whatever language it reads.
-
-
 MOST_BLOCKS = 5_000_000
 MOST_LINES = 10_000_000
 """More of either is made by no program that anybody means to run."""
@@ -118,27 +116,36 @@ DEEPEST_CALL = 16
 """Subroutines that may call each other in a chain."""
 
 
-class Standing(Protocol):
+class ToolUse:
+    """Tool numbers asked for so far, in the order of first use, and those whose offset has never been set."""
+
+    def __init__(self) -> None:
+        self.used: list[int] = []
+        self.missing: list[int] = []
+
+    def offset(self, number: int, offsets: Mapping[int, ToolOffset]) -> ToolOffset | None:
+        """The offset of this tool, which is used from now on; None where it has never been set."""
+        if number not in self.used:
+            self.used.append(number)
+        if number not in offsets and number not in self.missing:
+            self.missing.append(number)
+        return offsets.get(number)
+
+
+class HasModal(Protocol):
     """The state that the blocks of a pass leave behind."""
 
     modal: Modal
 
 
-class Tools(Protocol):
-    """Tool numbers of a pass."""
-
-    used: list[int]
-    missing: list[int]
-
-
 class PassReport:
-    """All of it grows while blocks are taken; an interpreter gives its own ``_state`` and ``_tools``."""
+    """What every interpreter reports of its pass; all of it grows while blocks are taken."""
 
-    _state: Standing
-    _tools: Tools | None = None
+    _state: HasModal  # each dialect has its own
 
     def __init__(self, log: Log) -> None:
         self._log = log
+        self._tools = ToolUse()
         self._stopped = False  # an error has been met: no more blocks
 
     @property
@@ -159,14 +166,14 @@ class PassReport:
     @property
     def used_tools(self) -> list[int]:
         """Tool numbers asked for so far, in the order of first use."""
-        return self._tools.used if self._tools is not None else []
+        return self._tools.used
 
     @property
     def missing_tools(self) -> list[int]:
         """Those of them whose offset has never been set."""
-        return self._tools.missing if self._tools is not None else []
+        return self._tools.missing
 
-    def _too_much(self, line: int, hint: str) -> None:
+    def _stop_endless(self, line: int, hint: str) -> None:
         """A program that makes more than anybody runs ends at this line."""
         self._stopped = True
         text = f"The program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from core.geometry.surface_speed import surface_rpm
 from core.geometry.virtual_mill import Face, Side
-
-# --- Where the virtual mill of plane switching stands: part of the modal state between two of its moves.
 
 
 class Mill(NamedTuple):
@@ -69,6 +68,15 @@ class Modal(NamedTuple):
     zero_z: float = 0.0
     wraps_c: bool = False  # C counts 0..<360 in this program: its display does too
     mill: Mill | None = None  # between (~PLXC) or (~PLZC) and (END)
+
+    def surface_rpm_at(self, x: float, highest: float) -> float:
+        """Signed speed, rpm, at radius ``x`` (mm) under constant surface speed, within its limits.
+
+        ``highest`` is the spindle's own.
+        """
+        if self.css_max is not None:
+            highest = min(highest, self.css_max)
+        return self.spindle * surface_rpm(self.surface_speed, x, self.css_min, highest)
 
     @property
     def offset_x(self) -> float:

@@ -1,4 +1,4 @@
-"""Typographic characters that word processors and web pages put where a keyboard has simple ones."""
+"""Characters of a program text: those that word processors put for simple ones, and capitals."""
 
 from __future__ import annotations
 
@@ -16,3 +16,8 @@ _SIGNS: dict[str, tuple[str, str]] = {
 def typed(sign: str) -> tuple[str, str] | None:
     """What a character is, and what to type instead; None where it is none of these."""
     return _SIGNS.get(sign)
+
+
+def ascii_upper(text: str) -> str:
+    """In capitals, of the same length: ``ß`` and ``ı`` are nothing that could turn into words."""
+    return text.upper() if text.isascii() else "".join(s.upper() if s.isascii() else s for s in text)

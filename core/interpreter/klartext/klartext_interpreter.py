@@ -15,7 +15,7 @@ from core.interpreter.klartext.klartext_program import Flow, Program
 from core.interpreter.klartext.klartext_state import ORIGIN, SLIDES, State
 from core.interpreter.klartext.l_moves import move
 from core.interpreter.klartext.plane_functions import plane
-from core.interpreter.klartext.tool_call import ToolUse, tool_call
+from core.interpreter.klartext.tool_call import tool_call
 from core.language.diagnostics import ProgramError
 from core.language.klartext.klartext_nodes import (
     Assign,
@@ -41,14 +41,12 @@ class Interpreter(PassReport):
     """
 
     _state: State
-    _tools: ToolUse
 
     def __init__(self, program: Program, setup: Setup, kinematics: Kinematics) -> None:
         super().__init__(Log(program.problems))
         self._program = program
         self._state = State(setup, kinematics, self._log, inch=program.inch)
         self._state.blank = program.corners
-        self._tools = ToolUse()
         self._flow = Flow(program)
 
     @property
@@ -74,7 +72,7 @@ class Interpreter(PassReport):
             flow.at += 1
             left -= 1
             if left < 0 or self._state.blocks >= MOST_BLOCKS:
-                self._too_much(line.number, "Lower the counts of the repeats.")
+                self._stop_endless(line.number, "Lower the counts of the repeats.")
                 return
             for block in self._guarded(line):
                 if not self._stopped:

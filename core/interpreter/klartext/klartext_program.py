@@ -11,7 +11,7 @@ from core.interpreter.units import MM_PER_INCH
 from core.interpreter.working_plane import Corners
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.klartext import klartext_faults, read_line
-from core.language.klartext.canonical_text import written
+from core.language.klartext.canonical_text import name_text, written
 from core.language.klartext.klartext_nodes import Begin, BlankForm, Call, End, KlartextLine, Label
 from core.language.source import Source
 
@@ -147,7 +147,7 @@ def _labels(program: Program) -> list[Diagnostic]:
         if not isinstance(node, Label) or node.name == 0:
             continue
         if node.name in program.labels:
-            text = f"LBL {shown(node.name)} stands on line {program.labels[node.name] + 1} too."
+            text = f"LBL {name_text(node.name)} stands on line {program.labels[node.name] + 1} too."
             hint = "Give it another number."
             found.append(
                 klartext_faults.fault(
@@ -166,7 +166,7 @@ def _calls(program: Program) -> list[Diagnostic]:
         node = line.node
         if not isinstance(node, Call):
             continue
-        name, at = shown(node.name), program.labels.get(node.name)
+        name, at = name_text(node.name), program.labels.get(node.name)
         if at is None:
             text, code = f"LBL {name} is nowhere in the program.", klartext_faults.LABEL
         elif node.repeat is None and program.subprogram_end(at) is None:
@@ -176,11 +176,6 @@ def _calls(program: Program) -> list[Diagnostic]:
         hint = "Write LBL 0 behind it." if at is not None else "Correct the number, or write the label."
         found.append(klartext_faults.fault(line.number, node.column, code, text, hint).diagnostic)
     return found
-
-
-def shown(name: Name) -> str:
-    """A label as it is written."""
-    return f'"{name}"' if isinstance(name, str) else str(name)
 
 
 # --- Where a Klartext program goes next: calls of subprograms, repeats of sections.
@@ -215,7 +210,7 @@ class Flow:
             self._repeat(line, target, node.repeat)
             return
         if len(self._levels) > DEEPEST_CALL:
-            text = f"Calls are nested more than {DEEPEST_CALL} deep at LBL {shown(node.name)}."
+            text = f"Calls are nested more than {DEEPEST_CALL} deep at LBL {name_text(node.name)}."
             hint = "A subprogram must not call itself."
             raise klartext_faults.fault(line, node.column, klartext_faults.NESTING, text, hint)
         self._levels.append(_Level(back=self.at))

@@ -1,9 +1,9 @@
-"""Everything that changes while a Klartext program is gone through."""
+"""Where machine and workpiece stand while a Klartext program is gone through, and what is in force."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from core.geometry.machine_travel import CurvedMove, Travel
@@ -17,9 +17,6 @@ from core.interpreter.modal_state import Modal
 from core.interpreter.units import MM_PER_INCH
 from core.interpreter.working_plane import Angles, Corners, PlaneSystem, Swivel
 
-# --- Where the machine and the workpiece stand while a Klartext program is gone through.
-
-
 ORIGIN: Vector = (0.0, 0.0, 0.0)
 
 
@@ -32,7 +29,13 @@ class WorkingPlane:
     line: int
 
 
-class MachinePosition:
+SLIDES = "XYZ"
+ROTARY = "ABC"
+Q_TARGETS = (120, 121, 122)
+SAME_POINT = 1e-7  # mm or degrees: nearer points are one point
+
+
+class State:
     """``at`` holds all axes by name, ``there`` in the machine's order; mm and degrees, rotary counted on.
 
     ``datum`` is the workpiece datum in the workpiece's system, ``shift`` what TRANS DATUM has added within
@@ -41,12 +44,12 @@ class MachinePosition:
     in it, mm.
     """
 
-    def __init__(self, kinematics: Kinematics, start: Sequence[float]) -> None:
+    def __init__(self, setup: Setup, kinematics: Kinematics, log: Log, *, inch: bool) -> None:
         self.kinematics = kinematics
         self.names = kinematics.names
         self.rotary_names = tuple(axis.name for axis in kinematics.rotaries)
-        self.at = dict(zip(self.names, start, strict=True))
-        self.there = tuple(start)
+        self.at = dict(zip(self.names, setup.start, strict=True))
+        self.there = tuple(setup.start)
         self.plane: WorkingPlane | None = None
         self.datum = self.shift = self.origin = ORIGIN
         self.frame = IDENTITY
@@ -54,6 +57,23 @@ class MachinePosition:
         self._shown: Angles | None = None  # worked out again when a rotary axis has turned
         self.place = self._place()
         self.point = self.place.point(self.slides)
+        self.setup = setup
+        self.log = log
+        self.scale = MM_PER_INCH if inch else 1.0
+        self.blocks = 0
+        self.tool_axis = ""
+        self.feed: float | None = None  # F in force, as programmed
+        self.tool_feed: float | None = None  # F of the last TOOL CALL
+        self.q: dict[int, float] = {}
+        self.m128 = False
+        self.table_known = False  # the program has positioned it, so it no longer matters where it stood
+        self.blank: Corners | None = None
+        self.told: set[object] = set()  # warnings that would otherwise repeat
+        self.modal = Modal(absolute=True, metric=not inch, rapid_rate=setup.last_rapid)
+        self._c = self.names.index("C") if "C" in self.at else -1
+        self._shared: PlaneSystem | None = None
+
+    # --- position -----------------------------------------------------------------------------------------
 
     def go(self, goal: dict[str, float]) -> None:
         """Stand there; ``goal`` holds every axis."""
@@ -95,6 +115,7 @@ class MachinePosition:
         self.origin = plus(self.datum, applied(self.frame, self.shift))
         self.place = self._place()
         self.point = self.place.point(self.slides)
+        self._shared = None
 
     def set_plane(self, plane: WorkingPlane | None) -> None:
         """Another plane, or none. The datum's point on the workpiece stays where it is."""
@@ -107,39 +128,6 @@ class MachinePosition:
         frame = self.plane.frame if self.plane is not None else self.kinematics.basic
         datum = applied(self.kinematics.basic, self.origin)
         return self.kinematics.place(angles, frame, datum, self.tool_length)
-
-
-SLIDES = "XYZ"
-ROTARY = "ABC"
-Q_TARGETS = (120, 121, 122)
-SAME_POINT = 1e-7  # mm or degrees: nearer points are one point
-
-
-class State(MachinePosition):
-    """Where everything stands, and what a line inherits from the lines before it."""
-
-    def __init__(self, setup: Setup, kinematics: Kinematics, log: Log, *, inch: bool) -> None:
-        super().__init__(kinematics, setup.start)
-        self.setup = setup
-        self.log = log
-        self.scale = MM_PER_INCH if inch else 1.0
-        self.blocks = 0
-        self.tool_axis = ""
-        self.feed: float | None = None  # F in force, as programmed
-        self.tool_feed: float | None = None  # F of the last TOOL CALL
-        self.q: dict[int, float] = {}
-        self.m128 = False
-        self.table_known = False  # the program has positioned it, so it no longer matters where it stood
-        self.blank: Corners | None = None
-        self.told: set[object] = set()  # warnings that would otherwise repeat
-        self.modal = Modal(absolute=True, metric=not inch, rapid_rate=setup.last_rapid)
-        self._c = self.names.index("C") if "C" in self.at else -1
-        self._shared: PlaneSystem | None = None
-
-    def derive(self) -> None:
-        """Work out again what follows from plane, datum and tool."""
-        super().derive()
-        self._shared = None
 
     # --- numbers ------------------------------------------------------------------------------------------
 

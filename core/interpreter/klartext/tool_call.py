@@ -5,19 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from core.interpreter.actions import ProgramStop, SpindleRun, SpindleStop, ToolChange
+from core.interpreter.diagnostic_log import ToolUse
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext import word_values
 from core.interpreter.klartext.klartext_state import State
 from core.language.klartext import klartext_faults
 from core.language.klartext.klartext_nodes import ToolCall
-
-
-class ToolUse:
-    """Which tools a program asks for, and which of them nobody has measured."""
-
-    def __init__(self) -> None:
-        self.used: list[int] = []
-        self.missing: list[int] = []
 
 
 def tool_call(state: State, line: int, text: str, node: ToolCall, use: ToolUse) -> Iterator[Block]:
@@ -73,13 +66,9 @@ def _length(state: State, line: int, tool: int, use: ToolUse, column: int) -> fl
     """The length of the tool: its offset in Z; 0 with a warning where nobody has measured it."""
     if tool == 0:
         return 0.0
-    if tool not in use.used:
-        use.used.append(tool)
-    offset = state.setup.tools.get(tool)
+    offset = use.offset(tool, state.setup.tools)
     if offset is not None:
         return offset.z
-    if tool not in use.missing:
-        use.missing.append(tool)
     text = f"Tool {tool} has no offset; 0 is used, and the machine will refuse to start."
     state.log.warn(line, column, "tool-offset-missing", text, "Set the tool's offset.")
     return 0.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from core.interpreter.diagnostic_log import ToolUse
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.omniturn.c_axis import c_move, lock, positions
 from core.interpreter.omniturn.canned_cycles import blocks_of_moves, check_ready
@@ -16,7 +17,7 @@ from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
 from core.interpreter.omniturn.spindle_speed import run_block, speed_word, spindle_modes
 from core.interpreter.omniturn.straight_moves import geometry_modes, statement_move
-from core.interpreter.omniturn.tools_and_offsets import ToolUse, secondary, tool_change
+from core.interpreter.omniturn.tools_and_offsets import secondary, tool_change
 
 Ahead = Sequence[ReadyLine]
 

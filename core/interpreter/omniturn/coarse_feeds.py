@@ -9,8 +9,10 @@ from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
 
 COARSE = frozenset({35, 36})
+MOST_PER_REV = tuple(inches * units.MM_PER_INCH for inches in (0.2, 1.0, 2.0))
+"""The greatest feed and lead, mm/rev, by G36, G35 and G35F2."""
+
 _SAME = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)  # mm; the coarsest step
-_NORMAL_MOST = 0.2 * units.MM_PER_INCH * (1 + 1e-9)  # mm/rev
 
 
 def looks_ahead(made: Statement) -> bool:
@@ -36,7 +38,7 @@ def _change(state: State, made: Statement, ahead: Sequence[ReadyLine]) -> None:
     _check_change(state, made, code)
     state.coarse_at = (state.x + state.offset_x, state.z + state.offset_z) if code == 35 else None
     modal = state.modal._replace(coarse=0 if code == 36 else 2 if "F" in made.words else 1)
-    if before and code == 36 and modal.per_rev and (modal.feed or 0.0) > _NORMAL_MOST:
+    if before and code == 36 and modal.per_rev and (modal.feed or 0.0) > MOST_PER_REV[0] * (1 + 1e-9):
         modal = modal._replace(feed=None, cut_feed=None)
     state.adopt(modal)
     _check_preset(state, made, code, ahead)

@@ -6,7 +6,7 @@ from collections.abc import Hashable, Iterator
 from copy import copy
 from typing import Protocol
 
-from core.interpreter.diagnostic_log import Log
+from core.interpreter.diagnostic_log import Log, ToolUse
 from core.interpreter.elementary_blocks import Block, Series
 from core.interpreter.job_setup import Setup
 from core.interpreter.omniturn.contour_modification import ContourModifier
@@ -15,7 +15,7 @@ from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_state import ContourState
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.program_size import takes_call, terminal
-from core.interpreter.omniturn.tools_and_offsets import ToolUse, warn_of_idle_shifts
+from core.interpreter.omniturn.tools_and_offsets import warn_of_idle_shifts
 
 
 class Guide(Protocol):

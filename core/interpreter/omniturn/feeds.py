@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from core.interpreter import units
 from core.interpreter.diagnostic_log import program_error
+from core.interpreter.omniturn.coarse_feeds import MOST_PER_REV
 from core.interpreter.omniturn.dwell import warn_of_short_dwell
 from core.interpreter.omniturn.omniturn_state import HIGH_FEED, State
 from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
@@ -13,7 +14,6 @@ from core.interpreter.omniturn.spindle_speed import rpm_at
 from core.language.omniturn import Word
 
 _LEAST = 0.00005 * units.MM_PER_INCH  # per minute or per revolution
-_MOST_PER_REV = 0.2 * units.MM_PER_INCH, 1.0 * units.MM_PER_INCH, 2.0 * units.MM_PER_INCH
 _SLOW_MOVE = 30.0  # s; a single move that takes longer was hardly meant
 _TAPPING_LINES = 6  # so soon after the feed the spindle turns back
 _ROUNDING = 1 + 1e-9
@@ -70,7 +70,7 @@ def _rapid(state: State, made: Statement) -> None:
 def _feed(state: State, made: Statement, word: Word, *, first: bool) -> None:
     modal = state.modal
     feed = state.feed_word(word.value or 0.0)
-    most = _MOST_PER_REV[modal.coarse] if modal.per_rev else state.setup.limits.max_feed
+    most = MOST_PER_REV[modal.coarse] if modal.per_rev else state.setup.limits.max_feed
     state.title_rapid = 0
     state.told.discard("feed-missing")
     least = _LEAST if modal.per_rev else _LEAST / 60

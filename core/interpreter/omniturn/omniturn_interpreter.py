@@ -24,7 +24,7 @@ from core.interpreter.omniturn.omniturn_statement import PLANE, UNREADABLE, Read
 from core.interpreter.omniturn.program_size import refuse_too_large, takes_call, terminal
 from core.interpreter.omniturn.spindle_speed import rpm_at
 from core.interpreter.omniturn.straight_moves import go, on_step, plain_move
-from core.interpreter.omniturn.tools_and_offsets import ToolUse, warn_of_idle_shifts
+from core.interpreter.omniturn.tools_and_offsets import warn_of_idle_shifts
 from core.language.diagnostics import ProgramError
 from core.language.omniturn import lex_line
 
@@ -90,14 +90,12 @@ class Interpreter(PassReport):
     """
 
     _state: State
-    _tools: ToolUse
 
     def __init__(self, program: Program, setup: Setup) -> None:
         super().__init__(Log(program.diagnostics))
         self._program = program
         self._state = State(setup, self._log)
         self._shaper = ContourModifier(self._state)
-        self._tools = ToolUse()
         self._flow = Flow(program.structure)
         self._ahead: SeriesLookAhead | None = None
         self._first, self._refused = check_opening(self._state, program)
@@ -165,7 +163,7 @@ class Interpreter(PassReport):
             line = ready[at]
             left -= 1
             if left < 0 or state.blocks >= MOST_BLOCKS:
-                self._too_much(at + 1, "Lower the counts of the loops.")
+                self._stop_endless(at + 1, "Lower the counts of the loops.")
                 break
             try:
                 if isinstance(line, tuple):

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from core.geometry.surface_speed import surface_rpm
 from core.interpreter.actions import SpindleRun, SpindleStop
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.modal_state import Modal
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.units import FEET_PER_MINUTE, METRES_PER_MINUTE
@@ -20,14 +18,7 @@ def rpm_at(state: State, x: float) -> float:
     modal = state.modal
     if not modal.css or not modal.spindle:
         return state.rpm
-    return surface_rpm_at(modal, x, state.setup.limits.max_rpm)
-
-
-def surface_rpm_at(modal: Modal, x: float, highest: float) -> float:
-    """Signed speed at radius ``x`` (mm) under G96, held by G76, G77 and the spindle's ``highest``."""
-    if modal.css_max is not None:
-        highest = min(highest, modal.css_max)
-    return modal.spindle * surface_rpm(modal.surface_speed, x, modal.css_min, highest)
+    return modal.surface_rpm_at(x, state.setup.limits.max_rpm)
 
 
 def spindle_modes(state: State, made: Statement) -> None:

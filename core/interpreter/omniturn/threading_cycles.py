@@ -11,6 +11,7 @@ from math import ceil, copysign, radians, tan
 
 from core.interpreter import units
 from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.omniturn.coarse_feeds import MOST_PER_REV
 from core.interpreter.omniturn.code_table import G_CODES
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
@@ -20,7 +21,6 @@ from core.interpreter.omniturn.straight_moves import check_tool, on_step
 # --- The words of G33 and G34, and everything that has to be right before a thread may be cut.
 
 
-MOST_LEAD = tuple(inches * units.MM_PER_INCH for inches in (0.2, 1.0, 2.0))  # by G36, G35, G35F2
 MOST_ANGLE = G_CODES[33].bounds["C"][1]  # degrees
 _BARE_C = 29.0
 _MOST_PASSES = 10_000
@@ -107,8 +107,8 @@ def _lead(state: State, made: Statement) -> float:
         hint = f"Was K{feed.text[1:]} meant?" if feed else "Write K, the lead per revolution."
         raise made.refuse("F", "thread-lead-missing", text, hint)
     lead *= state.scale_z
-    if not 0 < lead <= MOST_LEAD[coarse] * _ROUNDING:
-        most = units.feed(MOST_LEAD[coarse], per_rev=True, metric=state.modal.metric)
+    if not 0 < lead <= MOST_PER_REV[coarse] * _ROUNDING:
+        most = units.feed(MOST_PER_REV[coarse], per_rev=True, metric=state.modal.metric)
         text = f"{made.words['K'].text}: the lead must be above 0 and at most {most}."
         hint = ("G35 allows more.", "G35F2 allows more.", "Correct K.")[coarse if lead > 0 else 2]
         raise made.refuse("K", "thread-lead-range", text, hint)

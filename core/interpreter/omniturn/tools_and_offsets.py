@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from core.interpreter.actions import Preset, ToolChange, WorkShift
+from core.interpreter.diagnostic_log import ToolUse
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.interpreter.omniturn.omniturn_state import State
@@ -15,27 +16,13 @@ from core.language.diagnostics import Diagnostic, Severity
 from core.language.omniturn import Word
 
 
-class ToolUse:
-    """Which tool offsets a program asks for, and which of them nobody has set."""
-
-    def __init__(self) -> None:
-        self.used: list[int] = []
-        self.missing: list[int] = []
-
-    def note(self, state: State, line: int, word: Word) -> ToolOffset:
-        """The offset of a T word; 0 with a warning where it has never been set."""
-        number = int(word.value or 0)
-        if number == 0:
-            return ToolOffset()
-        if number not in self.used:
-            self.used.append(number)
-        offset = state.setup.tools.get(number)
-        if offset is not None:
-            return offset
-        if number not in self.missing:
-            self.missing.append(number)
-        state.log.again(missing_offset(self.missing, line, word.column))
-        return ToolOffset()
+def _offset(state: State, line: int, word: Word, use: ToolUse) -> ToolOffset:
+    """The offset of a T word; 0 with a warning where it has never been set."""
+    number = int(word.value or 0)
+    offset = use.offset(number, state.setup.tools) if number else ToolOffset()
+    if offset is None:
+        state.log.again(missing_offset(use.missing, line, word.column))
+    return offset or ToolOffset()
 
 
 def missing_offset(tools: Sequence[int], line: int, column: int) -> Diagnostic:
@@ -57,7 +44,7 @@ def tool_change(state: State, made: Statement, word: Word, use: ToolUse) -> Bloc
     if modal.css and number:
         text = "G96 is active at a tool change: the spindle drive has to follow every jump of X."
         state.log.warn(made.line, word.column, "tool-under-css", text, "Put G97 before the T.")
-    offset = use.note(state, made.line, word)
+    offset = _offset(state, made.line, word, use)
     if number:
         state.pending_shift.update(dict.fromkeys(state.pending_shift, True))
     shift_x = modal.pending_shift_x if number else 0.0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from core.geometry.surface_speed import surface_rpm
 from core.interpreter.actions import Action, Dwell
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
@@ -65,11 +64,11 @@ class State:
         if not modal.spindle:
             return 0.0
         highest = self.setup.limits.max_rpm
-        if modal.css_max is not None:
-            highest = min(highest, modal.css_max)
         if modal.css:
-            return modal.spindle * surface_rpm(modal.surface_speed, x, 0.0, highest)
-        return modal.spindle * min(modal.rpm, highest)
+            return modal.surface_rpm_at(x, highest)
+        return modal.spindle * min(
+            modal.rpm, highest if modal.css_max is None else min(highest, modal.css_max)
+        )
 
     @property
     def rpm(self) -> float:

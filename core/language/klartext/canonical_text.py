@@ -58,10 +58,10 @@ def _short(node: Begin | End | BlankForm | Label | Call | Assign | Stop | Headin
         case BlankForm():
             made = _joined(f"BLK FORM 0.{node.part}", node.tool_axis, _axes(node.corner))
         case Label():
-            made = f"LBL {_name(node.name)}"
+            made = f"LBL {name_text(node.name)}"
         case Call():
             repeat = "" if node.repeat is None else f"REP {node.repeat}"
-            made = _joined("CALL LBL", _name(node.name), repeat)
+            made = _joined("CALL LBL", name_text(node.name), repeat)
         case Assign():
             made = _joined("FN 0:" if node.spelled else "", f"Q{node.q} = {_value(node.value)}")
         case Stop():
@@ -73,7 +73,7 @@ def _short(node: Begin | End | BlankForm | Label | Call | Assign | Stop | Headin
 
 def _tool_call(node: ToolCall) -> str:
     words = (("S", node.speed), ("F", node.feed), ("DL", node.length), ("DR", node.radius))
-    tool = "" if node.tool is None else _name(node.tool)
+    tool = "" if node.tool is None else name_text(node.tool)
     shown = [f"{word}{_value(value, plus=word[0] == 'D')}" for word, value in words if value is not None]
     return _joined("TOOL CALL", tool, node.tool_axis, *shown)
 
@@ -115,7 +115,8 @@ def _value(value: Value, *, plus: bool = True) -> str:
     return f"{value.number:{'+' if plus else ''}.9f}".rstrip("0").rstrip(".")
 
 
-def _name(name: int | str) -> str:
+def name_text(name: int | str) -> str:
+    """The number of a label or a tool, or its name in quotes."""
     return f'"{name}"' if isinstance(name, str) else str(name)
 
 

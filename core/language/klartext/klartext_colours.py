@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from core.language.klartext.klartext_line import read_line
+from core.language.klartext.klartext_line import comment_start, read_line
 from core.language.syntax_colours import Ink, Span
 
 _VALUE = r"\s*[+-]?\s*(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+|Q\s*[0-9]+)"
@@ -30,7 +30,7 @@ _TO_BLANK = re.compile(r"\S*")
 def spans(text: str) -> list[Span]:
     """The coloured parts of a line, a fault last so that it is seen."""
     line = read_line(1, text)
-    end = len(text) if line.comment is None else _semicolon(text)
+    end = len(text) if line.comment is None else comment_start(text)
     found = [*_words(text, end)]
     if end < len(text):
         found.append(Span(end, len(text) - end, Ink.COMMENT))
@@ -40,16 +40,6 @@ def spans(text: str) -> list[Span]:
         size = len(word.group()) if word is not None else 0
         found.append(Span(max(at, 0), max(size, 1), Ink.FAULT))
     return found
-
-
-def _semicolon(text: str) -> int:
-    """Where the comment begins: a semicolon in a quoted name begins none."""
-    quoted = False
-    for at, sign in enumerate(text):
-        quoted ^= sign == '"'
-        if sign == ";" and not quoted:
-            return at
-    return len(text)
 
 
 def _words(text: str, end: int) -> list[Span]:

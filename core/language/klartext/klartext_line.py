@@ -83,7 +83,8 @@ def read_line(number: int, text: str) -> KlartextLine:
             number, 1, f"The line has {len(text)} characters.", "Break it into lines."
         )
         return KlartextLine(number, error=problem.diagnostic)
-    code, comment = _without_comment(text)
+    end = comment_start(text)
+    code, comment = text[:end], text[end + 1 :].strip() if end < len(text) else None
     head = _HEAD.match(code)
     assert head is not None  # every part of it may be missing
     block, skip = head.group(2), bool(head.group(1) or head.group(3))
@@ -95,17 +96,14 @@ def read_line(number: int, text: str) -> KlartextLine:
     return KlartextLine(number, node, number_of_block, skip, comment)
 
 
-def _without_comment(text: str) -> tuple[str, str | None]:
-    """Code and comment; a semicolon in a quoted name begins none."""
-    if ";" not in text:
-        return text, None
+def comment_start(text: str) -> int:
+    """Index of the semicolon that begins the comment, else the length: in a quoted name it begins none."""
     quoted = False
-    for at, sign in enumerate(text):
-        if sign == '"':
-            quoted = not quoted
-        elif sign == ";" and not quoted:
-            return text[:at], text[at + 1 :].strip()
-    return text, None
+    for at, sign in enumerate(text if ";" in text else ""):
+        quoted ^= sign == '"'
+        if sign == ";" and not quoted:
+            return at
+    return len(text)
 
 
 def _node(cursor: Cursor) -> Node | None:

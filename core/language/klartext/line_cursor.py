@@ -8,7 +8,7 @@ from functools import lru_cache
 from core.language.diagnostics import ProgramError
 from core.language.klartext import klartext_faults
 from core.language.klartext.klartext_nodes import AxisWord, Feed, Retract, Value
-from core.language.typography import typed
+from core.language.typography import ascii_upper, typed
 
 _NUMBER = r"(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)"
 _VALUE = re.compile(rf"([+-]?)\s*(?:({_NUMBER})|Q\s*([0-9]+))(?![0-9A-Z.,])")
@@ -32,12 +32,7 @@ class Cursor:
     def __init__(self, line: int, text: str, at: int = 0) -> None:
         self.line = line
         self.text = text
-        # Letters such as ß have capitals of another length, and no word of the language holds one.
-        self.upper = (
-            text.upper()
-            if text.isascii()
-            else "".join(sign.upper() if sign.isascii() else sign for sign in text)
-        )
+        self.upper = ascii_upper(text)
         self.at = at
         self.blanks()
 

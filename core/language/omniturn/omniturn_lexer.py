@@ -9,6 +9,7 @@ from typing import NamedTuple
 from core.language.diagnostics import Diagnostic
 from core.language.omniturn import other_controls, word_faults
 from core.language.omniturn.omniturn_words import BARE, Line, Word
+from core.language.typography import ascii_upper
 
 LONGEST_LINE = 8192
 
@@ -55,7 +56,7 @@ def lex_line(number: int, text: str) -> Line:
         text, told = _without_prose(number, text)
         errors += told
     written, columns, comment, comment_column = _without_comment(number, text, errors)
-    code = _Code(written.upper() if written.isascii() else _upper(written), written, columns)
+    code = _Code(ascii_upper(written), written, columns)
     block_delete = code.text.startswith("/")
     words = _Scanner(number, code, errors).words(1 if block_delete else 0)
     return Line(number, words, comment, comment_column, block_delete, written, tuple(errors))
@@ -103,11 +104,6 @@ def _usual_words(text: str) -> tuple[Word, ...] | None:
         words.append(Word(letter, value, column, written))
         column += len(written)
     return tuple(words)
-
-
-def _upper(text: str) -> str:
-    """ASCII upper case only: ``ß`` and ``ı`` are nothing that could turn into words."""
-    return "".join(sign.upper() if sign.isascii() else sign for sign in text)
 
 
 def _without_comment(

@@ -9,7 +9,7 @@ from core.language.diagnostics import Diagnostic
 from core.language.sinumerik import sinumerik_words as known
 from core.language.sinumerik.sinumerik_alarms import SYNTAX, alarm, refused
 from core.language.sinumerik.sinumerik_words import LONGEST_LINE, Form, Line, Word
-from core.language.typography import typed
+from core.language.typography import ascii_upper, typed
 
 # --- What stands behind a letter, behind = or in brackets: a number or an R parameter, and what it may be.
 
@@ -66,7 +66,7 @@ _MOST_PASSES = 9999
 def lex_line(number: int, text: str) -> Line:
     """The words of line ``number``. Never raises: errors are in the line, each with its column."""
     code, comment = _without_comment(text)
-    upper = code.upper() if code.isascii() else _upper(code)
+    upper = ascii_upper(code)
     head = _HEAD.match(upper)
     assert head is not None  # every part of it may be missing
     level, kind, count, label = head.groups()
@@ -89,11 +89,6 @@ def lex_line(number: int, text: str) -> Line:
         code[head.end() :].strip(),
         tuple(scanner.errors),
     )
-
-
-def _upper(text: str) -> str:
-    """ASCII upper case only: ``ß`` and ``ı`` are nothing that could turn into words."""
-    return "".join(sign.upper() if sign.isascii() else sign for sign in text)
 
 
 def _without_comment(text: str) -> tuple[str, int]:
