@@ -26,7 +26,7 @@ from app.desk.program_folder import ProgramFile, ProgramFolders
 from app.desk.program_loading import LoadingSteps, ProgramLoader
 from app.desk.translation import tr
 from app.editor.editor import Editor
-from app.editor.versions import Bench, NoArchive
+from app.editor.versions import NoArchive
 from app.offsets.offset_effect import Effect
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
@@ -219,7 +219,7 @@ def _drives(machine: Machine) -> str:
 
 def _editor(work: LoadingSteps, journal: Journal | None) -> Editor:
     """The editor proves what is being typed without keeping a version of every key."""
-    return Editor(Bench(work, journal or NoArchive(), data_folder() / "programs", samples()))
+    return Editor(work, journal or NoArchive(), data_folder() / "programs", samples())
 
 
 def step_clock() -> StepClock:

@@ -15,27 +15,26 @@ from app.desk.screen_settings import SettingsBook
 from app.programs.folder_chooser import Chooser
 from app.programs.import_export import Traffic
 from app.programs.preview import Preview
-from app.programs.program_list import FilesDesk
+from app.programs.program_list import ProgramList
 from app.programs.run_record import RunRecord
-from app.special.backup import KeepingSection
-from app.special.drive_status import DrivesSection
-from app.special.event_log import EventsSection
-from app.special.inputs_outputs import SignalsSection
-from app.special.machine_file_acceptance import MachineFileSection
+from app.special.backup import BackupAndRestore
+from app.special.drive_status import DriveStatus
+from app.special.event_log import LoggedEvents
+from app.special.inputs_outputs import InputsOutputs
+from app.special.machine_file_acceptance import MachineFileAcceptance
 from app.special.part_count import PartCounter
-from app.special.parts_counter import PartsSection
-from app.special.preferences import PreferencesSection
-from app.special.section import Section
-from app.special.special_functions import SpecialDesk
-from app.special.spindle_limit import SpeedSection
-from app.transfer.serial_transfer import TransferSection
+from app.special.parts_counter import PartsCounter
+from app.special.preferences import ScreenPreferences
+from app.special.special_functions import SpecialFunction, SpecialFunctions
+from app.special.spindle_limit import SpindleSpeedLimit
+from app.transfer.serial_transfer import SerialTransfer
 from core.machine.machine_model import Machine
 
-MakeSection = Callable[[Desk, Machine, Persistence, Latest], Section]
+MakeFunction = Callable[[Desk, Machine, Persistence, Latest], SpecialFunction]
 
 
-def _keeping(desk: Desk, _machine: Machine, keep: Persistence, worker: Latest) -> Section:
-    section = KeepingSection(desk, keep, worker, data_folder() / "backups")
+def _keeping(desk: Desk, _machine: Machine, keep: Persistence, worker: Latest) -> SpecialFunction:
+    section = BackupAndRestore(desk, keep, worker, data_folder() / "backups")
 
     def restored() -> None:
         desk.settings.reload()
@@ -45,23 +44,25 @@ def _keeping(desk: Desk, _machine: Machine, keep: Persistence, worker: Latest) -
     return section
 
 
-def _transfer(desk: Desk, machine: Machine, keep: Persistence, workshop: LoadingSteps, own: Path) -> Section:
+def _transfer(
+    desk: Desk, machine: Machine, keep: Persistence, workshop: LoadingSteps, own: Path
+) -> SpecialFunction:
     """RS-232, at first as [dnc] of the machine file says. What comes in is proved as an import is."""
     ending = {"mill": ".h"}.get(machine.kind, ".nc")
     lines = SerialLines(proving(workshop), ending)
-    return TransferSection(desk, keep, lines, machine.hardware.dnc or PLAIN, own)
+    return SerialTransfer(desk, keep, lines, machine.hardware.dnc or PLAIN, own)
 
 
 # One line for each special function, in the order of the list; one whose hardware is not there has none.
-ITEMS: tuple[MakeSection, ...] = (
-    lambda desk, machine, _keep, _worker: SpeedSection(desk, machine.spindle),
-    lambda desk, _machine, _keep, _worker: PartsSection(desk),
-    lambda desk, machine, _keep, _worker: SignalsSection(desk, machine),
-    lambda desk, machine, _keep, _worker: DrivesSection(desk, machine),
-    lambda desk, _machine, keep, worker: EventsSection(desk, keep, worker),
+ITEMS: tuple[MakeFunction, ...] = (
+    lambda desk, machine, _keep, _worker: SpindleSpeedLimit(desk, machine.spindle),
+    lambda desk, _machine, _keep, _worker: PartsCounter(desk),
+    lambda desk, machine, _keep, _worker: InputsOutputs(desk, machine),
+    lambda desk, machine, _keep, _worker: DriveStatus(desk, machine),
+    lambda desk, _machine, keep, worker: LoggedEvents(desk, keep, worker),
     _keeping,
-    lambda desk, _machine, _keep, _worker: PreferencesSection(desk),
-    lambda desk, _machine, _keep, _worker: MachineFileSection(desk, desk.changes),
+    lambda desk, _machine, _keep, _worker: ScreenPreferences(desk),
+    lambda desk, _machine, _keep, _worker: MachineFileAcceptance(desk, desk.changes),
 )
 
 
@@ -79,11 +80,11 @@ def furnish(
     own = own or data_folder() / "programs"
     sections = [make(desk, machine, keep, worker) for make in ITEMS]
     sections.append(_transfer(desk, machine, keep, workshop, own))
-    desk.attach(SpecialDesk(sections, worker))
+    desk.attach(SpecialFunctions(sections, worker))
     desk.attach(_files(desk, keep, workshop, own))
 
 
-def _files(desk: Desk, keep: Persistence, workshop: LoadingSteps, own: Path) -> FilesDesk:
+def _files(desk: Desk, keep: Persistence, workshop: LoadingSteps, own: Path) -> ProgramList:
     """The list of programs; what comes in is proved with the offsets of that moment."""
 
     def check(path: Path) -> str:
@@ -96,4 +97,4 @@ def _files(desk: Desk, keep: Persistence, workshop: LoadingSteps, own: Path) -> 
 
     worker = Latest("editing-programs")
     traffic = Traffic(desk, own, keep, worker, check, Chooser(Path.home()))
-    return FilesDesk(desk, own, keep, worker, Preview(workshop), traffic, lambda: desk.session.now)
+    return ProgramList(desk, own, keep, worker, Preview(workshop), traffic, lambda: desk.session.now)

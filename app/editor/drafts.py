@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk.latest import Latest
-from app.editor import messages
+from app.editor import editor_messages as messages
 from app.editor.document import Document
 from app.editor.versions import Archive
 from core.store.store_errors import StoreError

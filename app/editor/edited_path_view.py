@@ -8,17 +8,13 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtWidgets import QWidget
 
+from app.desk.sheet import Key
 from app.desk.translation import tr
-from app.editor import messages
-from app.editor.editor_keys_view import Mode
-from app.path.measuring import measuring_words
 from app.path.path_aspects import Tip
 from app.path.path_view import PathView
 from app.screen.look import Look
-from app.screen.page_base import Doings
 
 if TYPE_CHECKING:
-    from app.editor.editor_view import EditorPage
     from app.path.path_pane_view import Pane, Place
     from app.path.path_picture import Picture
 
@@ -61,6 +57,22 @@ class EditedPath(PathView):
         self._picked_block(block)
         return ""
 
+    def keys(self) -> dict[int, Key]:
+        """The function keys while the keyboard is in the path."""
+        return {
+            2: Key("HOLD", self._hold),
+            4: Key("VIEW", self.next_view),
+            5: Key("FIT", self.fit),
+            6: Key("NEARER", partial(self.zoom, 1)),
+            7: Key("FARTHER", partial(self.zoom, -1)),
+        }
+
+    def _hold(self) -> None:
+        """Measure from where the cross stands."""
+        if self.ruler is not None:
+            self.ruler.hold()
+            self.update()
+
     def _picked_block(self, block: int) -> None:
         line = self.picture.line_of_block(block) if self.picture is not None else 0
         if line:
@@ -68,50 +80,3 @@ class EditedPath(PathView):
 
     def _place_in(self, pane: Pane, tip: Tip) -> Place | None:
         return pane.end_of(tip.block)
-
-
-# --- The keyboard in the path beside the text: to measure there, and to find the line of what is drawn.
-
-
-class Looking:
-    """What the page does while the keyboard is in its path."""
-
-    def __init__(self, page: EditorPage) -> None:
-        self._page = page
-
-    def begin(self) -> None:
-        """The keyboard to the path, if there is any."""
-        if self._page.path.drawn:
-            self._page.enter(Mode.LOOK)
-        else:
-            self._page.editor.notice = messages.NO_PATH
-
-    def hold(self) -> None:
-        """Measure from where the cross stands."""
-        ruler = self._page.path.ruler
-        if ruler is not None:
-            ruler.hold()
-            self._page.path.update()
-
-    def to_line(self) -> None:
-        """The cursor to the line whose path the cross stands on."""
-        self._page.editor.notice = self._page.path.line_here()
-
-    def doings(self) -> Doings:
-        """Keys of the Automatic page that mean the same here."""
-        path = self._page.path
-        return {
-            "Zoom in": partial(path.zoom, 1),
-            "Zoom out": partial(path.zoom, -1),
-            "Measure": self._page.back,
-            "View": path.next_view,
-        }
-
-    def prompt(self) -> str:
-        """What the keys do."""
-        return measuring_words()
-
-    def refresh(self) -> None:
-        """Once a frame: measuring that has ended gives the keyboard back to the text."""
-        if self._page.mode is Mode.LOOK and self._page.path.ruler is None:
-            self._page.back()

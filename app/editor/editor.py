@@ -9,14 +9,21 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 
+from app.desk.desk import Desk
 from app.desk.latest import Latest
-from app.editor import messages
+from app.desk.program_loading import LoadingSteps
+from app.desk.prompt_line import UNDER_WAY
+from app.desk.readouts import TURNING
+from app.desk.translation import tr
+from app.editor import editor_messages as messages
 from app.editor.document import CHANGED, Document, NameRefusedError, created, ended, opened, save_document
 from app.editor.drafts import Drafts
 from app.editor.live_proof import LiveProof
-from app.editor.versions import Bench
+from app.editor.versions import Archive
+from core.executor.snapshot import Snapshot
 
 
 class Stage(StrEnum):
@@ -39,16 +46,22 @@ class Left:
     to_desk: bool
 
 
-def _nowhere(_left: Left) -> None:
+def nowhere(_left: Left) -> None:
     """Nobody wants to know what was saved."""
 
 
 @dataclass(slots=True)
 class Editor:
-    """One document at a time. ``left`` hears of the program that was left in good order."""
+    """One document at a time. ``left`` hears of the program that was left in good order.
 
-    bench: Bench
-    left: Callable[[Left], None] = _nowhere
+    ``steps`` prove without keeping anything, ``programs`` is the operator's own folder.
+    """
+
+    steps: LoadingSteps
+    archive: Archive
+    programs: Path
+    samples: Path
+    left: Callable[[Left], None] = nowhere
     stage: Stage = Stage.CLOSED
     document: Document | None = None
     notice: str = ""
@@ -68,8 +81,8 @@ class Editor:
     _unnamed: str = ""  # text whose saving waits for a name
 
     def __post_init__(self) -> None:
-        self.proof = LiveProof(self.bench.workshop)
-        self.drafts = Drafts(self.bench.programs / ".drafts", self.bench.archive)
+        self.proof = LiveProof(self.steps)
+        self.drafts = Drafts(self.programs / ".drafts", self.archive)
 
     def poll(self) -> None:
         """Once a frame: take up what the worker has finished."""
@@ -91,7 +104,7 @@ class Editor:
         self.clear()
         self.block_delete = block_delete
         self.stage = Stage.READING
-        self.worker.queue(lambda: opened(path, self.bench.samples), self._opened, self._not_opened)
+        self.worker.queue(lambda: opened(path, self.samples), self._opened, self._not_opened)
 
     def offer(self, typed: str) -> None:
         """A name that no program has: ask whether it shall be a new one."""
@@ -104,7 +117,7 @@ class Editor:
         if self.stage is not Stage.OFFERED:
             return
         try:
-            document = created(self.bench.programs, self._offered)
+            document = created(self.programs, self._offered)
         except NameRefusedError as error:
             self.notice = f"{error}; ESC"
             return
@@ -185,7 +198,7 @@ class Editor:
         if document is None or self.stage is not Stage.NAMING:
             return False
         try:
-            path = created(self.bench.programs, typed).path
+            path = created(self.programs, typed).path
         except NameRefusedError as error:
             self.notice = str(error)
             return False
@@ -236,7 +249,7 @@ class Editor:
     def _write(self, document: Document, text: str, *, replacing: bool = False) -> None:
         self.stage = Stage.SAVING
         self.worker.queue(
-            lambda: save_document(document, text, self.bench.archive, replacing),
+            lambda: save_document(document, text, self.archive, replacing),
             lambda trouble: self._saved(document, text, trouble),
             self._not_saved,
         )
@@ -270,3 +283,60 @@ class Editor:
         self.stage, self.document, self._leaving = Stage.CLOSED, None, False
         self._offered = ""
         self.asked = None
+
+
+# --- coming in and going, beside the machine --------------------------------------------------------------
+# The control cancels the spindle-on command when its editor is entered, so that nobody writes beside a
+# turning chuck. No command of the executor does just that (Reset gives the program up as well), so entering
+# is refused until the spindle stands.
+
+
+def refusal(snapshot: Snapshot) -> str:
+    """Why not, in the words of the prompt line; empty when the editor may be entered."""
+    if snapshot.state in UNDER_WAY:
+        return messages.UNDER_WAY
+    if snapshot.rpm_command:
+        return messages.SPINDLE_ON
+    return messages.COASTING if abs(snapshot.rpm_actual) > TURNING else ""
+
+
+def enter(desk: Desk, editor: Editor) -> bool:
+    """Go into the editor: with the program of the name that was typed, or else with that on the desk.
+
+    A name that no program has is offered as a new file. False when it is refused; the desk says why.
+    """
+    why = refusal(desk.snapshot())
+    name, now = editor.wanted.strip(), desk.session.now
+    editor.wanted = ""
+    path = desk.shelf.find(name) if name else now.path
+    if why or not (name or path):
+        desk.say(why or messages.NO_PROGRAM)
+        return False
+    desk.clear()
+    editor.left = partial(_take_up, desk)
+    if path is None:
+        editor.offer(name)
+    else:
+        editor.open(path, now.block_delete)
+    return True
+
+
+def _take_up(desk: Desk, left: Left) -> None:
+    """The program on the desk is read and proved anew when its text has changed.
+
+    Another one comes there only when it was written and left for that; to look at it changes nothing.
+    """
+    path, now = left.path, desk.session.now
+    if path != now.path and not (left.to_desk and (left.changed or now.path is None)):
+        stays = messages.SAVED_ONLY if left.changed else messages.LOOKED
+        if now.path is None:
+            stays = messages.SAVED_NONE
+        desk.say(tr(stays).format(name=path.name, other=now.name))
+    elif path == now.path and not left.changed:
+        return
+    elif desk.snapshot().state in UNDER_WAY:
+        desk.say(tr(messages.RELOAD))  # somebody started a cycle at the station meanwhile
+    elif path == now.path:
+        desk.session.load(path, now.block_delete)
+    else:
+        desk.put_on_desk(path)

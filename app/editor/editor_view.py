@@ -1,30 +1,34 @@
-"""The F3 editor: the text with its margin, the path beside it, and what proving has found.
+"""The page EDITOR (F3): the text with its margin, the path beside it, and what proving has found.
 
 Everything is done by keys alone, and every function key is a target for a finger.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from enum import StrEnum
+from functools import partial
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, QObject
+from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
+from app.desk.arithmetic import line_of
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.prompt_line import MOVING
-from app.editor import messages
-from app.editor.edited_path_view import EditedPath, Looking
-from app.editor.editor import Editor, Stage
-from app.editor.editor_keys_view import ASKING, PROMPTS, Doing, Mode, action_of, doings
-from app.editor.entering import enter
+from app.desk.sheet import Key
+from app.editor import editor_messages as messages
+from app.editor.edited_path_view import EditedPath
+from app.editor.editor import Editor, Stage, enter
 from app.editor.findings_view import FindingList
 from app.editor.heading_view import KEYBOARD, Heading, HeadLine, editor_places
-from app.editor.question_view import Asking, AskLine, Finder
+from app.editor.question_view import AskLine, Finder
 from app.editor.text_view import Draft, TextField
 from app.editor.versions import History
 from app.editor.versions_view import VersionList
+from app.path.measuring import measuring_words
 from app.screen import page_table
 from app.screen.letter_keys import PROGRAMS, LetterPad, strike
 from app.screen.page_base import Doings, Host, Page
@@ -35,129 +39,53 @@ from core.executor.snapshot import Snapshot
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
 
-# --- The parts of the editor page, where they stand, and what they show; what keys do is the page's.
+Keys = dict[int, Key]
+Actions = dict[int, Callable[[], None]]
 
 
-class EditorParts(Page):
-    """``mode`` says which of them are seen; keys of the line that asks come to ``eventFilter``."""
+class Mode(StrEnum):
+    """What the keys are for."""
 
-    def __init__(self, host: Host, editor: Editor, parent: QWidget) -> None:
-        super().__init__(host, parent)
-        look, self.editor = host.look, editor
-        self._mode = Mode.TEXT
-        self.head = HeadLine(look, self.turn_letters, self)
-        self.letters = LetterPad(look, self._strike, self, PROGRAMS)
-        self._with_letters = False
-        self.field = TextField(look, self)
-        self.path = EditedPath(look, self.go_to, self)
-        self.space = WorkingPlaneView(look, self)  # takes the path's place where the program is for a mill
-        self.findings = FindingList(look, self.go_to, self)
-        self.history = History(editor.bench.archive, editor.worker)
-        self.versions = VersionList(look, self.history, self)
-        self.ask = AskLine(look, self, self)
-        self.finder = Finder(self.field, self.ask)
-        self.draft = Draft(self.field, self.editor)
-
-    @property
-    def mode(self) -> Mode:
-        """What the keys are for now."""
-        return self._mode
-
-    def go_to(self, line: int, column: int = 0) -> None:
-        """The cursor to a place of the program."""
-        self.field.go_to(max(1, line), column)
-        self.field.setFocus()
-
-    def show_text(self) -> None:
-        """Heading, findings and picture of what is in the field now."""
-        editor = self.editor
-        line, column = self.field.line, self.field.textCursor().positionInBlock() + 1
-        place = f"LINE {line} OF {self.field.blockCount()}  ·  {column}"
-        self.head.show_heading(Heading(editor.name, self.draft.mark, place))
-        findings = editor.proof.now
-        self.field.show_findings(findings.by_line)
-        self.findings.show_findings(findings, line)
-        self._show_path(findings.picture, line)
-
-    def _show_path(self, picture: Picture | None, line: int) -> None:
-        """The path up to the line of the cursor; on a mill the plane of that line in space."""
-        scene = picture.scene if picture is not None else None
-        self.space.show_scene(scene)
-        self.space.setVisible(scene is not None and self._mode is not Mode.OFFER and not self.lettered)
-        self.path.show_picture(picture if scene is None else None)
-        if scene is not None:
-            here = at_line(scene, line)
-            self.space.show_instant(here, plane_words(here.swivel))
-            return
-        self.path.follow(line)
-        self.path.advance()
-
-    def show_mode(self) -> None:
-        """The parts that this mode has."""
-        self.path.measure(on=self._mode is Mode.LOOK)
-        self.versions.setVisible(self._mode is Mode.HISTORY)
-        self.field.setVisible(self._mode is not Mode.OFFER)  # what was edited last is not what is offered
-        for part in (self.path, self.findings):
-            part.setVisible(self._mode is not Mode.OFFER and not self.lettered)
-        self.letters.setVisible(self.lettered)
-        self.letters.write_into(self.ask.first if self._mode in ASKING else self.field)
-        self._lay_out()
-
-    # --- the drawn keyboard --------------------------------------------------------------------------
-
-    @property
-    def lettered(self) -> bool:
-        """Whether the keyboard is drawn: where something is written, if a finger has asked for it."""
-        return self._with_letters and self._mode in ASKING | {Mode.TEXT}
-
-    def turn_letters(self) -> None:
-        """Show the keyboard, or take it away."""
-        self._with_letters = not self._with_letters
-        self.show_mode()
-
-    def _strike(self, key: str) -> None:
-        strike(key, self.letters.focusProxy() or self.field)
-
-    def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Everything again, in the new unit."""
-        self._lay_out()
-        self.dress()
-
-    def _lay_out(self) -> None:
-        keys = KEYBOARD if self.lettered else 0.0
-        asking = self._mode in ASKING
-        at = editor_places(self.width(), self.height(), self.look.u, asking=asking, keys=keys)
-        for part, rect in (
-            (self.head, at.head),
-            (self.field, at.text),
-            (self.path, at.path),
-            (self.space, at.path),
-            (self.findings, at.findings),
-            (self.versions, at.body),
-            (self.ask, at.ask),
-            (self.letters, at.keys),
-        ):
-            part.setGeometry(*rect)
-            part.update()
-
-    def dress(self) -> None:
-        """Everything in the colours and sizes that are in force now."""
-        self.field.dress()
-        self.ask.dress()
-        self.path.restart()
+    TEXT = "text"
+    FIND = "find"
+    GO_TO = "go to"
+    NAME = "name"
+    HISTORY = "history"
+    OFFER = "offer"
+    LOOK = "look"  # at the path: the keyboard measures in it
 
 
-class EditorPage(EditorParts):
-    """Shows what the desk's editor holds; it opens with the program on the desk or a name that was typed."""
+ASKING = frozenset({Mode.FIND, Mode.GO_TO, Mode.NAME})
+PROMPTS = {Mode.FIND: messages.FINDING, Mode.GO_TO: messages.GOING, Mode.HISTORY: messages.CHOOSING}
+"""What the prompt line says while nothing else is to be said."""
+
+
+class EditorPage(Page):
+    """Shows what the desk's editor holds; it opens with the program on the desk or a name that was typed.
+
+    ``mode`` says which parts are seen; keys of the line that asks come to ``eventFilter``.
+    """
 
     NAME = page_table.EDITOR
 
     def __init__(self, host: Host, editor: Editor, parent: QWidget) -> None:
-        super().__init__(host, editor, parent)
+        super().__init__(host, parent)
+        look, self.editor = host.look, editor
+        self.mode = Mode.TEXT
         self._target = page_table.AUTOMATIC  # where leaving leads to
         self._moving = False
-        self.asking = Asking(self)
-        self.looking = Looking(self)
+        self._with_letters = False
+        self.head = HeadLine(look, self.turn_letters, self)
+        self.letters = LetterPad(look, self._strike, self, PROGRAMS)
+        self.field = TextField(look, self)
+        self.path = EditedPath(look, self.go_to, self)
+        self.space = WorkingPlaneView(look, self)  # takes the path's place where the program is for a mill
+        self.findings = FindingList(look, self.go_to, self)
+        self.history = History(editor.archive, editor.worker)
+        self.versions = VersionList(look, self.history, self)
+        self.ask = AskLine(look, self, self)
+        self.finder = Finder(self.field, self.ask)
+        self.draft = Draft(self.field, self.editor)
 
     # --- the frame's calls ---------------------------------------------------------------------------
 
@@ -181,14 +109,16 @@ class EditorPage(EditorParts):
 
     def labels(self) -> tuple[str, ...]:
         """What the function keys do now."""
-        now = self._doings()
+        now = self._keys()
         return tuple(now[n].label if n in now else "" for n in range(1, 11))
 
     def doings(self) -> Doings:
         """The function keys of the moment."""
-        found = {f"F{number}": doing.act for number, doing in self._doings().items()}
-        if self._mode is Mode.LOOK:
-            found |= self.looking.doings()
+        found = {f"F{number}": key.action for number, key in self._keys().items()}
+        if self.mode is Mode.LOOK:  # keys of the Automatic page that mean the same here
+            path = self.path
+            found |= {"Zoom in": partial(path.zoom, 1), "Zoom out": partial(path.zoom, -1)}
+            found |= {"Measure": self.back, "View": path.next_view}
         return found
 
     def escape(self) -> bool:
@@ -197,7 +127,7 @@ class EditorPage(EditorParts):
             self.desk.feed_hold()  # what a hand hits first must do the safe thing on every page
         elif self.editor.stage is Stage.OFFERED:
             self.editor.abort()
-        elif self._mode is not Mode.TEXT:
+        elif self.mode is not Mode.TEXT:
             self.back()
         elif self.editor.notice:
             self.editor.clear()
@@ -220,10 +150,10 @@ class EditorPage(EditorParts):
             return self.editor.notice
         if self._moving:
             return messages.RUNS_OLD
-        if self._mode is Mode.LOOK:
-            return self.looking.prompt()
-        if self._mode in PROMPTS:
-            return PROMPTS[self._mode]
+        if self.mode is Mode.LOOK:
+            return measuring_words()
+        if self.mode in PROMPTS:
+            return PROMPTS[self.mode]
         line = self.field.line
         found = self.field.finding_at(line)
         if found is not None:
@@ -241,28 +171,52 @@ class EditorPage(EditorParts):
         self.draft.refresh()
         self._follow_stage()
         self.show_text()
-        self.looking.refresh()
+        if self.mode is Mode.LOOK and self.path.ruler is None:
+            self.back()  # measuring has ended: the keyboard is the text's again
         self.versions.refresh()
 
     def _follow_stage(self) -> None:
         """The questions that the editor asks of itself."""
         stage = self.editor.stage
-        if stage is Stage.NAMING and self._mode is not Mode.NAME:
+        if stage is Stage.NAMING and self.mode is not Mode.NAME:
             self.enter(Mode.NAME)
-        elif stage is Stage.OFFERED and self._mode is not Mode.OFFER:
+        elif stage is Stage.OFFERED and self.mode is not Mode.OFFER:
             self.enter(Mode.OFFER)
-        elif stage is Stage.OPEN and self._mode in {Mode.NAME, Mode.OFFER}:
+        elif stage is Stage.OPEN and self.mode in {Mode.NAME, Mode.OFFER}:
             self.enter(Mode.TEXT)
 
-    # --- what keys do --------------------------------------------------------------------------------
+    # --- the function keys ---------------------------------------------------------------------------
 
-    def _doings(self) -> dict[int, Doing]:
-        return doings(self, self._mode)
+    def _keys(self) -> Keys:
+        """Those that mean something now."""
+        menu, back = Key("MENU", partial(self.leave_to, page_table.MENU)), Key("BACK", self.back)
+        undo = {8: Key("UNDO", self.field.undo), 9: Key("REDO", self.field.redo)}
+        if self.mode is Mode.FIND:
+            return {1: menu, **self.finder.keys(), **undo, 10: back}
+        if self.mode is Mode.HISTORY:
+            return {1: menu, 2: Key("RESTORE", self.restore), **self.versions.keys(), 10: back}
+        if self.mode is Mode.LOOK:
+            return {1: menu, 3: Key("TO LINE", self._to_line), **self.path.keys(), 10: back}
+        if self.mode is Mode.OFFER:
+            return {1: Key("CREATE", self.editor.create), 10: Key("ABORT", self.editor.abort)}
+        if self.mode is Mode.TEXT:
+            return {1: menu, **self._text_keys(), **undo, 10: Key("NO SAVE", self.abandon)}
+        return {2: Key("SAVE" if self.mode is Mode.NAME else "GO", self._take), 10: back}
+
+    def _text_keys(self) -> Keys:
+        return {
+            2: Key("SAVE", self.save),
+            3: Key("LEAVE", partial(self.leave_to, page_table.AUTOMATIC)),
+            4: Key("FIND", partial(self.enter, Mode.FIND)),
+            5: Key("GO TO", partial(self.enter, Mode.GO_TO)),
+            6: Key("YES", self.answer) if self.editor.asked else Key("NEXT ERR", self.next_finding),
+            7: Key("HISTORY", partial(self.enter, Mode.HISTORY)),
+        }
 
     def enter(self, mode: Mode) -> None:
         """From now on the keys are for this."""
-        self._mode = mode
-        self.asking.show(mode)
+        self.mode = mode
+        self._ask()
         self.show_mode()
         if mode is Mode.HISTORY:
             self.versions.raise_()
@@ -272,18 +226,6 @@ class EditorPage(EditorParts):
         elif mode is Mode.TEXT:
             self.field.setFocus()
 
-    def ask_text(self) -> None:
-        """Find and replace."""
-        self.enter(Mode.FIND)
-
-    def ask_line(self) -> None:
-        """Go to a line."""
-        self.enter(Mode.GO_TO)
-
-    def show_history(self) -> None:
-        """The versions."""
-        self.enter(Mode.HISTORY)
-
     def back(self) -> None:
         """Back to the text."""
         self.editor.keep_no_name()
@@ -291,9 +233,10 @@ class EditorPage(EditorParts):
 
     def go_to(self, line: int, column: int = 0) -> None:
         """The cursor to a place of the program."""
-        if self._mode is Mode.LOOK:
+        if self.mode is Mode.LOOK:
             self.enter(Mode.TEXT)
-        super().go_to(line, column)
+        self.field.go_to(max(1, line), column)
+        self.field.setFocus()
 
     def next_finding(self) -> None:
         """The cursor to the next line that something was found in."""
@@ -326,6 +269,124 @@ class EditorPage(EditorParts):
             self.editor.restore(self.history.text, self.history.number)
             self.enter(Mode.TEXT)
 
+    def look_at_path(self) -> None:
+        """The keyboard to the path, if there is any: to measure, and to find the line of what is drawn."""
+        if self.path.drawn:
+            self.enter(Mode.LOOK)
+        else:
+            self.editor.notice = messages.NO_PATH
+
+    def _to_line(self) -> None:
+        """The cursor to the line whose path the cross stands on."""
+        self.editor.notice = self.path.line_here()
+
+    # --- the line that asks ----------------------------------------------------------------------------
+
+    def _ask(self) -> None:
+        """The question of this mode; the line goes where there is none."""
+        if self.mode is Mode.FIND:
+            self.ask.ask("FIND", "REPLACE BY", entry=self.finder.start())
+            self.finder.look()
+        elif self.mode is Mode.GO_TO:
+            self.ask.ask("GO TO LINE", entry=str(self.field.line))
+        elif self.mode is Mode.NAME:
+            self.ask.ask("SAVE AS", entry=self.editor.name)
+        else:
+            self.ask.hide()
+
+    def _take(self) -> None:
+        """Return in the line that asks."""
+        entry = self.ask.first.text()
+        if self.mode is Mode.FIND:
+            self.finder.step(1)
+        elif self.mode is Mode.NAME:
+            self.editor.take_name(entry)
+        elif (number := line_of(entry)) is None or number > self.field.blockCount():
+            self.ask.say(f"A NUMBER FROM 1 TO {self.field.blockCount()}")
+        else:
+            self.enter(Mode.TEXT)
+            self.go_to(number)
+
+    # --- the parts ------------------------------------------------------------------------------------
+
+    def show_text(self) -> None:
+        """Heading, findings and picture of what is in the field now."""
+        editor = self.editor
+        line, column = self.field.line, self.field.textCursor().positionInBlock() + 1
+        place = f"LINE {line} OF {self.field.blockCount()}  ·  {column}"
+        self.head.show_heading(Heading(editor.name, self.draft.mark, place))
+        findings = editor.proof.now
+        self.field.show_findings(findings.by_line)
+        self.findings.show_findings(findings, line)
+        self._show_path(findings.picture, line)
+
+    def _show_path(self, picture: Picture | None, line: int) -> None:
+        """The path up to the line of the cursor; on a mill the plane of that line in space."""
+        scene = picture.scene if picture is not None else None
+        self.space.show_scene(scene)
+        self.space.setVisible(scene is not None and self.mode is not Mode.OFFER and not self.lettered)
+        self.path.show_picture(picture if scene is None else None)
+        if scene is not None:
+            here = at_line(scene, line)
+            self.space.show_instant(here, plane_words(here.swivel))
+            return
+        self.path.follow(line)
+        self.path.advance()
+
+    def show_mode(self) -> None:
+        """The parts that this mode has."""
+        self.path.measure(on=self.mode is Mode.LOOK)
+        self.versions.setVisible(self.mode is Mode.HISTORY)
+        self.field.setVisible(self.mode is not Mode.OFFER)  # what was edited last is not what is offered
+        for part in (self.path, self.findings):
+            part.setVisible(self.mode is not Mode.OFFER and not self.lettered)
+        self.letters.setVisible(self.lettered)
+        self.letters.write_into(self.ask.first if self.mode in ASKING else self.field)
+        self._lay_out()
+
+    # --- the drawn keyboard --------------------------------------------------------------------------
+
+    @property
+    def lettered(self) -> bool:
+        """Whether the keyboard is drawn: where something is written, if a finger has asked for it."""
+        return self._with_letters and self.mode in ASKING | {Mode.TEXT}
+
+    def turn_letters(self) -> None:
+        """Show the keyboard, or take it away."""
+        self._with_letters = not self._with_letters
+        self.show_mode()
+
+    def _strike(self, key: str) -> None:
+        strike(key, self.letters.focusProxy() or self.field)
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """Everything again, in the new unit."""
+        self._lay_out()
+        self.dress()
+
+    def _lay_out(self) -> None:
+        keys = KEYBOARD if self.lettered else 0.0
+        asking = self.mode in ASKING
+        at = editor_places(self.width(), self.height(), self.look.u, asking=asking, keys=keys)
+        for part, rect in (
+            (self.head, at.head),
+            (self.field, at.text),
+            (self.path, at.path),
+            (self.space, at.path),
+            (self.findings, at.findings),
+            (self.versions, at.body),
+            (self.ask, at.ask),
+            (self.letters, at.keys),
+        ):
+            part.setGeometry(*rect)
+            part.update()
+
+    def dress(self) -> None:
+        """Everything in the colours and sizes that are in force now."""
+        self.field.dress()
+        self.ask.dress()
+        self.path.restart()
+
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -342,10 +403,43 @@ class EditorPage(EditorParts):
             event.ignore()
 
     def _key(self, event: QKeyEvent) -> bool:
-        action = action_of(self, event)
+        action = self._action_of(event)
         if action is not None:
             action()
         return action is not None
+
+    def _action_of(self, event: QKeyEvent) -> Callable[[], None] | None:
+        """What a key does besides writing and the function keys; None when it means nothing here."""
+        key, modifiers = event.key(), event.modifiers()
+        if modifiers & Qt.KeyboardModifier.ControlModifier:
+            return self._chords().get(key)
+        if self.mode in ASKING:
+            before = bool(modifiers & Qt.KeyboardModifier.ShiftModifier) and self.mode is Mode.FIND
+            enter, tab = partial(self.finder.step, -1) if before else self._take, self.ask.other_field
+            asking: Actions = dict.fromkeys((Qt.Key.Key_Return, Qt.Key.Key_Enter), enter)
+            asking |= dict.fromkeys((Qt.Key.Key_Tab, Qt.Key.Key_Backtab), tab)
+            return asking.get(key)
+        if self.mode is Mode.HISTORY:
+            restore: Actions = dict.fromkeys((Qt.Key.Key_Return, Qt.Key.Key_Enter), self.restore)
+            return (self.versions.arrows() | restore).get(key)
+        return None
+
+    def _chords(self) -> Actions:
+        """With Ctrl; arrows move the picture where they do not move the cursor by words."""
+        find, chords = partial(self.enter, Mode.FIND), dict[int, Callable[[], None]]()
+        if self.mode is not Mode.HISTORY:
+            chords = {
+                Qt.Key.Key_S: self.save,
+                Qt.Key.Key_F: find,
+                Qt.Key.Key_H: find,
+                Qt.Key.Key_G: partial(self.enter, Mode.GO_TO),
+                Qt.Key.Key_M: self.look_at_path,
+            }
+        if self.mode is Mode.LOOK:
+            ways = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, -1)}
+            ways[Qt.Key.Key_Down] = (0, 1)
+            chords |= {key: partial(self.path.pan, *way) for key, way in ways.items()}
+        return chords
 
     def _go(self) -> None:
         """The editor has been left."""

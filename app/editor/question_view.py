@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from functools import partial
 
 from PySide6.QtCore import QObject, QRectF, Qt
 from PySide6.QtGui import QPainter, QResizeEvent
 from PySide6.QtWidgets import QLineEdit, QWidget
 
-from app.desk.arithmetic import line_of
-from app.editor.editor_keys_view import Mode
+from app.desk.sheet import Key
 from app.editor.find_replace import Search, following, preceding
 from app.editor.text_view import TextField
 from app.screen.look import LEFT, RIGHT, Look, put
 from app.screen.panel import Panel
-
-if TYPE_CHECKING:
-    from app.editor.editor_view import EditorPage
 
 LABEL = 15.0  # units before a field
 ANSWER = 34.0  # units for what is said of the entry
@@ -101,50 +97,6 @@ class AskLine(Panel):
         put(painter, room, RIGHT, self.answer)
 
 
-# --- What the line that asks is for, and what Return in it does.
-
-
-class Asking:
-    """Find and replace, go to a line, and the name that a sample is saved under."""
-
-    def __init__(self, page: EditorPage) -> None:
-        self._page = page
-
-    def show(self, mode: Mode) -> None:
-        """The question of this mode; the line goes where there is none."""
-        page = self._page
-        if mode is Mode.FIND:
-            page.ask.ask("FIND", "REPLACE BY", entry=page.finder.start())
-            page.finder.look()
-        elif mode is Mode.GO_TO:
-            page.ask.ask("GO TO LINE", entry=str(page.field.line))
-        elif mode is Mode.NAME:
-            page.ask.ask("SAVE AS", entry=page.editor.name)
-        else:
-            page.ask.hide()
-
-    def take(self) -> None:
-        """Return in the line that asks."""
-        page, entry = self._page, self._page.ask.first.text()
-        if page.mode is Mode.FIND:
-            page.finder.step(1)
-        elif page.mode is Mode.GO_TO:
-            self._go_to(entry)
-        elif page.mode is Mode.NAME:
-            page.editor.take_name(entry)
-
-    def _go_to(self, entry: str) -> None:
-        page, number, last = self._page, line_of(entry), self._page.field.blockCount()
-        if number is None or number > last:
-            page.ask.say(f"A NUMBER FROM 1 TO {last}")
-            return
-        page.enter(Mode.TEXT)
-        page.go_to(number)
-
-
-# --- Find and replace in the text field, with the count of what is found.
-
-
 class Finder:
     """Looks for what is typed into the line that asks; the cursor goes to the first from where it stands."""
 
@@ -200,6 +152,16 @@ class Finder:
         """Whole words and numbers only, or parts of them too."""
         self.whole = not self.whole
         self.look()
+
+    def keys(self) -> dict[int, Key]:
+        """The function keys while something is looked for."""
+        return {
+            2: Key("NEXT", partial(self.step, 1)),
+            3: Key("BEFORE", partial(self.step, -1)),
+            4: Key("REPLACE", self.replace),
+            5: Key("ALL", self.replace_all),
+            6: Key("PARTS" if self.whole else "WHOLE", self.other_width),
+        }
 
     def _places(self) -> tuple[int, ...]:
         return self._search.places(self._field.toPlainText())

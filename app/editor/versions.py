@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
-from pathlib import Path
 from typing import Protocol
 
 from app.desk.latest import Latest, Watch
-from app.desk.program_loading import LoadingSteps
 from core.store.store_errors import StoreError
 from core.store.store_rows import VersionRow
 
@@ -44,16 +42,6 @@ class NoArchive:
     def keep_version(self, _name: str, _text: bytes, _why: str) -> int:
         """It is not kept."""
         return 0
-
-
-@dataclass(frozen=True, slots=True)
-class Bench:
-    """``workshop`` proves without keeping anything, ``programs`` is the operator's own folder."""
-
-    workshop: LoadingSteps
-    archive: Archive
-    programs: Path
-    samples: Path
 
 
 # --- What has changed between two versions of a program, line by line.

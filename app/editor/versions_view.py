@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from datetime import datetime
 
-from PySide6.QtCore import QRectF
+from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QPainter, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
+from app.desk.sheet import Key
 from app.editor.versions import History, Row
 from app.screen.look import LEFT, RIGHT, Look, put, put_raw
 from app.screen.panel import Panel
@@ -105,6 +106,26 @@ class VersionList(Panel):
         painter.setFont(look.font(2.0, bold=change.sign in "+-"))
         put(painter, QRectF(row.x() + 11.4 * u, row.y(), 2.4 * u, row.height()), LEFT, change.sign)
         put_raw(painter, row.adjusted(14 * u, 0, 0, 0), LEFT, change.text.expandtabs(4))
+
+    def keys(self) -> dict[int, Key]:
+        """The function keys of marking and looking."""
+        history = self._history
+        return {
+            4: Key("NEWER", lambda: history.mark(history.marked - 1)),
+            5: Key("OLDER", lambda: history.mark(history.marked + 1)),
+            6: Key("UP", lambda: self.look_at(-self.lines)),
+            7: Key("DOWN", lambda: self.look_at(self.lines)),
+        }
+
+    def arrows(self) -> dict[int, Callable[[], None]]:
+        """The same by arrows."""
+        by = {number: key.action for number, key in self.keys().items()}
+        return {
+            Qt.Key.Key_Up: by[4],
+            Qt.Key.Key_Down: by[5],
+            Qt.Key.Key_PageUp: by[6],
+            Qt.Key.Key_PageDown: by[7],
+        }
 
     def _marker(self, place: int) -> Callable[[], None]:
         return lambda: self._history.mark(place)

@@ -12,10 +12,10 @@ from app.desk.latest import Latest
 from app.desk.persistence import Persistence
 from app.desk.program_folder import ProgramFolders
 from app.desk.program_loading import Loaded
+from app.desk.sheet import Entry
 from app.desk.translation import tr
 from app.programs import file_changes
 from app.programs.program_rows import Program
-from app.special.section import Entry
 from core.executor.snapshot import Snapshot
 
 UNDER_WAY = prompt_line.MOVING | prompt_line.INTERRUPTED

@@ -12,12 +12,12 @@ from typing import Protocol
 
 from app.desk.latest import Latest
 from app.desk.persistence import Persistence
+from app.desk.sheet import Key, Sheet
 from app.desk.translation import tr
 from app.programs.file_changes import FileError, good_name, taken
 from app.programs.folder_chooser import Chooser
 from app.programs.program_rows import chooser_sheet
 from app.programs.whole_file import SavingError, present, write_whole
-from app.special.section import Key, Sheet
 from core.language.source import SourceError, load_source
 from core.store.store_errors import StoreError
 

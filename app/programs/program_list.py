@@ -9,16 +9,16 @@ from pathlib import Path
 from app.desk.latest import Latest
 from app.desk.persistence import Persistence
 from app.desk.program_loading import Loaded
+from app.desk.sheet import Entry, Key, Sheet
 from app.programs.copy_rename_delete import COPY, NONE, RENAME, Changer, FilesHost
 from app.programs.import_export import Traffic
 from app.programs.preview import Preview
 from app.programs.program_rows import ORDERS, Program, programs, sheet_of, sorted_by
-from app.special.section import Entry, Key, Sheet
 from core.executor.snapshot import State
 
 
 @dataclass(slots=True)
-class FilesDesk:
+class ProgramList:
     """``own`` is the operator's folder; ``loaded`` tells what is on the desk."""
 
     desk: FilesHost

@@ -13,12 +13,12 @@ from app.desk import formats
 from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
 from app.desk.program_folder import ProgramFolders
-from app.special.section import Row, Sheet
+from app.desk.sheet import Row, Sheet
 from core.store.store_rows import RunRow
 
 if TYPE_CHECKING:
     from app.programs.folder_chooser import Chooser
-    from app.programs.program_list import FilesDesk
+    from app.programs.program_list import ProgramList
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,7 @@ def day(seconds: float) -> str:
 Detail = tuple[str, str]
 
 
-def sheet_of(model: FilesDesk) -> Sheet:
+def sheet_of(model: ProgramList) -> Sheet:
     """The list: name, date, last run, parts, best cycle."""
     rows = tuple(_row(program) for program in model.shown)
     count = f"{len(model.shown)} OF {len(model.all)} PROGRAMS" if model.find.text else f"{len(rows)} PROGRAMS"

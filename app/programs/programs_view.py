@@ -14,7 +14,7 @@ from app.desk.program_loading import Loaded
 from app.editor.editor import Editor
 from app.path.path_view import PathView
 from app.programs.copy_rename_delete import NONE
-from app.programs.program_list import FilesDesk
+from app.programs.program_list import ProgramList
 from app.programs.program_rows import Program, details_of
 from app.screen import page_table
 from app.screen.letter_keys import LetterPad
@@ -84,13 +84,13 @@ class PreviewSpace(WorkingPlaneView):
     title = "PREVIEW"
 
 
-class FilesPage(ListPage):
+class ProgramsPage(ListPage):
     """The model decides; this shows it and hands the keys on."""
 
     NAME = page_table.PROGRAMS
-    model: FilesDesk
+    model: ProgramList
 
-    def __init__(self, host: Host, model: FilesDesk, parent: QWidget) -> None:
+    def __init__(self, host: Host, model: ProgramList, parent: QWidget) -> None:
         super().__init__(host, model, parent)
         self.table = SheetPanel(self.look, self._chosen, self)
         self.path = PreviewPath(self.look, self)

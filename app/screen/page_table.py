@@ -48,8 +48,8 @@ PAGES = (
     PageEntry(JOG, "app.jog.jog_view.JogPage", "", "F5", "JOG", "move by hand, touch tools off"),
     PageEntry(
         PROGRAMS,
-        "app.programs.programs_view.FilesPage",
-        "app.programs.program_list.FilesDesk",
+        "app.programs.programs_view.ProgramsPage",
+        "app.programs.program_list.ProgramList",
         "F6",
         "LIST",
         "list, preview, copy, import and export",
@@ -81,7 +81,7 @@ PAGES = (
     PageEntry(
         SPECIAL,
         "app.special.special_view.SpecialPage",
-        "app.special.special_functions.SpecialDesk",
+        "app.special.special_functions.SpecialFunctions",
         "F10",
         "SPECIAL",
         "speed limit, parts, inputs and outputs, log, backup",

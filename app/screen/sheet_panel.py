@@ -10,11 +10,11 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QFontMetricsF, QPainter, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
+from app.desk.sheet import Key, Row, Sheet
 from app.screen import page_table
 from app.screen.look import LEFT, RIGHT, Look, put, put_raw
 from app.screen.page_base import Host, Page
 from app.screen.panel import Panel
-from app.special.section import Key, Row, Sheet
 
 ROW, HEAD, ASKED, NOTE = 4.0, 2.6, 5.4, 2.4  # units
 LAMP = 3.2

@@ -13,10 +13,11 @@ from app.desk.latest import Latest
 from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
 from app.desk.prompt_line import UNDER_WAY
+from app.desk.sheet import Key, Row, Sheet
 from app.desk.translation import tr
 from app.programs.file_changes import FileError
 from app.programs.folder_chooser import Stick, sticks
-from app.special.section import Key, Row, Section, Sheet
+from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot
 
 BARRED = "A PROGRAM IS UNDER WAY: NOTHING IS RESTORED BEFORE IT HAS ENDED"
@@ -34,7 +35,7 @@ class Place:
     at: str = ""
 
 
-class KeepingSection(Section):
+class BackupAndRestore(SpecialFunction):
     """Return on a place makes a backup there; Return on a backup restores it, after asking."""
 
     name = "BACKUP AND RESTORE"

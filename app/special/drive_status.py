@@ -5,7 +5,8 @@ from __future__ import annotations
 from app.desk import formats
 from app.desk.desk import Desk
 from app.desk.machine_status import Tone
-from app.special.section import Row, Section, Sheet
+from app.desk.sheet import Row, Sheet
+from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.machine.machine_model import Axis, Machine
 
@@ -15,7 +16,7 @@ AXES = frozenset("XYZABC")
 OF_SPINDLE = frozenset({"spindle", "at-speed", "ignores-stop", "spindle-still", "thread-lost"})
 
 
-class DrivesSection(Section):
+class DriveStatus(SpecialFunction):
     """Machine coordinates from home, X a radius, in the unit that the figures are shown in."""
 
     name = "DRIVE STATUS"

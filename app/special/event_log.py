@@ -9,7 +9,8 @@ from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
-from app.special.section import Entry, Key, Row, Section, Sheet
+from app.desk.sheet import Entry, Key, Row, Sheet
+from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot
 from core.store.store_rows import EventRow
 
@@ -23,7 +24,7 @@ FILTERS: Mapping[str, frozenset[str]] = {
 }
 
 
-class EventsSection(Section):
+class LoggedEvents(SpecialFunction):
     """F4 searches, F5 filters. While a search is typed every letter belongs to it."""
 
     name = "EVENT LOG"

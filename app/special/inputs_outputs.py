@@ -8,8 +8,9 @@ from enum import StrEnum
 from app.desk.desk import Desk
 from app.desk.machine_status import Tone
 from app.desk.readouts import Lamp, lamps_of
+from app.desk.sheet import Key, Row, Sheet
 from app.desk.translation import tr
-from app.special.section import Key, Row, Section, Sheet
+from app.special.special_functions import SpecialFunction
 from core.executor.commands import ForceOutput
 from core.executor.snapshot import Snapshot, State
 from core.machine.machine_model import Machine
@@ -44,7 +45,7 @@ class Kind(StrEnum):
         return kinds[(kinds.index(self) + 1) % len(kinds)]
 
 
-class SignalsSection(Section):
+class InputsOutputs(SpecialFunction):
     """F4 goes from list to list; Return on an output switches it over, after asking."""
 
     name = "INPUTS AND OUTPUTS"

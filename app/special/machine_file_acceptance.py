@@ -7,14 +7,15 @@ from collections.abc import Mapping
 from app.desk.desk import Desk
 from app.desk.machine_file_changes import FileChanges
 from app.desk.machine_status import Tone
+from app.desk.sheet import Key, Row, Sheet
 from app.desk.translation import tr
-from app.special.section import Key, Row, Section, Sheet
+from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot, State
 
 _OFF = frozenset({State.DISABLED, State.ESTOP, State.FAULT})
 
 
-class MachineFileSection(Section):
+class MachineFileAcceptance(SpecialFunction):
     """F2 accepts, after asking once; until then the drives cannot be switched on."""
 
     name = "MACHINE FILE"

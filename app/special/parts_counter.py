@@ -7,9 +7,10 @@ from functools import partial
 
 from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
+from app.desk.sheet import Key, Row, Sheet
 from app.desk.translation import tr
 from app.special.part_count import MOST, PartCounter
-from app.special.section import FigureSection, Key, Row, Sheet
+from app.special.special_functions import FigureFunction
 from core.executor.snapshot import Snapshot
 from core.store.store_errors import StoreError
 
@@ -17,7 +18,7 @@ RESET = "PRESS Y TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT"
 NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT"
 
 
-class PartsSection(FigureSection):
+class PartsCounter(FigureFunction):
     """Of the program on the desk."""
 
     name = "PARTS COUNTER"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from app.special.section import Row, Section, Sheet
+from app.desk.sheet import Row, Sheet
+from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot
 from core.store.store_errors import StoreError
 
@@ -16,7 +17,7 @@ WORDS = {
 VALUES = {"en": "ENGLISH", "es": "ESPAÑOL", "dark": "DARK", "light": "LIGHT"}
 
 
-class PreferencesSection(Section):
+class ScreenPreferences(SpecialFunction):
     """Return, or a finger, goes on to the next choice."""
 
     name = "SCREEN"

@@ -18,7 +18,7 @@ from app.screen.look import CENTRE, LEFT, Look, put
 from app.screen.page_base import Doings, Host
 from app.screen.panel import Panel
 from app.screen.sheet_panel import ListPage, SheetPanel
-from app.special.special_functions import SpecialDesk
+from app.special.special_functions import SpecialFunctions
 from core.executor.snapshot import Snapshot
 
 # --- The list of special functions: a number, a name, what it is for; each a target for a finger.
@@ -32,7 +32,9 @@ class ItemList(Panel):
 
     title = "SPECIAL FUNCTIONS"
 
-    def __init__(self, look: Look, model: SpecialDesk, enter: Callable[[int], None], parent: QWidget) -> None:
+    def __init__(
+        self, look: Look, model: SpecialFunctions, enter: Callable[[int], None], parent: QWidget
+    ) -> None:
         super().__init__(look, parent)
         self.model, self._enter = model, enter
         self._shown: tuple[int, bool] | None = None
@@ -80,9 +82,9 @@ class SpecialPage(ListPage):
     """The models decide; this shows them and hands the keys on."""
 
     NAME = page_table.SPECIAL
-    model: SpecialDesk
+    model: SpecialFunctions
 
-    def __init__(self, host: Host, model: SpecialDesk, parent: QWidget) -> None:
+    def __init__(self, host: Host, model: SpecialFunctions, parent: QWidget) -> None:
         super().__init__(host, model, parent)
         self.items = ItemList(self.look, model, self._enter, self)
         self.table = SheetPanel(self.look, self._chosen, self)

@@ -8,8 +8,9 @@ from functools import partial
 from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.desk import Desk
+from app.desk.sheet import Key, Row, Sheet
 from app.desk.translation import tr
-from app.special.section import FigureSection, Key, Row, Sheet
+from app.special.special_functions import FigureFunction
 from core.executor.commands import SpindleLimit
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import SpindleModel
@@ -17,7 +18,7 @@ from core.machine.machine_model import SpindleModel
 LIFT = "PRESS Y TO LIFT THE LIMIT, ESC TO KEEP IT"
 
 
-class SpeedSection(FigureSection):
+class SpindleSpeedLimit(FigureFunction):
     """A limit for this workpiece, chuck or bar: it is gone when the control is started again."""
 
     name = "MAXIMUM SPINDLE SPEED"

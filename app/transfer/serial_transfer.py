@@ -11,9 +11,10 @@ from app.desk.latest import Latest
 from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
 from app.desk.prompt_line import UNDER_WAY
+from app.desk.sheet import Entry, Key, Row, Sheet
 from app.desk.translation import tr
 from app.programs.file_changes import FileError
-from app.special.section import Entry, Key, Row, Section, Sheet
+from app.special.special_functions import SpecialFunction
 from app.transfer.received_program import free_name, stored
 from app.transfer.serial_line import Carrying, Lines, Reach, Received
 from app.transfer.serial_settings import ROWS, form_of, kept_form
@@ -93,7 +94,7 @@ UNDER_WAY_NAME = "A PROGRAM IS UNDER WAY: RETURN STORES IT AS IT IS NAMED; ANOTH
 THROW_AWAY = "PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, ESC TO KEEP IT"
 
 
-class TransferSection(Section):
+class SerialTransfer(SpecialFunction):
     """Three faces: the settings, a transfer under way, and a program that waits for its name."""
 
     name = "RS-232"

@@ -13,7 +13,7 @@ from app.desk.desk import Desk
 from app.desk.program_loading import Loaded
 from app.desk.screen_settings import Units
 from app.programs.copy_rename_delete import RENAME
-from app.programs.program_list import FilesDesk
+from app.programs.program_list import ProgramList
 from core.executor.commands import ConfirmStart, LoadJob
 from core.executor.snapshot import Snapshot, Starts, State
 from core.language.source import Dialect, Source
@@ -174,7 +174,7 @@ def test_a_question_that_something_else_has_covered_is_not_answered(desk: Desk) 
 def test_the_interrupted_program_keeps_its_name_and_its_file(
     desk: Desk, question: str, tmp_path: Path
 ) -> None:
-    files = desk.attached(FilesDesk)
+    files = desk.attached(ProgramList)
     assert files is not None
     files.opened()
     files.worker.settle(10)

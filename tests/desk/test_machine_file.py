@@ -15,8 +15,8 @@ from app.compose.journal import Journal
 from app.compose.screen_desk import desk_and_executor
 from app.desk.desk import Desk
 from app.desk.persistence import NoPersistence
-from app.special.machine_file_acceptance import MachineFileSection
-from app.special.special_functions import SpecialDesk
+from app.special.machine_file_acceptance import MachineFileAcceptance
+from app.special.special_functions import SpecialFunctions
 from core.executor.executor import Executor
 from core.executor.snapshot import State
 from core.machine.machine_file import load_machine
@@ -43,8 +43,10 @@ class Room:
         return self.desk.snapshot().state
 
     @property
-    def section(self) -> MachineFileSection:
-        (found,) = [s for s in self.desk.attached(SpecialDesk).sections if isinstance(s, MachineFileSection)]
+    def section(self) -> MachineFileAcceptance:
+        (found,) = [
+            s for s in self.desk.attached(SpecialFunctions).sections if isinstance(s, MachineFileAcceptance)
+        ]
         return found
 
     def cells(self) -> list[tuple[str, ...]]:

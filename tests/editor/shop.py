@@ -1,7 +1,8 @@
-"""A bench in a temporary folder: the real prover, and an archive in memory."""
+"""An editor in a temporary folder: the real prover, and an archive in memory."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
@@ -10,7 +11,7 @@ from app.compose.machine_setup import setup_for
 from app.compose.workshop import proof_of
 from app.desk.latest import Watch
 from app.desk.program_loading import LoadingSteps, Proved
-from app.editor.versions import Bench
+from app.editor.editor import Editor, Left, nowhere
 from app.path.path_picture import Picture, sketched
 from core.executor.job import Job
 from core.interpreter.dialects import ReadProgram
@@ -70,7 +71,7 @@ def workshop() -> LoadingSteps:
     return LoadingSteps(load_source, make_job, proved, draw)
 
 
-def bench_in(folder: Path, archive: Memory | None = None) -> Bench:
+def editor_in(folder: Path, archive: Memory | None = None, left: Callable[[Left], None] = nowhere) -> Editor:
     """The operator's programs and the samples, both empty at first."""
     (folder / "samples").mkdir(exist_ok=True)
-    return Bench(workshop(), archive or Memory(), folder / "programs", folder / "samples")
+    return Editor(workshop(), archive or Memory(), folder / "programs", folder / "samples", left)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.editor.editor import Editor, Stage
-from tests.editor.shop import GOOD, Memory, bench_in
+from tests.editor.shop import GOOD, Memory, editor_in
 
 TYPED = GOOD.replace("Z-.5", "Z-.75")
 LIMIT = 20.0
@@ -26,7 +26,7 @@ def start(tmp_path: Path, memory: Memory) -> Iterator[Start]:
     editors: list[Editor] = []
 
     def begin() -> Editor:
-        editors.append(Editor(bench_in(tmp_path, memory)))
+        editors.append(editor_in(tmp_path, memory))
         return editors[-1]
 
     yield begin
@@ -42,7 +42,7 @@ def settle(editor: Editor) -> None:
 
 
 def program(editor: Editor, text: str = GOOD) -> Path:
-    path = editor.bench.programs / "part.nc"
+    path = editor.programs / "part.nc"
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)
     return path

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from app.editor import messages
+from app.editor import editor_messages as messages
 from app.editor.editor import Editor, Left, Stage
 from app.editor.versions import History
-from tests.editor.shop import GOOD, Memory, bench_in
+from tests.editor.shop import GOOD, Memory, editor_in
 
 
 @pytest.fixture
@@ -25,7 +25,7 @@ def left() -> list[Left]:
 
 @pytest.fixture
 def editor(tmp_path: Path, memory: Memory, left: list[Left]) -> Iterator[Editor]:
-    editor = Editor(bench_in(tmp_path, memory), left.append)
+    editor = editor_in(tmp_path, memory, left.append)
     yield editor
     editor.close()
 
@@ -36,7 +36,7 @@ def settle(editor: Editor) -> None:
 
 def own(editor: Editor, name: str, text: str = GOOD) -> Path:
     """A program of the operator, open in the editor."""
-    path = editor.bench.programs / name
+    path = editor.programs / name
     path.parent.mkdir(exist_ok=True)
     path.write_text(text)
     editor.open(path)
@@ -113,7 +113,7 @@ def test_a_new_file_does_not_take_a_name_that_is_there(editor: Editor) -> None:
 def test_a_sample_is_saved_under_a_free_name_only(editor: Editor, left: list[Left]) -> None:
     own(editor, "mine.nc", "M02\n")
     editor.abandon(editor.text)
-    sample = editor.bench.samples / "knob.nc"
+    sample = editor.samples / "knob.nc"
     sample.write_text(GOOD)
     editor.open(sample)
     settle(editor)
@@ -123,7 +123,7 @@ def test_a_sample_is_saved_under_a_free_name_only(editor: Editor, left: list[Lef
     assert not editor.take_name("a/b")
     assert editor.take_name("other")
     settle(editor)
-    assert left == [Left(editor.bench.programs / "other.nc", True, False)]
+    assert left == [Left(editor.programs / "other.nc", True, False)]
     assert sample.read_text() == GOOD
 
 

@@ -14,7 +14,7 @@ from app.desk.persistence import NoPersistence, Persistence
 from app.desk.program_folder import ProgramFolders
 from app.desk.program_loading import LoadingSteps, ProgramLoader, Proved
 from app.editor.editor import Editor
-from app.editor.versions import Archive, Bench, NoArchive
+from app.editor.versions import Archive, NoArchive
 from app.offsets.offset_effect import Effect
 from app.path.path_picture import Picture, sketched
 from core.executor.job import Job
@@ -72,7 +72,7 @@ def desk_on(
         time_of_day=lambda: "09:41:07",
     )
     desk.attach(Effect(drawer(lathe)))
-    desk.attach(Editor(Bench(work, archive, folders[0] if folders else Path("/dev/null"), SAMPLES)))
+    desk.attach(Editor(work, archive, folders[0] if folders else Path("/dev/null"), SAMPLES))
     furnish(desk, lathe, keep or NoPersistence(), work, folders[0] if folders else None)
     built.append(desk)
     machine.hear = desk.hear

@@ -10,7 +10,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.editor import messages
+from app.editor import editor_messages as messages
 from app.editor.editor_view import EditorPage
 from app.mdi.mdi_model import MdiModel
 from app.screen import page_table

@@ -14,8 +14,8 @@ from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
 from app.programs.folder_chooser import Stick, sticks
-from app.programs.program_list import FilesDesk
-from app.programs.programs_view import FilesPage
+from app.programs.program_list import ProgramList
+from app.programs.programs_view import ProgramsPage
 from app.screen import page_table
 from app.screen.look import Look
 from app.screen.main_window import MainWindow
@@ -37,9 +37,9 @@ class Shop(Hands):
     journal: Journal | None = None
 
     @property
-    def list(self) -> FilesPage:
+    def list(self) -> ProgramsPage:
         page = self.frame.page
-        assert isinstance(page, FilesPage)
+        assert isinstance(page, ProgramsPage)
         return page
 
     def open_list(self) -> None:
@@ -73,7 +73,7 @@ def shop(
     shutil.copy(SAMPLES / "bushing.nc", own / "beta.nc")
     journal = Journal.at_home()
     desk = desk_on(machine, own, SAMPLES, keep=journal)
-    desk.attached(FilesDesk).traffic.chooser.plugged = lambda: (Stick("STICK", stick, 1_000_000),)
+    desk.attached(ProgramList).traffic.chooser.plugged = lambda: (Stick("STICK", stick, 1_000_000),)
     window = MainWindow(Look(DARK))
     window.resize(1024, 600)
     with qtbot.waitExposed(window):

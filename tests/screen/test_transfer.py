@@ -14,10 +14,10 @@ from app.compose.journal import Journal
 from app.screen.look import Look
 from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
-from app.special.special_functions import SpecialDesk
+from app.special.special_functions import SpecialFunctions
 from app.special.special_view import SpecialPage
 from app.transfer.serial_line import Received
-from app.transfer.serial_transfer import TransferSection
+from app.transfer.serial_transfer import SerialTransfer
 from core.executor.commands import FeedHold
 from core.executor.snapshot import State
 from core.machine.hardware_model import DncModel
@@ -103,10 +103,10 @@ def hands(
 ) -> Iterator[Hands]:
     """A desk whose machine has a line for programs."""
     desk = desk_on(machine, keep=journal)
-    section = TransferSection(desk, journal, lines, DEFAULT, tmp_path / "own")
-    *others, last = desk.attached(SpecialDesk).sections
+    section = SerialTransfer(desk, journal, lines, DEFAULT, tmp_path / "own")
+    *others, last = desk.attached(SpecialFunctions).sections
     last.close()
-    desk.attached(SpecialDesk).sections = [*others, section]
+    desk.attached(SpecialFunctions).sections = [*others, section]
     window = MainWindow(Look(DARK))
     window.resize(1024, 600)
     with qtbot.waitExposed(window):

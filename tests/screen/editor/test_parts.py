@@ -13,8 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
 from app.compose.screen_desk import desk_and_executor, step_clock
-from app.editor.editor import Editor, Stage
-from app.editor.entering import enter
+from app.editor.editor import Editor, Stage, enter
 from app.editor.heading_view import editor_places
 from app.editor.text_view import TextField
 from app.editor.versions_view import local_time

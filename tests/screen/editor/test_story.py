@@ -9,9 +9,9 @@ import pytest
 from PySide6.QtCore import Qt
 
 from app.desk.program_loading import Phase
-from app.editor import messages
+from app.editor import editor_messages as messages
 from app.editor.editor import Stage
-from app.programs.program_list import FilesDesk
+from app.programs.program_list import ProgramList
 from app.screen import page_table
 from core.executor.commands import CycleStart, FeedHold, LoadJob
 from core.executor.snapshot import State
@@ -292,7 +292,7 @@ def test_who_only_looks_at_a_program_changes_nothing_on_the_desk(writer: Writer,
     on_desk, posted, model = (
         writer.desk.session.now,
         len(writer.machine.posted),
-        writer.desk.attached(FilesDesk),
+        writer.desk.attached(ProgramList),
     )
     assert model is not None
     for leaves in (Key.Key_F1, Key.Key_F3, Key.Key_Escape):
@@ -336,7 +336,7 @@ def test_with_no_program_marked_f3_of_the_list_edits_nothing(writer: Writer, tmp
     assert writer.desk.choose("mine")
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
     writer.frame.go(page_table.PROGRAMS)
-    model = writer.desk.attached(FilesDesk)
+    model = writer.desk.attached(ProgramList)
     assert model is not None
     writer.sees(lambda: bool(model.shown))
     writer.type("NOSUCHNAME")

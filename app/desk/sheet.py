@@ -1,0 +1,70 @@
+"""What the lists of the desk are made of: a table with a question under it, a typed line, and keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from app.desk.arithmetic import CHARACTERS, LONGEST
+from app.desk.machine_status import Tone
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One line of a table. ``lit`` draws its lamp, filled or hollow; None: it has none."""
+
+    cells: tuple[str, ...]
+    lit: bool | None = None
+    tone: Tone = Tone.READY
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """A table with a head line; ``shares`` divide its width, ``marked`` is the row keys act on, -1: none.
+
+    ``question`` and ``text`` are the entry below it; cells of the columns ``raw`` are names and texts of
+    others, which nobody translates.
+    """
+
+    title: str
+    heads: tuple[str, ...]
+    shares: tuple[float, ...]
+    rows: tuple[Row, ...]
+    marked: int = -1
+    question: str = ""
+    text: str = ""
+    notes: tuple[str, ...] = ()
+    raw: frozenset[int] = frozenset()
+    figures: frozenset[int] = frozenset()  # columns that stand at the right, as figures do
+
+
+class Key(NamedTuple):
+    """A function key of a section: its label of up to eight characters, and what it does."""
+
+    label: str
+    action: Callable[[], None]
+
+
+@dataclass(slots=True)
+class Entry:
+    """``words``: any letter is taken; else figures and signs only."""
+
+    words: bool = False
+    text: str = ""
+
+    def takes(self, key: str) -> bool:
+        """Whether a character belongs to it."""
+        return len(key) == 1 and (self.words or key in CHARACTERS)
+
+    def type(self, key: str) -> bool:
+        """A key; False when it means nothing here. Return is the caller's."""
+        if self.takes(key):
+            self.text = (self.text + key)[:LONGEST]
+        elif key == "Back":
+            self.text = self.text[:-1]
+        elif key == "Delete":
+            self.text = ""
+        else:
+            return False
+        return True
