@@ -110,8 +110,8 @@ def report_json(file: str, report: Report, *, optional_stop: bool = False) -> Js
             "feed_ipm": [per_minute(speed) for speed in reach.feed],
         },
         "ways": {
-            "proved": report.ways.gone,
-            "left": report.ways.left,
+            "proved": report.ways.proved,
+            "left": report.ways.unproved,
             "cycle_time_s": [seconds(t) for t in report.ways.cycle],
         },
         "stock": None,

@@ -76,11 +76,11 @@ def _reached(report: Report, length: Callable[[float], float], unit: str) -> str
 def _ways(report: Report) -> str:
     """What else the program may do: by its inputs, and by block delete."""
     ways = report.ways
-    if ways.gone + ways.left <= 1:
+    if ways.proved + ways.unproved <= 1:
         return ""
-    left = f", {ways.left} not" if ways.left else ""
+    left = f", {ways.unproved} not" if ways.unproved else ""
     low, high = ways.cycle
-    return f"  {ways.gone} ways proved{left}: cycle {low:.2f} … {high:.2f} s by inputs and block delete\n"
+    return f"  {ways.proved} ways proved{left}: cycle {low:.2f} … {high:.2f} s by inputs and block delete\n"
 
 
 def _sheet(path: Path, report: Report) -> str:

@@ -42,8 +42,8 @@ def with_the_other(report: Report, other: Report, *, deleted: bool) -> Report:
         missing_tools=tuple(sorted({*report.missing_tools, *other.missing_tools})),
         needs=first_needs((*report.needs, *other.needs)),
         ways=Ways(
-            report.ways.gone + other.ways.gone,
-            report.ways.left + other.ways.left,
+            report.ways.proved + other.ways.proved,
+            report.ways.unproved + other.ways.unproved,
             (min(low, other_low), max(high, other_high)),
         ),
     )

@@ -2,7 +2,7 @@
 
 The first way is that of the inputs as they are given. At each conditional call a copy of the pass waits to be
 sent the other way; it ends where it comes to a line in a state in which another way has been there before,
-because all that follows has been gone through then. What is not gone through is told by name.
+because all that follows has been gone through then. What is not gone through is named.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Branch:
     ends: array[float] = field(default_factory=lambda: array("d"))
     forks: list[Fork] = field(default_factory=list)
     merged: tuple[Branch, int] | None = None  # the other way, and the blocks made there before
-    gone: bool = False
+    proved: bool = False
     failed: bool = False
 
     def at(self, blocks: int) -> float:
@@ -101,7 +101,7 @@ def _next(node: _Node) -> list[tuple[_Node, float]]:
     if at < len(branch.forks):
         here, other = branch.forks[at].t, branch.forks[at].other
         follows: list[tuple[_Node, float]] = [((branch, at + 1), _time((branch, at + 1)) - here)]
-        if other.gone and not other.failed:
+        if other.proved and not other.failed:
             follows.append(((other, 0), _time((other, 0)) - other.start))
         return follows
     if branch.merged is None:
@@ -182,12 +182,12 @@ class Choice:
 
 @dataclass(slots=True)
 class _BranchPass:
-    """A way that is gone, or waits to be."""
+    """One way through the program that is proved, or waits to be."""
 
     branch: Branch
     source: Branching | None
     choices: tuple[Choice, ...] = ()
-    standing: RestState | None = None  # None: nothing comes there, because the way before it has errors
+    rest_state: RestState | None = None  # None: nothing comes there, because the way before it has errors
     checks: CuttingChecks | None = None
     asked: list[_BranchPass | None] = field(default_factory=list)  # in the order of its questions
     answered: int = 0
@@ -201,19 +201,19 @@ def _with(choices: Sequence[Choice], message: str) -> str:
 
 
 class Branches:
-    """Goes all ways of one program; the first of them in ``gone``, the others in ``proved``."""
+    """Proves all ways of one program: the first of them in ``spans``, the others in ``report_of_all``."""
 
     def __init__(self, reading: ReadProgram, setup: Setup, machine: Machine, *, ideal: bool) -> None:
         self._reading, self._setup, self._machine, self._ideal = reading, setup, machine, ideal
         self.root = reading.branching(setup, self)
-        self._now = _BranchPass(Branch(), self.root)
+        self._current = _BranchPass(Branch(), self.root)
         self._known: dict[Hashable, tuple[Branch, int]] = {}
         self._waiting: list[tuple[tuple[int, ...], _BranchPass]] = []
         self._seen: Counter[tuple[int, bool]] = Counter()  # how often the other way of a line was kept
         self._covered: set[tuple[int, bool]] = set()  # lines, and the states of their inputs that were proved
         self._turn = count()
-        self._left = 0
-        self._gone = 1
+        self._unproved = 0
+        self._proved = 1
         self._found: list[Diagnostic] = []
         self._reported: set[tuple[int, str]] = set()
         self._tools: set[int] = set()
@@ -226,11 +226,11 @@ class Branches:
         """Whether another way has been in this state."""
         key = branch.key
         found = self._known.get(key)
-        if found is not None and found[0] is not self._now.branch:
-            self._now.branch.merged = found
+        if found is not None and found[0] is not self._current.branch:
+            self._current.branch.merged = found
             return True
         if len(self._known) < _MOST_STATES:
-            self._known[key] = self._now.branch, branch.count
+            self._known[key] = self._current.branch, branch.count
         return False
 
     def asked(self, branch: Branching, made: Statement, takes: bool) -> None:
@@ -241,25 +241,27 @@ class Branches:
             return
         seen = self._seen[made.line, not on]
         if len(self._waiting) >= _MOST_WAITING and seen:
-            self._left += 1
-            self._now.asked.append(None)
+            self._unproved += 1
+            self._current.asked.append(None)
             return
         self._seen[made.line, not on] += 1
         choice = Choice(made.line, terminal(made), not on)
         other = branch.other(made, takes)
-        going = _BranchPass(Branch(first=branch.count), other, (*self._now.choices, choice), asked=[None])
-        self._now.asked.append(going)
-        rank = (int(other.unlikely), seen, len(going.choices), next(self._turn))
-        heapq.heappush(self._waiting, (rank, going))
+        branch_pass = _BranchPass(
+            Branch(first=branch.count), other, (*self._current.choices, choice), asked=[None]
+        )
+        self._current.asked.append(branch_pass)
+        rank = (int(other.unlikely), seen, len(branch_pass.choices), next(self._turn))
+        heapq.heappush(self._waiting, (rank, branch_pass))
 
     # what proving asks
 
-    def gone(self, one: ProofPass, timeline: Timeline) -> Iterator[MotionSpan | RestSpan]:
-        """The spans of a way, which is gone while they are taken."""
+    def spans(self, proof_pass: ProofPass, timeline: Timeline) -> Iterator[MotionSpan | RestSpan]:
+        """The spans of the present way, which is gone through while they are taken."""
         if self.root is None:
             yield from timeline.spans()
             return
-        now = self._now
+        now = self._current
         for span in timeline.spans():
             yield span
             if isinstance(span, MotionSpan):
@@ -269,34 +271,34 @@ class Branches:
             elif span.block is not None:
                 now.branch.ends.append(span.t1)
                 if isinstance(span.block.action, AskInput):
-                    self._stands(now, one, timeline)
+                    self._stands(now, proof_pass, timeline)
         now.branch.duration = timeline.t
-        if now.branch.merged is not None and one.last is one.last_move:
+        if now.branch.merged is not None and proof_pass.last is proof_pass.last_move:
             now.branch.duration -= 0.0 if self._ideal else SETTLING  # the motion would have gone on
         now.branch.failed = timeline.errors
 
-    def _stands(self, now: _BranchPass, one: ProofPass, timeline: Timeline) -> None:
+    def _stands(self, now: _BranchPass, proof_pass: ProofPass, timeline: Timeline) -> None:
         """The way has come to its next question: from here the copy goes on."""
-        going = now.asked[now.answered] if now.answered < len(now.asked) else None
+        branch_pass = now.asked[now.answered] if now.answered < len(now.asked) else None
         now.answered += 1
-        if going is not None:
-            going.standing, going.checks = timeline.standing, one.checks.twin()
-            going.branch.start = timeline.t
-            now.branch.forks.append(Fork(going.branch.first, timeline.t, going.branch))
+        if branch_pass is not None:
+            branch_pass.rest_state, branch_pass.checks = timeline.rest_state, proof_pass.checks.twin()
+            branch_pass.branch.start = timeline.t
+            now.branch.forks.append(Fork(branch_pass.branch.first, timeline.t, branch_pass.branch))
 
-    def proved(self, report: Report, progress: Callable[[float], None] | None) -> Report:
+    def report_of_all(self, report: Report, progress: Callable[[float], None] | None) -> Report:
         """The report of the first way, with what was found in all the others."""
         found = [*report.diagnostics, *uncalled(self._reading)]
         if self.root is None:
             return replace(report, diagnostics=in_order(found), ways=Ways(cycle=(report.times.cycle,) * 2))
         self._reported = {(each.line, each.code) for each in report.diagnostics}
-        first = self._now.branch
+        first = self._current.branch
         needs = report.needs
         most, self._work = max(MOST_WORK, 3 * self._work), 0
-        while self._waiting and self._gone < MOST_WAYS and self._work < most:
-            _, going = heapq.heappop(self._waiting)
-            if going.standing is not None:
-                other = self._go(going, most, progress)
+        while self._waiting and self._proved < MOST_WAYS and self._work < most:
+            _, branch_pass = heapq.heappop(self._waiting)
+            if branch_pass.rest_state is not None:
+                other = self._prove(branch_pass, most, progress)
                 needs = first_needs((*needs, *other.needs))
         found += [*self._found[:MAX_FINDINGS], *self._unreached()]
         return replace(
@@ -305,51 +307,53 @@ class Branches:
             tools=tuple(sorted(self._tools.union(report.tools))),
             missing_tools=tuple(sorted(self._missing.union(report.missing_tools))),
             needs=needs,
-            ways=Ways(self._gone, self._left + len(self._waiting), cycle_range(first)),
+            ways=Ways(self._proved, self._unproved + len(self._waiting), cycle_range(first)),
         )
 
-    def _go(self, going: _BranchPass, most: int, progress: Callable[[float], None] | None) -> Report:
-        assert going.source is not None
-        assert going.standing is not None
-        assert going.checks is not None
-        self._now, self._gone = going, self._gone + 1
-        self._covered.add((going.choices[-1].line, going.choices[-1].on))
-        timeline = Timeline(going.source, self._setup, self._machine, ideal=self._ideal)
-        timeline.go_on(going.standing)
-        one = ProofPass(self._machine, going.checks)
-        for span in self.gone(one, timeline):
-            one.add(span)
-            if progress is not None and one.last is not None:
-                progress(one.last.n)
+    def _prove(self, branch_pass: _BranchPass, most: int, progress: Callable[[float], None] | None) -> Report:
+        assert branch_pass.source is not None
+        assert branch_pass.rest_state is not None
+        assert branch_pass.checks is not None
+        self._current, self._proved = branch_pass, self._proved + 1
+        self._covered.add((branch_pass.choices[-1].line, branch_pass.choices[-1].on))
+        timeline = Timeline(branch_pass.source, self._setup, self._machine, ideal=self._ideal)
+        timeline.go_on(branch_pass.rest_state)
+        proof_pass = ProofPass(self._machine, branch_pass.checks)
+        for span in self.spans(proof_pass, timeline):
+            proof_pass.add(span)
+            if progress is not None and proof_pass.last is not None:
+                progress(proof_pass.last.n)
             if self._work > most:
-                self._left += 1
-                going.branch.failed = True  # its time is not known
+                self._unproved += 1
+                branch_pass.branch.failed = True  # its time is not known
                 break
-        going.branch.gone = True
-        report = one.report(timeline, self._reading.source)
+        branch_pass.branch.proved = True
+        report = proof_pass.report(timeline, self._reading.source)
         self._tools.update(report.tools)
         self._missing.update(report.missing_tools)
-        self._report(going, report)
-        going.source = None
+        self._report(branch_pass, report)
+        branch_pass.source = None
         return report
 
-    def _report(self, going: _BranchPass, report: Report) -> None:
-        unlikely = going.source is not None and going.source.unlikely
+    def _report(self, branch_pass: _BranchPass, report: Report) -> None:
+        unlikely = branch_pass.source is not None and branch_pass.source.unlikely
         for each in report.diagnostics:
             if each.severity is Severity.NOTE or (each.line, each.code) in self._reported:
                 continue
             self._reported.add((each.line, each.code))
             weight = Severity.WARNING if unlikely else each.severity
-            self._found.append(replace(each, severity=weight, message=_with(going.choices, each.message)))
+            self._found.append(
+                replace(each, severity=weight, message=_with(branch_pass.choices, each.message))
+            )
 
     def _unreached(self) -> Iterator[Diagnostic]:
         """What was not gone through, by name."""
-        left = self._left + len(self._waiting)
+        left = self._unproved + len(self._waiting)
         if not left:
             return
-        last = [going.choices[-1] for _, going in self._waiting]
+        last = [branch_pass.choices[-1] for _, branch_pass in self._waiting]
         never = {choice.words for choice in last if (choice.line, choice.on) not in self._covered}
-        text = f"{left} ways through the program by its inputs were not proved; {self._gone} were."
+        text = f"{left} ways through the program by its inputs were not proved; {self._proved} were."
         if never:
             text = f"{text} Never proved: {', '.join(sorted(never)[:5])}."
         hint = (

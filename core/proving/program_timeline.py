@@ -169,14 +169,18 @@ class Timeline:
         return cls(reading.begin(setup), setup, machine, ideal=ideal)
 
     @property
-    def standing(self) -> RestState:
+    def rest_state(self) -> RestState:
         """What a way that leaves this one here goes on with."""
         return RestState(self.t, copy(self.spindle), self._speed_wanted, copy(self._ends))
 
-    def go_on(self, standing: RestState) -> None:
+    def go_on(self, rest_state: RestState) -> None:
         """Begin where another timeline has stood at rest, not at the start of the program."""
-        self.t, self.spindle, self._speed_wanted = standing.t, copy(standing.spindle), standing.speed_wanted
-        self._ends = copy(standing.ends)
+        self.t, self.spindle, self._speed_wanted = (
+            rest_state.t,
+            copy(rest_state.spindle),
+            rest_state.speed_wanted,
+        )
+        self._ends = copy(rest_state.ends)
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:

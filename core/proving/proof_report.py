@@ -53,11 +53,11 @@ class MillFigures:
 class Ways:
     """The ways through a program, by its inputs and with block delete on and off.
 
-    ``cycle`` is the least and the greatest cycle time of them, s; ``left`` counts those not gone through.
+    ``cycle`` is the least and the greatest cycle time of them, s; ``unproved`` counts those not gone through.
     """
 
-    gone: int = 1
-    left: int = 0
+    proved: int = 1
+    unproved: int = 0
     cycle: Range = (0.0, 0.0)
 
 

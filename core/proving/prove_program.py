@@ -55,10 +55,10 @@ def _proved(
     timeline = Timeline(branches.root or reading.begin(setup), setup, machine, ideal=ideal)
     single = setup.begin is not None and setup.begin.single
     checks = CuttingChecks(machine, reading.source.dialect, single, placed=setup.begin is not None)
-    one = ProofPass(machine, checks)
-    for span in branches.gone(one, timeline):
-        one.add(span)
-        if progress is not None and one.last is not None:
-            progress(one.last.n)
-    report = one.report(timeline, reading.source)
-    return branches.proved(report, progress)
+    proof_pass = ProofPass(machine, checks)
+    for span in branches.spans(proof_pass, timeline):
+        proof_pass.add(span)
+        if progress is not None and proof_pass.last is not None:
+            progress(proof_pass.last.n)
+    report = proof_pass.report(timeline, reading.source)
+    return branches.report_of_all(report, progress)
