@@ -50,7 +50,7 @@ def pieces_of(block: Block, turning: Turning, fastest: float = math.inf) -> Iter
     """
     if block.travel is not None or block.plane is not None or block.c != block.c0:
         raise AlarmError("program", "this controller moves X and Z only", block.line)
-    seconds = max(nominal_seconds(block), _way(block) / fastest)
+    seconds = max(nominal_seconds(block), block.length / fastest)
     if block.kind is Kind.THREAD:
         start = block.x0 + block.offset_x, block.z0 + block.offset_z
         yield BlockPart(ThreadOp(*start, block.mx, block.mz, block.feed), block, seconds)
@@ -65,13 +65,7 @@ def _cuts(block: Block, seconds: float) -> int:
     whole turn from none.
     """
     least = math.ceil(abs(_sweep(block)[1]) / _WIDEST) if block.kind is Kind.ARC else 1
-    return max(least, min(math.ceil(seconds / LONGEST - 1e-9), math.ceil(_way(block) / _SHORTEST_PART)))
-
-
-def _way(block: Block) -> float:
-    if block.kind is Kind.ARC:
-        return math.hypot(block.x0 - block.cx, block.z0 - block.cz) * abs(_sweep(block)[1])
-    return math.hypot(block.x - block.x0, block.z - block.z0)
+    return max(least, min(math.ceil(seconds / LONGEST - 1e-9), math.ceil(block.length / _SHORTEST_PART)))
 
 
 def _op(block: Block, begin: float, end: float, turning: Turning) -> BlockOp:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from core.executor.raised_alarm import AlarmError
-from core.geometry.lines_and_arcs import arc_length
 from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.path_sections import SectionEnds
@@ -118,20 +116,10 @@ class ReadAhead:
 
 def nominal_seconds(block: Block) -> float:
     """Seconds the block takes at its programmed speed: never more than it will take."""
-    if block.travel is not None:
-        way = block.travel.length
-    elif block.kind is Kind.ARC:
-        ends = (block.x0, block.z0), (block.x, block.z)
-        way = arc_length(*ends, (block.cx, block.cz), clockwise=block.clockwise)
-    elif block.plane is not None:
-        way = block.plane.length
-    else:
-        way = math.hypot(block.x - block.x0, block.z - block.z0)
-    way = way or abs(block.c - block.c0)
     speed = (
         block.feed * abs(block.rpm) / 60.0 if block.per_rev and block.kind is not Kind.RAPID else block.feed
     )
-    return way / speed if speed > 0.0 else 0.0
+    return block.length / speed if speed > 0.0 else 0.0
 
 
 # --- checked again before it moves ----------------------------------------------------------------------

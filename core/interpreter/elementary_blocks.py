@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from math import hypot
 from typing import NamedTuple, overload
 
 import numpy as np
 import numpy.typing as npt
 
-from core.geometry.lines_and_arcs import arc_extent
+from core.geometry.lines_and_arcs import arc_extent, arc_length
 from core.geometry.machine_travel import Travel
 from core.geometry.virtual_mill import PlaneMove
 from core.interpreter.actions import Action
@@ -116,6 +117,17 @@ class Block:
         low_x, high_x, low_z, high_z = self.reach()
         x, z, c = self.offset_x, self.offset_z, self.mc
         return (low_x + x, high_x + x), (low_z + z, high_z + z), (c, c)
+
+    @property
+    def length(self) -> float:
+        """Length of the path that the feed counts, mm; degrees where only C or rotary axes turn."""
+        if self.travel is not None:
+            return self.travel.length
+        if self.kind is Kind.ARC:
+            ends = (self.x0, self.z0), (self.x, self.z)
+            return arc_length(*ends, (self.cx, self.cz), clockwise=self.clockwise)
+        way = hypot(self.x - self.x0, self.z - self.z0) if self.plane is None else self.plane.length
+        return way or abs(self.c - self.c0)
 
     @property
     def rapid(self) -> bool:

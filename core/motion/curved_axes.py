@@ -22,6 +22,7 @@ from core.motion.axis_limits import (
 )
 from core.motion.block_table import BlockTable
 from core.motion.path_pieces import SAME_POINT, Pieces, joined
+from core.motion.speed_limits import least_ratio
 
 CHORD_ERROR = 1e-4  # mm by which a chord may leave the mill's way, seen from the part
 STEP_SHARE = 0.5  # of what a corner may ask of an axis: the joints of chords then cost no speed
@@ -91,8 +92,8 @@ def _jerks(move: CurvedMove, share: FloatArray, speed: float, limits: MotionLimi
     direction = np.diff(move.machine(share), axis=0) / length[:, None]
     turn = np.abs(np.diff(direction, axis=0))
     mean = 0.5 * (length[:-1] + length[1:])
-    fastest = np.minimum(speed, _least(limits.speeds, np.abs(direction)))
-    bend = _least(limits.accelerations * CENTRIPETAL_SHARE, turn / mean[:, None])
+    fastest = np.minimum(speed, least_ratio(limits.speeds, np.abs(direction)))
+    bend = least_ratio(limits.accelerations * CENTRIPETAL_SHARE, turn / mean[:, None])
     v = np.minimum(np.minimum(fastest[:-1], fastest[1:]), np.sqrt(bend))
     sharp = (v[:, None] * turn > STEP_SHARE * limits.accelerations * limits.interval).any(axis=1)
     long = mean > v * limits.interval  # shorter ones are a corner of the way itself
@@ -100,13 +101,6 @@ def _jerks(move: CurvedMove, share: FloatArray, speed: float, limits: MotionLimi
     wide[:-1] |= sharp & long
     wide[1:] |= sharp & long
     return wide
-
-
-def _least(limit: FloatArray, share: FloatArray) -> FloatArray:
-    least: FloatArray = np.divide(limit, share, out=np.full(share.shape, np.inf), where=share > 0.0).min(
-        axis=1
-    )
-    return least
 
 
 def _chain(piece: Pieces, points: FloatArray, length: FloatArray) -> Pieces:

@@ -107,7 +107,7 @@ def piece_limits(
 
 def speed_caps(pieces: Pieces, limits: MotionLimits) -> FloatArray:
     """Speed (n,) that axes and centripetal acceleration allow on each piece, mm/s."""
-    caps = _least_ratio(limits.speeds, pieces.direction)
+    caps = least_ratio(limits.speeds, np.abs(pieces.direction))
     arc = pieces.curvature != 0.0
     centripetal = np.sqrt(CENTRIPETAL_SHARE * limits.plane_acceleration * pieces.radius[arc])
     caps[arc] = np.minimum(caps[arc], np.minimum(limits.plane_speed, centripetal))
@@ -121,23 +121,17 @@ def expected_speeds(pieces: Pieces, caps: FloatArray) -> FloatArray:
 
 def accelerations(pieces: Pieces, speeds: FloatArray, limits: MotionLimits) -> FloatArray:
     """Acceleration (n,) along each piece, mm/s²; on arcs what the vector sum leaves at ``speeds``."""
-    along = _least_ratio(limits.accelerations, pieces.direction)
+    along = least_ratio(limits.accelerations, np.abs(pieces.direction))
     arc = pieces.curvature != 0.0
     centripetal = speeds[arc] ** 2 * np.abs(pieces.curvature[arc])
     along[arc] = np.minimum(along[arc], np.sqrt(limits.plane_acceleration**2 - centripetal**2))
     return along
 
 
-def _least_ratio(limit: FloatArray, direction: FloatArray) -> FloatArray:
-    """Smallest of limit / |direction| over the axes; endless for an axis that does not move."""
-    share = np.abs(direction)
+def least_ratio(limit: FloatArray, share: FloatArray) -> FloatArray:
+    """Smallest (n,) of limit / share over the axes; endless for an axis whose ``share`` (n, axes) is 0."""
     ratios = np.divide(limit, share, out=np.full(share.shape, np.inf), where=share > 0.0)
-    return _least(ratios)
-
-
-def _least(table: FloatArray) -> FloatArray:
-    """Least (n,) of each row; three long columns are compared faster than a million short rows."""
-    return reduce(np.minimum, table.T)
+    return reduce(np.minimum, ratios.T)  # three long columns are compared faster than a million short rows
 
 
 def corner_turns(pieces: Pieces) -> FloatArray:
@@ -156,9 +150,8 @@ def step_caps(turns: FloatArray, along: FloatArray, limits: MotionLimits) -> Flo
     (v + along·interval/2)·|Δu| ≤ amax·interval. A full reversal is a stop. Setpoints half an interval
     off the corner show an eighth more at most. Endless where nothing turns.
     """
-    sharp = np.full(turns.shape, np.inf)
-    np.divide(limits.accelerations * limits.interval, turns, out=sharp, where=turns > 0.0)
-    caps: FloatArray = np.maximum(_least(sharp) - 0.5 * limits.interval * along, 0.0) ** 2
+    sharp = least_ratio(limits.accelerations * limits.interval, turns)
+    caps: FloatArray = np.maximum(sharp - 0.5 * limits.interval * along, 0.0) ** 2
     return caps
 
 
@@ -172,9 +165,7 @@ def curve_caps(pieces: Pieces, turns: FloatArray, limits: MotionLimits) -> Float
     mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
     shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
     share = limits.accelerations * np.minimum(CENTRIPETAL_SHARE * mean, shorter)[:, None]
-    curved = np.full(turns.shape, np.inf)
-    np.divide(share, turns, out=curved, where=turns > 0.0)
-    return _least(curved)
+    return least_ratio(share, turns)
 
 
 def _asked(
@@ -228,7 +219,5 @@ def spare_for_chords(
     if more:
         taken[-1] = CENTRIPETAL_SHARE * amax
     left = amax - np.minimum(taken[short], CENTRIPETAL_SHARE * amax)
-    share = np.abs(pieces.direction[short])
-    ratio = np.divide(left, share, out=np.full(share.shape, np.inf), where=share > 0.0)
-    spare[short] = _least(ratio)
+    spare[short] = least_ratio(left, np.abs(pieces.direction[short]))
     return spare

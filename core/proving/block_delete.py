@@ -6,9 +6,9 @@ import re
 from dataclasses import replace
 
 from core.interpreter.machine_requirements import first_needs
-from core.language.diagnostics import Diagnostic, Severity
+from core.language.diagnostics import Severity
 from core.language.source import Dialect, Source
-from core.proving.proof_report import Report, Ways
+from core.proving.proof_report import Report, Ways, in_order
 
 # / is first on a line; SINUMERIK and Klartext let the number of the block stand before it.
 _DELETED = {
@@ -47,8 +47,3 @@ def with_the_other(report: Report, other: Report, *, deleted: bool) -> Report:
             (min(low, other_low), max(high, other_high)),
         ),
     )
-
-
-def in_order(found: list[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Findings in the order of lines."""
-    return tuple(sorted(found, key=lambda each: (each.line, each.column)))

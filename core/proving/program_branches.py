@@ -25,11 +25,10 @@ from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.program_size import terminal
 from core.language.diagnostics import Diagnostic, Severity
 from core.machine.machine_model import Machine
-from core.proving.block_delete import in_order
 from core.proving.cutting_checks import CuttingChecks
 from core.proving.program_timeline import MotionSpan, RestSpan, RestState, Timeline
 from core.proving.proof_pass import MAX_FINDINGS, ProofPass
-from core.proving.proof_report import Range, Report, Ways
+from core.proving.proof_report import Range, Report, Ways, in_order
 from core.proving.spindle_forecast import SETTLING
 
 # --- cycle time of all ways -----------------------------------------------------------------------------

@@ -20,6 +20,7 @@ from core.language.source import Source
 from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionError, MotionLimits
 from core.motion.window_planner import Chunk, ChunkPlanner
+from core.proving.proof_report import in_order
 from core.proving.spindle_forecast import SETTLING, THREAD_EARLY, SpindleForecast
 
 # --- blocks that are not timed yet ----------------------------------------------------------------------
@@ -185,8 +186,7 @@ class Timeline:
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """What reading and interpreting have found so far, in the order of lines."""
-        found = [*self.interpreter.diagnostics, *self._refused]
-        return tuple(sorted(found, key=lambda d: (d.line, d.column)))
+        return in_order([*self.interpreter.diagnostics, *self._refused])
 
     @property
     def errors(self) -> bool:

@@ -19,7 +19,7 @@ from core.machine.machine_model import Machine
 from core.proving.cutting_checks import CuttingChecks
 from core.proving.machine_checks import c_findings, travel_findings
 from core.proving.program_timeline import MotionSpan, Part, RestSpan, Timeline
-from core.proving.proof_report import MillFigures, Range, Reach, Report, Times
+from core.proving.proof_report import MillFigures, Range, Reach, Report, Times, in_order
 
 # --- sums -----------------------------------------------------------------------------------------------
 
@@ -235,7 +235,7 @@ class ProofPass:
             metric=bool(last and last.modal.metric),
             blocks=interpreter.source_blocks,
             elementary=self.elementary,
-            diagnostics=tuple(sorted(found, key=lambda d: (d.line, d.column))),
+            diagnostics=in_order(found),
             times=Times(self._cutting, self._rapid, self._dwell, self._wait),
             cutting_length=tally.cutting_length,
             rapid_length=tally.rapid_length,

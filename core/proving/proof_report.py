@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from core.interpreter.machine_requirements import Need
@@ -89,3 +90,8 @@ class Report:
     def errors(self) -> tuple[Diagnostic, ...]:
         """The diagnostics that refuse the run."""
         return tuple(d for d in self.diagnostics if d.severity is Severity.ERROR)
+
+
+def in_order(found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Findings in the order of lines and columns."""
+    return tuple(sorted(found, key=lambda each: (each.line, each.column)))
