@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from app.cli.progress_bar import Progress
-from app.programs.file_changes import FileError
+from app.programs.whole_file import FileError
 from app.transfer.serial_line import Carrying
 from core.ports import DriverError
 
@@ -170,8 +170,8 @@ def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> 
 
 def _store(args: argparse.Namespace, received: Received) -> int:
     from app.desk.data_folder import data_folder
-    from app.programs.file_changes import FileError
-    from app.transfer.received_program import free_name, stored
+    from app.programs.whole_file import FileError
+    from app.transfer.serial_line import free_name, stored
 
     out = Path(args.out) if args.out else None
     folder = out.parent if out else data_folder() / "programs"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from app.compose.serial_ports import open_wire, serial_ports
 from app.desk.program_loading import LoadingSteps
-from app.programs.file_changes import FileError
+from app.programs.whole_file import FileError
 from app.transfer.serial_line import Received
 from core.language.source import Source, SourceError, load_source
 from core.machine.hardware_model import DncModel

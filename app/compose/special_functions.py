@@ -13,7 +13,7 @@ from app.desk.persistence import Persistence
 from app.desk.program_loading import LoadingSteps
 from app.desk.screen_settings import SettingsBook
 from app.programs.folder_chooser import Chooser
-from app.programs.import_export import Traffic
+from app.programs.import_export import ImportExport
 from app.programs.preview import Preview
 from app.programs.program_list import ProgramList
 from app.programs.run_record import RunRecord
@@ -96,5 +96,5 @@ def _files(desk: Desk, keep: Persistence, workshop: LoadingSteps, own: Path) -> 
         return errors[0] if errors else ""
 
     worker = Latest("editing-programs")
-    traffic = Traffic(desk, own, keep, worker, check, Chooser(Path.home()))
-    return ProgramList(desk, own, keep, worker, Preview(workshop), traffic, lambda: desk.session.now)
+    transfer = ImportExport(desk, own, keep, worker, check, Chooser(Path.home()))
+    return ProgramList(desk, own, keep, worker, Preview(workshop), transfer)

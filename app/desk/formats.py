@@ -70,3 +70,11 @@ def duration(seconds: float) -> str:
     minutes, rest = divmod(whole, 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
+
+
+def file_size(size: int) -> str:
+    """Bytes, in the unit that gives one to three digits before the point."""
+    for unit, most in (("B", 1e3), ("KB", 1e6), ("MB", 1e9)):
+        if size < most:
+            return f"{size / (most / 1e3):.{0 if unit == 'B' else 1}f} {unit}"
+    return f"{size / 1e9:.1f} GB"

@@ -110,7 +110,7 @@ def save_document(document: Document, text: str, archive: Archive, replacing: bo
     """Write ``text`` into the file of ``document`` and keep it as a version.
 
     Answers why no version could be kept, empty when all went well, or ``CHANGED`` when the file is not any
-    more what was opened (nothing is written then, unless ``replacing``). Raises SavingError.
+    more what was opened (nothing is written then, unless ``replacing``). Raises FileError.
     """
     there = present(document.path)
     foreign = there is not None and not _is_opened(document, there)

@@ -1,58 +1,114 @@
-"""Copying, renaming and deleting the marked program: a name is asked for, or whether it is meant."""
+"""Copying, renaming and deleting programs: a name is asked for, or whether it is meant.
+
+The files are changed on a worker, and nothing is ever overwritten.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
 
-from app.desk import prompt_line
+from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.persistence import Persistence
-from app.desk.program_folder import ProgramFolders
-from app.desk.program_loading import Loaded
+from app.desk.program_folder import ENDINGS
+from app.desk.prompt_line import UNDER_WAY
 from app.desk.sheet import Entry
 from app.desk.translation import tr
-from app.programs import file_changes
 from app.programs.program_rows import Program
-from core.executor.snapshot import Snapshot
+from app.programs.whole_file import FileError, present, write_whole
+from core.store.program_records import check_name
+from core.store.store_errors import StoreError
 
-UNDER_WAY = prompt_line.MOVING | prompt_line.INTERRUPTED
 SAMPLE = "A SAMPLE IS LEFT AS IT IS: COPY IT FIRST (F4)"
 NONE = "NO PROGRAM IS MARKED"
 BUSY = "STILL AT IT: WAIT UNTIL IT IS DONE"
 COPY, RENAME = "NAME OF THE COPY?", "NEW NAME?"
 
 
-class FilesHost(Protocol):
-    """What the list needs of the desk."""
+def good_name(name: str, like: Path) -> str:
+    """``name`` with the ending of ``like`` where it has none. Raises FileError for what names no program."""
+    name = name.strip()
+    if not name:
+        raise FileError("NOTHING IS ENTERED; TYPE A NAME")
+    if Path(name).suffix.lower() not in ENDINGS - {""}:
+        name += like.suffix
+    try:
+        check_name(name)
+    except StoreError as error:
+        raise FileError(str(error)) from error
+    if name.startswith("."):
+        raise FileError(f"{name} WOULD BE HIDDEN; TAKE A NAME WITHOUT A POINT IN FRONT")
+    return name
 
-    notice: str
-    shelf: ProgramFolders
 
-    def say(self, text: str) -> None: ...
+def taken(folder: Path, name: str) -> str:
+    """The file of this name, in any case of letters; empty when there is none."""
+    try:
+        names = [path.name for path in folder.iterdir()]
+    except OSError:
+        return ""
+    return next((other for other in names if other.lower() == name.lower()), "")
 
-    def ask(self, question: str, yes: Callable[[], None]) -> None: ...
 
-    def clear(self) -> None: ...
+def copied(source: Path, folder: Path, name: str) -> str:
+    """A copy in the operator's folder; its name. Raises FileError."""
+    name = good_name(name, source)
+    _free(folder, name)
+    write_whole(folder / name, _read(source))
+    return name
 
-    def snapshot(self) -> Snapshot: ...
 
-    def choose(self, typed: str) -> bool: ...
+def renamed(source: Path, name: str, keep: Persistence) -> str:
+    """Another name; versions, count and record go along. Raises FileError."""
+    name = good_name(name, source)
+    if name == source.name:
+        raise FileError(f"{name} IS ITS NAME ALREADY")
+    if name.lower() != source.name.lower():
+        _free(source.parent, name)
+    try:
+        source.rename(source.with_name(name))
+        keep.renamed(source.name, name)
+    except OSError as error:
+        raise FileError(f"{source.name} CANNOT BE RENAMED: {error.strerror}") from error
+    except StoreError as error:
+        raise FileError(f"RENAMED, BUT ITS VERSIONS STAY UNDER {source.name}: {error}") from error
+    return name
 
-    def may_choose(self) -> bool: ...
+
+def deleted(path: Path, keep: Persistence) -> str:
+    """The file goes, its text stays as a version. Raises FileError, and then the file is still there."""
+    try:
+        keep.keep_text(path.name, _read(path), "deleted")
+        path.unlink()
+    except StoreError as error:
+        raise FileError(f"NOT DELETED, BECAUSE ITS TEXT CANNOT BE KEPT: {error}") from error
+    except OSError as error:
+        raise FileError(f"{path.name} CANNOT BE DELETED: {error.strerror}") from error
+    return path.name
+
+
+def _free(folder: Path, name: str) -> None:
+    if other := taken(folder, name):
+        raise FileError(f"{other} IS THERE ALREADY; TAKE ANOTHER NAME")
+
+
+def _read(path: Path) -> bytes:
+    data = present(path)
+    if data is None:
+        raise FileError(f"{path.name} IS NOT THERE ANY MORE")
+    return data
 
 
 @dataclass(slots=True)
-class Changer:
+class CopyRenameDelete:
     """``here`` is the marked program; ``changed`` is told the name to mark when the list is read again."""
 
-    desk: FilesHost
+    desk: Desk
     own: Path
     keep: Persistence
     worker: Latest
-    loaded: Callable[[], Loaded]
     here: Callable[[], Program | None]
     changed: Callable[[str], None]
     question: str = ""
@@ -78,7 +134,7 @@ class Changer:
             words = tr("{name} IS INTERRUPTED: FINISH IT, OR GIVE IT UP, FIRST")
             return words.format(name=program.name)
         state = self.desk.snapshot().state
-        if state in UNDER_WAY and self.loaded().path == program.path:
+        if state in UNDER_WAY and self.desk.session.now.path == program.path:
             return tr("{name} IS UNDER WAY: LET IT END FIRST").format(name=program.name)
         return ""
 
@@ -88,9 +144,9 @@ class Changer:
         if here is None:
             self.question = ""
         elif question == COPY:
-            self._change(lambda: file_changes.copied(here.path, self.own, name), "{name} IS THERE NOW")
+            self._change(lambda: copied(here.path, self.own, name), "{name} IS THERE NOW")
         else:
-            self._change(lambda: file_changes.renamed(here.path, name, self.keep), "ITS NAME IS {name} NOW")
+            self._change(lambda: renamed(here.path, name, self.keep), "ITS NAME IS {name} NOW")
 
     def delete(self) -> None:
         """The marked program, after asking; its text stays among the versions."""
@@ -105,9 +161,7 @@ class Changer:
         if self._fixed(program):  # it was started meanwhile
             self.desk.say(self._fixed(program))
             return
-        self._change(
-            lambda: file_changes.deleted(program.path, self.keep), "{name} IS DELETED; ITS VERSIONS ARE KEPT"
-        )
+        self._change(lambda: deleted(program.path, self.keep), "{name} IS DELETED; ITS VERSIONS ARE KEPT")
 
     def _change(self, work: Callable[[], str], words: str) -> None:
         if self.worker.busy:

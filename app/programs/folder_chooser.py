@@ -8,8 +8,10 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from app.desk import formats
 from app.desk.program_folder import ENDINGS
-from app.programs.file_changes import FileError
+from app.desk.sheet import Row, Sheet
+from app.programs.whole_file import FileError
 
 # --- USB sticks and other removable media: where the system has mounted them, and how much room they have.
 
@@ -125,3 +127,28 @@ def _inside(folder: Path) -> list[Spot]:
     folders = [Spot(path.name, path, True) for path in seen if path.is_dir()]
     files = [path for path in seen if path.suffix.lower() in ENDINGS and path.is_file()]
     return folders + [Spot(path.name, path, False, path.stat().st_size) for path in files]
+
+
+def chooser_sheet(chooser: Chooser, title: str) -> Sheet:
+    """Places, folders and programs."""
+    rows = tuple(
+        Row(
+            (
+                spot.name,
+                "FOLDER" if spot.folder else "PROGRAM",
+                formats.file_size(spot.size) if spot.size else "",
+            )
+        )
+        for spot in chooser.spots
+    )
+    where = str(chooser.at) if chooser.at else "PLACES"
+    return Sheet(
+        f"{title}  ·  {where}",
+        ("NAME", "", "FREE" if chooser.at is None else "SIZE"),
+        (0.64, 0.18, 0.18),
+        rows,
+        chooser.marked if rows else -1,
+        notes=(chooser.trouble,) if chooser.trouble else (),
+        raw=frozenset({2} if chooser.at is None else {0, 2}),
+        figures=frozenset({2}),
+    )

@@ -1,23 +1,24 @@
-"""Import and export: the chooser is open, something is asked or under way, and what came of it is told."""
+"""Import and export of programs by folder and USB stick.
+
+What is there already is replaced only when that was allowed, and its text is kept as a version first. A copy
+is told as done when it has been written, brought to the disk and read back.
+"""
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Protocol
 
+from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.persistence import Persistence
 from app.desk.sheet import Key, Sheet
 from app.desk.translation import tr
-from app.programs.file_changes import FileError, good_name, taken
-from app.programs.folder_chooser import Chooser
-from app.programs.program_rows import chooser_sheet
-from app.programs.whole_file import SavingError, present, write_whole
+from app.programs.copy_rename_delete import BUSY, good_name, taken
+from app.programs.folder_chooser import Chooser, chooser_sheet
+from app.programs.whole_file import FileError, present, settle, write_out, write_whole
 from core.language.source import SourceError, load_source
 from core.store.store_errors import StoreError
 
@@ -53,7 +54,7 @@ def brought_in(
     for name, text in texts.items():
         target = folder / (taken(folder, name) or name)
         _keep_old(target, keep, text)
-        _save(target, text)
+        write_whole(target, text)
         if trouble := check(target):
             found.append(f"{target.name}: {trouble}")
     return Moved(tuple(texts), (), tuple(found))
@@ -66,8 +67,8 @@ def taken_out(sources: Sequence[Path], folder: Path, *, replace: bool) -> Moved:
     if standing and not replace:
         return Moved(standing=standing)
     for name, text in texts.items():
-        _put(folder / (taken(folder, name) or name), text)
-    _settle(folder)
+        write_out(folder / (taken(folder, name) or name), text)
+    settle(folder)
     return Moved(tuple(texts))
 
 
@@ -105,63 +106,11 @@ def _keep_old(target: Path, keep: Persistence, text: bytes) -> None:
         old = present(target)
         if old is not None and old != text:
             keep.keep_text(target.name, old, "replaced by an import")
-    except (StoreError, SavingError) as error:
+    except (StoreError, FileError) as error:
         raise FileError(f"{target.name} IS NOT REPLACED, BECAUSE ITS TEXT CANNOT BE KEPT: {error}") from error
 
 
-def _save(target: Path, text: bytes) -> None:
-    try:
-        write_whole(target, text)
-    except SavingError as error:
-        raise FileError(str(error)) from error
-
-
-def _put(target: Path, text: bytes) -> None:
-    """The old file or the new one, whole, at every moment; also where a stick is pulled out."""
-    try:
-        handle, name = tempfile.mkstemp(prefix=".", suffix=".part", dir=target.parent)
-        beside = Path(name)
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(text)
-                file.flush()
-                os.fsync(file.fileno())
-            if beside.read_bytes() != text:
-                raise FileError(f"{target.name} DOES NOT READ BACK AS IT WAS WRITTEN: TAKE ANOTHER STICK")
-            beside.replace(target)
-        finally:
-            beside.unlink(missing_ok=True)
-    except OSError as error:
-        raise FileError(f"{target} CANNOT BE WRITTEN: {error.strerror}") from error
-
-
-def _settle(folder: Path) -> None:
-    """Until the folder itself is on the medium."""
-    try:
-        handle = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(handle)
-        finally:
-            os.close(handle)
-    except OSError as error:
-        raise FileError(f"{folder} CANNOT BE BROUGHT TO THE DISK: {error.strerror}") from error
-    os.sync()
-
-
-BUSY = "STILL AT IT: WAIT UNTIL IT IS DONE"
 PLACE_FIRST = "OPEN A PLACE FIRST: ARROWS MARK IT, RETURN OPENS IT"
-
-
-class Speaker(Protocol):
-    """Who says what came of it."""
-
-    notice: str
-
-    def say(self, text: str) -> None: ...
-
-    def ask(self, question: str, yes: Callable[[], None]) -> None: ...
-
-    def clear(self) -> None: ...
 
 
 def _nobody() -> None:
@@ -169,10 +118,10 @@ def _nobody() -> None:
 
 
 @dataclass(slots=True)
-class Traffic:
+class ImportExport:
     """``check`` proves a program that has come in; ``finished`` is told when the list is to be read again."""
 
-    desk: Speaker
+    desk: Desk
     own: Path
     keep: Persistence
     worker: Latest

@@ -2,44 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from app.desk import formats
+from app.desk.desk import Desk
 from app.desk.latest import Latest
+from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
-from app.desk.program_loading import Loaded
-from app.desk.sheet import Entry, Key, Sheet
-from app.programs.copy_rename_delete import COPY, NONE, RENAME, Changer, FilesHost
-from app.programs.import_export import Traffic
+from app.desk.sheet import Entry, Key, Row, Sheet
+from app.programs.copy_rename_delete import COPY, NONE, RENAME, CopyRenameDelete
+from app.programs.import_export import ImportExport
 from app.programs.preview import Preview
-from app.programs.program_rows import ORDERS, Program, programs, sheet_of, sorted_by
+from app.programs.program_rows import ORDERS, Program, day, local, programs, sorted_by
 from core.executor.snapshot import State
 
 
 @dataclass(slots=True)
 class ProgramList:
-    """``own`` is the operator's folder; ``loaded`` tells what is on the desk."""
+    """``own`` is the operator's folder."""
 
-    desk: FilesHost
+    desk: Desk
     own: Path
     keep: Persistence
     worker: Latest
     preview: Preview
-    traffic: Traffic
-    loaded: Callable[[], Loaded]
+    transfer: ImportExport
     order: str = "NAME"
     marked: int = 0
     find: Entry = field(default_factory=lambda: Entry(words=True))
     all: tuple[Program, ...] = ()
     shown: tuple[Program, ...] = ()
-    changer: Changer = field(init=False)
+    changer: CopyRenameDelete = field(init=False)
     _after: str = ""  # the name to mark when the list has been read again
 
     def __post_init__(self) -> None:
-        self.traffic.finished = self.look_again
-        self.changer = Changer(
-            self.desk, self.own, self.keep, self.worker, self.loaded, lambda: self.here, self._changed
+        self.transfer.finished = self.look_again
+        self.changer = CopyRenameDelete(
+            self.desk, self.own, self.keep, self.worker, lambda: self.here, self._changed
         )
 
     @property
@@ -56,7 +57,7 @@ class ProgramList:
 
     def opened(self) -> None:
         """The page comes up: read the folders and the records."""
-        self._after = self.loaded().name
+        self._after = self.desk.session.now.name
         self.look_again()
 
     def look_again(self) -> None:
@@ -89,14 +90,14 @@ class ProgramList:
 
     def sheet(self) -> Sheet:
         """The list, or the chooser of folders over it."""
-        return self.traffic.sheet() if self.traffic.open else sheet_of(self)
+        return self.transfer.sheet() if self.transfer.open else sheet_of(self)
 
     # --- keys ----------------------------------------------------------------------------------------
 
     def keys(self) -> Mapping[str, Key]:
         """Function keys of this moment."""
-        if self.traffic.open:
-            return self.traffic.keys()
+        if self.transfer.open:
+            return self.transfer.keys()
         return {
             "F2": Key("SORT", self.sort),
             "F4": Key("COPY", lambda: self.changer.ask(COPY)),
@@ -113,12 +114,12 @@ class ProgramList:
 
     def takes(self, key: str) -> bool:
         """Whether a character is text now."""
-        return not self.traffic.open and self.may_type and self.find.takes(key)
+        return not self.transfer.open and self.may_type and self.find.takes(key)
 
     def typed(self, key: str) -> bool:
         """Arrows mark, Return loads or answers, letters find."""
-        if self.traffic.open:
-            return self.traffic.typed(key)
+        if self.transfer.open:
+            return self.transfer.typed(key)
         steps = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}
         if key in steps and not self.question:
             self.choose(self.marked + steps[key])
@@ -142,8 +143,8 @@ class ProgramList:
         """One step back; False when the page may be left."""
         if self.desk.notice:
             self.desk.clear()
-        elif self.traffic.open:
-            self.traffic.escape()
+        elif self.transfer.open:
+            self.transfer.escape()
         elif self.question:
             self.changer.question = ""
         elif self.find.text:
@@ -156,7 +157,7 @@ class ProgramList:
     def leave(self) -> None:
         """The page goes: nothing stays half asked."""
         self.changer.question = self.find.text = ""
-        self.traffic.shut()
+        self.transfer.shut()
         self.preview.of(None)
         self._narrow(self.here.name if self.here else "")
 
@@ -182,12 +183,12 @@ class ProgramList:
             self.desk.say(NONE)
         else:
             self.desk.clear()
-            self.traffic.begin(tuple(p.path for p in self.shown), self.here.path if self.here else None, out)
+            self.transfer.begin(tuple(p.path for p in self.shown), self.here.path if self.here else None, out)
 
     def prompt(self) -> str:
         """What can be done now."""
-        if self.traffic.open:
-            return self.traffic.prompt()
+        if self.transfer.open:
+            return self.transfer.prompt()
         if self.question:
             return "TYPE A NAME AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS"
         if not self.may_type:
@@ -198,3 +199,56 @@ class ProgramList:
         """End the workers."""
         self.worker.close()
         self.preview.close()
+
+
+# --- how the list and the marked program are written -----------------------------------------------------
+
+Detail = tuple[str, str]
+
+
+def sheet_of(model: ProgramList) -> Sheet:
+    """The list: name, date, last run, parts, best cycle."""
+    rows = tuple(_row(program) for program in model.shown)
+    count = f"{len(model.shown)} OF {len(model.all)} PROGRAMS" if model.find.text else f"{len(rows)} PROGRAMS"
+    question, text = model.question, model.entry.text
+    if not question and model.find.text:
+        question, text = "FIND", model.find.text
+    return Sheet(
+        f"PROGRAMS  ·  {count}  ·  BY {model.order}",
+        ("NAME", "CHANGED", "LAST RUN", "PARTS", "BEST"),
+        (0.32, 0.25, 0.25, 0.09, 0.09),
+        rows,
+        model.marked if rows else -1,
+        question=question,
+        text=text,
+        raw=frozenset({0, 1, 2}),
+        figures=frozenset({3, 4}),
+    )
+
+
+def _row(program: Program) -> Row:
+    run = program.run
+    best = formats.duration(run.best) if run.best is not None else formats.NOTHING
+    cells = (program.name, day(program.changed), local(run.started), str(run.parts), best)
+    good = run.proof == "PROVED"
+    lit = None if not run.proof else good
+    return Row(cells, lit, Tone.RUN if good else Tone.ALARM)
+
+
+def details_of(program: Program) -> tuple[Detail, ...]:
+    """All that is known of the marked program."""
+    run = program.run
+    return (
+        ("SIZE", formats.file_size(program.size)),
+        ("WHERE", "SAMPLE" if program.sample else "OWN PROGRAM"),
+        ("LAST RUN", f"{local(run.started)}  ·  {run.outcome}" if run.outcome else local(run.started)),
+        ("PARTS", str(run.parts)),
+        ("BEST CYCLE", _time(run.best)),
+        ("LAST CYCLE", _time(run.latest)),
+        ("PLANNED", _time(run.planned)),
+        ("LAST PROOF", f"{run.proof}  ·  {local(run.proved)}" if run.proof else "NEVER PROVED"),
+    )
+
+
+def _time(seconds: float | None) -> str:
+    return formats.duration(seconds) if seconds is not None else formats.NOTHING

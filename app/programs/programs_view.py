@@ -14,8 +14,8 @@ from app.desk.program_loading import Loaded
 from app.editor.editor import Editor
 from app.path.path_view import PathView
 from app.programs.copy_rename_delete import NONE
-from app.programs.program_list import ProgramList
-from app.programs.program_rows import Program, details_of
+from app.programs.program_list import ProgramList, details_of
+from app.programs.program_rows import Program
 from app.screen import page_table
 from app.screen.letter_keys import LetterPad
 from app.screen.look import LEFT, Look, put
@@ -101,13 +101,13 @@ class ProgramsPage(ListPage):
 
     def labels(self) -> tuple[str, ...]:
         """Those of the list or of the chooser."""
-        own = {"F3": "" if self.model.traffic.open else "EDIT"}
+        own = {"F3": "" if self.model.transfer.open else "EDIT"}
         return self.labels_of(own, self.model.keys())
 
     def doings(self) -> Doings:
         """The keys of this moment."""
         keys = self.model.keys()
-        own = {} if self.model.traffic.open else {"F3": self._edit}
+        own = {} if self.model.transfer.open else {"F3": self._edit}
         return {**own, **{name: partial(self._do, name) for name in keys}}
 
     def _do(self, name: str) -> None:
@@ -125,8 +125,8 @@ class ProgramsPage(ListPage):
 
     def _chosen(self, row: int) -> None:
         model = self.model
-        if model.traffic.open:
-            model.traffic.touch(row)
+        if model.transfer.open:
+            model.transfer.touch(row)
         elif row == model.marked:
             self.typed("Enter")
         else:
@@ -141,7 +141,7 @@ class ProgramsPage(ListPage):
     def typed(self, key: str) -> bool:
         """Return on a program loads it and leads to Automatic; everything else is the model's."""
         model = self.model
-        if key == "Enter" and not model.traffic.open and not model.question:
+        if key == "Enter" and not model.transfer.open and not model.question:
             if model.load():
                 self.host.go(page_table.AUTOMATIC)
             return True
@@ -149,7 +149,7 @@ class ProgramsPage(ListPage):
 
     def has_field(self) -> bool:
         """The name that is looked for or asked."""
-        return not self.model.traffic.open and self.model.may_type
+        return not self.model.transfer.open and self.model.may_type
 
     def dress(self) -> None:
         """The path is drawn anew."""
@@ -162,7 +162,7 @@ class ProgramsPage(ListPage):
         self.table.show_sheet(model.sheet())
         here = model.here
         self._show_picture(model.preview.of(here))
-        self.letters.setVisible(bool(model.question or model.find.text) and not model.traffic.open)
+        self.letters.setVisible(bool(model.question or model.find.text) and not model.transfer.open)
         self.record.show_program(here, "DRAWING …" if model.preview.busy else model.preview.trouble)
 
     def _show_picture(self, picture: Picture | None) -> None:

@@ -1,63 +1,114 @@
-"""A program file is replaced whole or not at all, and only by what reads back as it was written."""
+"""A program file is there whole or not at all: written beside its place, brought to the disk, put there."""
 
 from __future__ import annotations
 
 import os
 import shutil
 import tempfile
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from core.language.source import SourceError, load_source
 
 
-class SavingError(Exception):
-    """The file is as it was; the sentence says why."""
+class FileError(Exception):
+    """It was not done, and the file is as it was; the sentence says why."""
 
 
 def write_whole(path: Path, data: bytes) -> None:
     """Put ``data`` in the place of the file, which is the old or the new one at every moment.
 
-    It is written beside it first, read back as a program, and taken over in one step, its rights kept.
-    Raises SavingError.
+    It is read back as a program first, and keeps the rights of the old one. Raises FileError.
     """
     target = path.resolve()  # what a link names is replaced, not the link
+    with ExitStack() as stack:
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            draft = stack.enter_context(_beside(target))
+        except OSError as error:
+            raise FileError(f"{target.parent} CANNOT BE WRITTEN: {error.strerror}") from error
+        try:
+            _fill(draft, data)
+            if load_source(draft).text.encode("utf-8", "replace") != data:
+                raise FileError("NOT SAVED: THE TEXT HOLDS SIGNS THAT NO PROGRAM FILE CAN KEEP")
+            if target.exists():
+                shutil.copymode(target, draft)
+            draft.replace(target)
+            _to_disk(target.parent)
+        except OSError as error:
+            raise FileError(f"{target.name} CANNOT BE WRITTEN: {error.strerror}") from error
+        except SourceError as error:
+            raise FileError(f"NOT SAVED: {error}") from error
+
+
+def write_out(target: Path, data: bytes) -> None:
+    """A copy on a medium that may be pulled out: the old file or the new one, read back. Raises FileError."""
+    try:
+        with _beside(target) as draft:
+            _fill(draft, data)
+            if draft.read_bytes() != data:
+                raise FileError(f"{target.name} DOES NOT READ BACK AS IT WAS WRITTEN: TAKE ANOTHER STICK")
+            draft.replace(target)
+    except OSError as error:
+        raise FileError(f"{target} CANNOT BE WRITTEN: {error.strerror}") from error
+
+
+def write_new(target: Path, data: bytes) -> None:
+    """A new file; nothing that is there is touched, whoever put it there meanwhile. Raises FileError."""
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        beside = Path(tempfile.mkdtemp(prefix=".saving-", dir=target.parent))
     except OSError as error:
-        raise SavingError(f"{target.parent} CANNOT BE WRITTEN: {error.strerror}") from error
+        raise FileError(f"{target.parent} CANNOT BE WRITTEN: {error.strerror}") from error
     try:
-        _through(beside / target.name, target, data)
+        with _beside(target) as draft:
+            _fill(draft, data)
+            target.hardlink_to(draft)  # fails where the name is taken
+    except FileExistsError as error:
+        raise FileError(f"{target.name} IS THERE ALREADY; TAKE ANOTHER NAME") from error
     except OSError as error:
-        raise SavingError(f"{target.name} CANNOT BE WRITTEN: {error.strerror}") from error
-    except SourceError as error:
-        raise SavingError(f"NOT SAVED: {error}") from error
-    finally:
-        shutil.rmtree(beside, ignore_errors=True)
+        raise FileError(f"{target} CANNOT BE WRITTEN: {error.strerror}") from error
+
+
+def settle(folder: Path) -> None:
+    """Until all that was written in the folder is on the medium. Raises FileError."""
+    try:
+        _to_disk(folder)
+    except OSError as error:
+        raise FileError(f"{folder} CANNOT BE BROUGHT TO THE DISK: {error.strerror}") from error
+    os.sync()
 
 
 def present(path: Path) -> bytes | None:
-    """What the file holds now; None where there is none. Raises SavingError when it cannot be read."""
+    """What the file holds now; None where there is none. Raises FileError when it cannot be read."""
     try:
         return path.read_bytes()
     except FileNotFoundError:
         return None
     except OSError as error:
-        raise SavingError(f"{path.name} CANNOT BE READ: {error.strerror}") from error
+        raise FileError(f"{path.name} CANNOT BE READ: {error.strerror}") from error
 
 
-def _through(draft: Path, target: Path, data: bytes) -> None:
-    with draft.open("wb") as file:
+@contextmanager
+def _beside(target: Path) -> Iterator[Path]:
+    """A place for a file of the same name in a hidden folder beside it, which is gone afterwards."""
+    folder = Path(tempfile.mkdtemp(prefix=".saving-", suffix=".part", dir=target.parent))
+    try:
+        yield folder / target.name
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _fill(path: Path, data: bytes) -> None:
+    with path.open("wb") as file:
         file.write(data)
         file.flush()
         os.fsync(file.fileno())
-    if load_source(draft).text.encode("utf-8", "replace") != data:
-        raise SavingError("NOT SAVED: THE TEXT HOLDS SIGNS THAT NO PROGRAM FILE CAN KEEP")
-    if target.exists():
-        shutil.copymode(target, draft)
-    draft.replace(target)
-    folder = os.open(target.parent, os.O_RDONLY)
+
+
+def _to_disk(folder: Path) -> None:
+    handle = os.open(folder, os.O_RDONLY)
     try:
-        os.fsync(folder)
+        os.fsync(handle)
     finally:
-        os.close(folder)
+        os.close(handle)

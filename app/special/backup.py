@@ -15,8 +15,8 @@ from app.desk.persistence import Persistence
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.sheet import Key, Row, Sheet
 from app.desk.translation import tr
-from app.programs.file_changes import FileError
 from app.programs.folder_chooser import Stick, sticks
+from app.programs.whole_file import FileError
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot
 

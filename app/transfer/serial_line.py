@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol, TypeVar
 
+from app.programs.copy_rename_delete import good_name, taken
+from app.programs.whole_file import FileError, write_new
 from core.machine.hardware_model import DncModel
 
 T_co = TypeVar("T_co", covariant=True)
@@ -75,3 +77,28 @@ class Lines(Protocol):
     def receive(self, settings: DncModel) -> Carrying[Received]:
         """A program in."""
         ...
+
+
+# --- a received program becomes a new file; nothing that is there is ever touched ------------------------
+
+ENDING = ".nc"
+
+
+def stored(text: bytes, folder: Path, name: str) -> Path:
+    """The new file. Raises FileError: the name is none, or is taken, or the disk does not take it."""
+    name = good_name(name, Path(f"x{ENDING}"))
+    if other := taken(folder, name):
+        raise FileError(f"{other} IS THERE ALREADY; TAKE ANOTHER NAME")
+    write_new(folder / name, text)
+    return folder / name
+
+
+def free_name(folder: Path, name: str) -> str:
+    """``name``, or the first of ``name-2``, ``name-3`` … that is not taken."""
+    base = Path(name or "RECEIVED")
+    suffix = base.suffix or ENDING
+    tried, number = f"{base.stem}{suffix}", 1
+    while taken(folder, tried):
+        number += 1
+        tried = f"{base.stem}-{number}{suffix}"
+    return tried

@@ -13,10 +13,9 @@ from app.desk.persistence import Persistence
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.sheet import Entry, Key, Row, Sheet
 from app.desk.translation import tr
-from app.programs.file_changes import FileError
+from app.programs.whole_file import FileError
 from app.special.special_functions import SpecialFunction
-from app.transfer.received_program import free_name, stored
-from app.transfer.serial_line import Carrying, Lines, Reach, Received
+from app.transfer.serial_line import Carrying, Lines, Reach, Received, free_name, stored
 from app.transfer.serial_settings import ROWS, form_of, kept_form
 from core.executor.snapshot import Snapshot
 from core.machine.hardware_model import DncModel

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.editor.document import CHANGED, MOST_LINES, TooLongError, created, opened, save_document
-from app.programs.whole_file import SavingError, write_whole
+from app.programs.whole_file import FileError, write_whole
 from core.language.source import SourceError
 from tests.editor.shop import GOOD, Memory
 
@@ -38,14 +38,14 @@ def test_a_link_stays_a_link(part: Path) -> None:
 
 @pytest.mark.parametrize("data", [b"X1\0\n", b"  \n", b"X" * 9000 + b"\n", b"X\xff\n"])
 def test_what_would_not_read_back_is_refused_and_the_file_stays(part: Path, data: bytes) -> None:
-    with pytest.raises(SavingError):
+    with pytest.raises(FileError):
         write_whole(part, data)
     assert part.read_text() == GOOD
     assert list(part.parent.iterdir()) == [part]
 
 
 def test_a_folder_that_cannot_be_is_told_in_a_sentence(part: Path) -> None:
-    with pytest.raises(SavingError, match="CANNOT BE WRITTEN"):
+    with pytest.raises(FileError, match="CANNOT BE WRITTEN"):
         write_whole(part / "below.nc", b"M30\n")
 
 
@@ -54,7 +54,7 @@ def test_a_failure_in_the_middle_leaves_the_old_file(part: Path, monkeypatch: py
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(SavingError, match="No space left"):
+    with pytest.raises(FileError, match="No space left"):
         write_whole(part, b"M30\n")
     assert part.read_text() == GOOD
     assert list(part.parent.iterdir()) == [part]

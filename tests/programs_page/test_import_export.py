@@ -9,9 +9,10 @@ import pytest
 
 from app.desk.persistence import NoPersistence
 from app.programs import import_export
-from app.programs.file_changes import FileError, deleted, good_name, renamed
+from app.programs.copy_rename_delete import deleted, good_name, renamed
 from app.programs.folder_chooser import UP, Chooser, Stick
 from app.programs.import_export import Moved, brought_in, taken_out
+from app.programs.whole_file import FileError
 from tests.programs_page.test_run_record import Kept
 
 
@@ -79,7 +80,7 @@ def test_a_copy_that_does_not_read_back_is_no_copy(tmp_path: Path, monkeypatch: 
     stick = tmp_path / "stick"
     stick.mkdir()
     real = Path.read_bytes
-    monkeypatch.setattr(Path, "read_bytes", lambda path: b"" if path.suffix == ".part" else real(path))
+    monkeypatch.setattr(Path, "read_bytes", lambda path: b"" if ".part" in str(path) else real(path))
     with pytest.raises(FileError, match="DOES NOT READ BACK"):
         taken_out(sources, stick, replace=False)
     assert list(stick.iterdir()) == []

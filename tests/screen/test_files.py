@@ -73,7 +73,7 @@ def shop(
     shutil.copy(SAMPLES / "bushing.nc", own / "beta.nc")
     journal = Journal.at_home()
     desk = desk_on(machine, own, SAMPLES, keep=journal)
-    desk.attached(ProgramList).traffic.chooser.plugged = lambda: (Stick("STICK", stick, 1_000_000),)
+    desk.attached(ProgramList).transfer.chooser.plugged = lambda: (Stick("STICK", stick, 1_000_000),)
     window = MainWindow(Look(DARK))
     window.resize(1024, 600)
     with qtbot.waitExposed(window):

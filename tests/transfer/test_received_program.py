@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from app.programs.file_changes import FileError
-from app.transfer.received_program import free_name, stored
+from app.programs.whole_file import FileError
+from app.transfer.serial_line import free_name, stored
 
 
 def test_a_new_file_with_its_ending(tmp_path: Path) -> None:
