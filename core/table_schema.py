@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from enum import Enum, StrEnum
@@ -159,6 +159,13 @@ class Values:
     def text(self, path: str) -> str:
         return str(self.found[path])
 
+    def says(self, path: str, text: str) -> bool:
+        """Whether the file rightly says this word there."""
+        return self.has(path) and self.text(path) == text
+
+    def whole(self, path: str) -> int:
+        return int(self.number(path))
+
     def pair(self, path: str) -> Pair:
         value = self.found[path]
         if not isinstance(value, tuple) or len(value) != 2:
@@ -291,3 +298,85 @@ def _expected(field: Field, inch: bool | None) -> str:
         return str(field.kind.value)
     low = f"{to_file(field.low, field.unit, inch):.6g}"
     return f"{field.kind.value}, {low}…{shown(field.high, field.unit, inch)}"
+
+
+# --- tables that drivers add ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class FileReading:
+    """A machine file of which the tables are read: what a driver may look at for its own rules and values."""
+
+    data: Mapping[str, object]
+    values: Values
+    axes: tuple[str, ...]  # of the machine
+    terminals: Mapping[str, str]  # of its inputs and outputs, by path: io.in.start → where it is wired
+    tables: tuple[str, ...]  # paths of the tables of drivers that are there
+
+    def raw(self, path: str) -> object:
+        """What stands in the file at a path, read or not; None: nothing."""
+        found: object = self.data
+        for key in path.split("."):
+            found = found.get(key) if isinstance(found, dict) else None
+        return found
+
+    def names(self, path: str) -> list[str]:
+        """The keys of a table whose names are of the owner's choice."""
+        table = self.raw(path)
+        return list(table) if isinstance(table, dict) else []
+
+
+def _nothing(_file: FileReading) -> Iterable[Finding]:
+    return ()
+
+
+@dataclass(frozen=True, slots=True)
+class DriverTable:
+    """A table of the machine file that belongs to a driver: its keys, its rules, and what it becomes.
+
+    ``children`` are tables inside it, read by ``read_children``, which returns what is wrong with them.
+    ``rules`` looks at every file, also one without this table. ``model`` is asked once nothing is wrong.
+    ``always``: a file without it has its defaults. ``port`` is the key that names a serial port.
+    """
+
+    path: str
+    fields: tuple[Field, ...]
+    model: Callable[[FileReading], object]
+    children: tuple[str, ...] = ()
+    read_children: Callable[[FileReading], Iterable[Finding]] = _nothing
+    rules: Callable[[FileReading], Iterable[Finding]] = _nothing
+    always: bool = False
+    port: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Driver:
+    """A driver in the machine file; without ``backend`` it stands beside one.
+
+    ``backend`` and ``spindle`` are its words in machine.backend and spindle.driver, ``count_rate`` the counts
+    per second that it takes on an axis. ``terminal`` makes two ways to write one terminal equal, None for
+    what is no address of this driver; ``inputs`` are the addresses that an input may have, in their order.
+    """
+
+    tables: tuple[DriverTable, ...]
+    backend: str = ""
+    spindle: str = ""
+    count_rate: float = inf
+    terminal: Callable[[FileReading, str], object] | None = None
+    inputs: Callable[[], Iterator[str]] | None = None
+
+
+def expected_table(path: str, raw: object) -> Finding:
+    """The finding about something that is no table."""
+    return Finding(path, written(raw), f"expected a table, [{path}]")
+
+
+def read_named(raw: object, fields: tuple[Field, ...], path: str, values: Values) -> list[Finding]:
+    """As ``read_table`` for every table inside one whose names are of the owner's choice."""
+    if not isinstance(raw, dict):
+        return [expected_table(path, raw)]
+    return [
+        found
+        for name, entry in raw.items()
+        for found in read_table(entry, fields, joined(path, name), values)
+    ]

@@ -13,11 +13,12 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
+from app.compose.machine_files import named_machine
 from app.compose.machine_setup import read_machine
 from core.machine.machine_changes import Change
-from core.machine.machine_file import MachineFileError, named_machine
 from core.machine.machine_model import Machine
 from core.ports import DriverError
+from core.table_schema import MachineFileError
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -196,15 +197,14 @@ def accept(file: str) -> int:
 
 def write_model(file: str) -> int:
     """Writes ``Devices.xml`` of a machine file to stdout. Raises CommandError."""
-    from app.compose.shop_floor import device_model
+    from app.compose.shop_floor import device_model, told_to_agents
 
     machine = read_machine(file)
     try:
         sys.stdout.write(device_model(machine, datetime.now(UTC)))
     except DriverError as error:
         raise CommandError(str(error)) from error
-    model = machine.hardware.mtconnect
-    if model is not None and not model.enabled:
+    if not told_to_agents(machine):
         sys.stderr.write(f"turndesk: {file}: [mtconnect] enabled = false: no agent will find the adapter\n")
     return EXIT_OK
 
@@ -237,12 +237,6 @@ def play(file: str) -> int:
 def _drives(machine: Machine, going: Callable[[], bool]) -> None:
     from app.compose.played_machine import play_peers
 
-    bus = machine.hardware.canopen
-    assert bus is not None  # a rule of the machine file
-    if bus.interface == "virtual":
-        raise DriverError(
-            "interface virtual lives within one process, which plays its drives itself; take udp_multicast"
-        )
     play_peers(machine, going, _say, _typed())
 
 

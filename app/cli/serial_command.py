@@ -18,8 +18,8 @@ from core.ports import DriverError
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
     from app.transfer.serial_line import Received
-    from core.machine.hardware_model import DncModel
     from core.machine.machine_model import Machine
+    from core.machine.serial_table import DncModel
 
 _EOL = {"crlf": "\r\n", "lf": "\n", "cr": "\r"}
 
@@ -127,7 +127,7 @@ def _settings(args: argparse.Namespace, machine: Machine) -> DncModel:
 
     from app.compose.program_transfer import PLAIN
 
-    model = machine.hardware.dnc or PLAIN
+    model = machine.hardware.table(DncModel) or PLAIN
     names = ("port", "baud", "bits", "parity", "stop", "flow", "wrap", "dc_codes", "wait", "leader")
     said = {name: value for name in names if (value := getattr(args, name, None)) is not None}
     if getattr(args, "eol", None):

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.compose.canopen_backend import own_process
 from app.compose.feeder_process import driven, has_station
 from app.compose.inverter_backend import has_inverter, with_inverter
 from app.compose.simulated_backend import simulated
 from app.desk.operator_station import StationPanel
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError, MachinePorts
+from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import RealClock
 from drivers.feeder.feeder_client import FeederHands, Line, feeder_ports
 from drivers.feeder.feeder_links import LoopLink
@@ -72,9 +72,9 @@ def real_time(machine: Machine) -> bool:
 
 def played(machine: Machine) -> bool:
     """Whether the machine is simulated, on a virtual bus or on none."""
-    bus = machine.hardware.canopen
+    can = machine.hardware.table(CanopenTable)
     return machine.backend == "sim" or (
-        machine.backend == "canopen" and bus is not None and not own_process(bus)
+        machine.backend == "canopen" and can is not None and not can.bus.own_process
     )
 
 

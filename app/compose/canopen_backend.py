@@ -6,13 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from core.machine.can_addresses import PLAIN_MODULE, can_terminal
-from core.machine.hardware_model import CanNode, CanopenModel
 from core.machine.machine_model import Axis, Machine
 from core.ports import Clock, DriverError
 from drivers.canopen.canopen_config import (
     AxisConfig,
-    BusConfig,
     CanopenConfig,
     EncoderConfig,
     ModuleConfig,
@@ -22,6 +19,7 @@ from drivers.canopen.canopen_config import (
     SpindleConfig,
     Terminal,
 )
+from drivers.canopen.canopen_table import PLAIN_MODULE, CanNode, CanopenTable, EncoderTable, can_terminal
 
 if TYPE_CHECKING:
     from drivers.canopen.canopen_machine import CanopenMachine
@@ -69,14 +67,14 @@ def lacking(error: ImportError) -> str:
 
 def canopen_config(machine: Machine) -> CanopenConfig:
     """The bus's figures from the machine file's. Raises DriverError for a machine without a bus."""
-    bus = machine.hardware.canopen
-    if bus is None:
+    can = machine.hardware.table(CanopenTable)
+    if can is None:
         raise DriverError(f"{machine.source}: there is no [canopen] table")
-    nodes = {node.name: node for node in bus.nodes}
-    modules = [node for node in bus.nodes if node.profile == 401]
+    nodes = {node.name: node for node in can.nodes}
+    modules = [node for node in can.nodes if node.profile == 401]
     first = modules[0].name if modules else ""
     return CanopenConfig(
-        bus=BusConfig(bus.interface, bus.channel, bus.bitrate, bus.host_id, bus.sync, bus.heartbeat),
+        bus=can.bus,
         axes=tuple(_axis(axis, machine, nodes) for axis in machine.axes),
         spindle=_spindle(machine, nodes),
         encoder=_encoder(machine, nodes),
@@ -95,15 +93,10 @@ def canopen_config(machine: Machine) -> CanopenConfig:
             name: PotConfig(_terminal(pot.terminal, first), pot.low, pot.high, pot.switch)
             for name, pot in machine.hardware.analog.items()
         },
-        mode=bus.mode,
+        mode=can.mode,
         commit=machine.timing.commit,
-        record=bus.record,
+        record=can.record,
     )
-
-
-def own_process(bus: CanopenModel) -> bool:
-    """Whether the bus can be owned by another process; python-can's virtual bus lives in one."""
-    return bus.interface != "virtual"
 
 
 def _axis(axis: Axis, machine: Machine, nodes: dict[str, CanNode]) -> AxisConfig:
@@ -149,7 +142,7 @@ def _spindle(machine: Machine, nodes: dict[str, CanNode]) -> SpindleConfig | Non
 
 def _encoder(machine: Machine, nodes: dict[str, CanNode]) -> EncoderConfig | None:
     """A drive's node is its own: its second input is mapped there."""
-    model = machine.hardware.encoder
+    model = machine.hardware.table(EncoderTable)
     if model is None:
         return None
     node = nodes[model.node]

@@ -9,11 +9,12 @@ import subprocess
 import sys
 from typing import TYPE_CHECKING
 
-from app.compose.canopen_backend import canopen_machine, canopen_peers, own_process
+from app.compose.canopen_backend import canopen_machine, canopen_peers
 from app.compose.inverter_backend import WithInverter, has_inverter
 from app.compose.simulated_backend import simulated
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError, MachinePorts
+from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import RealClock
 from drivers.feeder.feeder_client import Line
 from drivers.feeder.feeder_links import SocketLink
@@ -70,9 +71,9 @@ class CanDriven:
     """The machine on its bus. On a virtual bus the other end is here too: there is none elsewhere."""
 
     def __init__(self, machine: Machine, clock: Clock) -> None:
-        bus = machine.hardware.canopen
+        can = machine.hardware.table(CanopenTable)
         self._peers: Peers | None = None
-        if bus is not None and not own_process(bus):
+        if can is not None and not can.bus.own_process:
             self._peers = canopen_peers(machine, clock)
         # A clock that stands waits for nobody: the peers are looked after in between.
         idle = self._peers.pump if self._peers is not None else None

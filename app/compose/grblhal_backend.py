@@ -12,6 +12,7 @@ from core.ports import Clock, DriverError, MachinePorts
 from drivers.clocks import RealClock
 from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig, GrblInput, GrblOutput
 from drivers.grblhal.grblhal_machine import GrblMachine
+from drivers.grblhal.grblhal_table import GrblhalTable
 from drivers.grblhal.grblhal_wire import tcp_address
 from drivers.inverter.inverter_spindle import InverterSpindle
 from drivers.lookalikes.grblhal_far_end import PtyEnd, TcpEnd, serve
@@ -65,7 +66,7 @@ class BesideInverter:
 
 def grblhal_config(machine: Machine) -> GrblConfig:
     """The controller's figures from the machine file's. Raises DriverError for what it cannot be."""
-    model = machine.hardware.grblhal
+    model = machine.hardware.table(GrblhalTable)
     if model is None:
         raise DriverError(f"{machine.source}: there is no [grblhal] table")
     if model.x_mode != "G8":

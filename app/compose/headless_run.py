@@ -13,7 +13,7 @@ from typing import TextIO
 from app.cli.command_errors import CommandError
 from app.compose.backends import Connected, connect, played, real_time
 from app.compose.journal import Journal
-from app.compose.shop_floor import open_shop_floor
+from app.compose.shop_floor import open_shop_floor, told_to_agents
 from app.desk.data_folder import data_folder
 from app.desk.headless_run import HeadlessRun
 from core.executor.executor import Executor
@@ -23,6 +23,7 @@ from core.executor.snapshot import Event
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.clocks import RealClock, StepClock
+from drivers.simulated.simulated_table import SimulatedTable
 
 
 class EventLog:
@@ -92,7 +93,8 @@ def headless(
 @contextmanager
 def _connected(machine: Machine, realtime: bool) -> Iterator[tuple[RealClock | StepClock, Connected]]:
     """The machine and the clock that it goes by."""
-    paced = realtime or machine.hardware.sim.realtime or real_time(machine)
+    sim = machine.hardware.table(SimulatedTable)
+    paced = realtime or (sim is not None and sim.realtime) or real_time(machine)
     clock = RealClock() if paced else StepClock()
     try:
         connected = connect(machine, clock)
@@ -143,8 +145,7 @@ def _shop_floor(
     def tell(why: str) -> None:
         say(f"no shop-floor data: {why}")
 
-    model = machine.hardware.mtconnect
-    if model is not None and model.enabled and not paced:
+    if told_to_agents(machine) and not paced:
         tell("this run is faster than its time; give --realtime")
         return lambda: None
     return open_shop_floor(machine, lambda: executor.snapshot, tell)

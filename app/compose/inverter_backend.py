@@ -12,9 +12,8 @@ from core.ports import AxisSample, AxisSink, Clock, DriverError, MachinePorts, S
 from drivers.clocks import StepClock
 from drivers.feeder.feeder_server import Driven
 from drivers.inverter.inverter_attendant import Keeper
-from drivers.inverter.inverter_config import InverterConfig
 from drivers.inverter.inverter_spindle import Encoder, InverterSpindle, attendant, well
-from drivers.serial_line import LineSettings
+from drivers.inverter.inverter_table import InverterTable
 
 BY_FREQUENCY = (
     "spindle speed is the inverter's output frequency: no encoder is connected; "
@@ -38,7 +37,9 @@ def with_inverter(
         raise DriverError(
             "an inverter on a line needs real time; it cannot follow a clock that is moved by hand"
         )
-    line, config = _line(machine), _config(machine)
+    table = machine.hardware.table(InverterTable)
+    assert table is not None  # a rule of the machine file
+    line, config = table.line, table.config
     attended = attendant(config, lambda: open_wire(line), clock)
     keeper = Keeper(attended)
     try:
@@ -142,23 +143,3 @@ class ClearingAxes:
         """Both. Raises DriverError."""
         self._beside()
         self._inner.clear_fault()
-
-
-def _line(machine: Machine) -> LineSettings:
-    vfd = machine.hardware.vfd
-    assert vfd is not None  # a rule of the machine file
-    return LineSettings(vfd.port, vfd.baud, 8, vfd.parity, vfd.stop)
-
-
-def _config(machine: Machine) -> InverterConfig:
-    vfd = machine.hardware.vfd
-    assert vfd is not None
-    return InverterConfig(
-        family=vfd.family,
-        unit=vfd.id,
-        hz_per_rpm=vfd.hz_per_rpm,
-        rpm_max=machine.spindle.rpm_max,
-        comm_loss=vfd.comm_loss,
-        character=_line(machine).character,
-        disagree=vfd.disagree,
-    )

@@ -12,8 +12,11 @@ from app.compose.shop_floor import try_shop_floor
 from core.machine.machine_model import Axis, Machine
 from core.ports import Clock, DriverError, MachinePorts, StationState
 from core.table_schema import Unit, shown
+from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import RealClock, StepClock
 from drivers.inverter.inverter_spindle import InverterSpindle
+from drivers.inverter.inverter_table import InverterTable
+from drivers.mtconnect.mtconnect_table import MtconnectTable
 
 MISSING = "missing"
 FAILED = (
@@ -65,7 +68,7 @@ def check_ports(machine: Machine) -> Answers:
 
 def _ask_shop_floor(machine: Machine, answers: Answers) -> None:
     """Whether agents would find the adapter, and take its model."""
-    model = machine.hardware.mtconnect
+    model = machine.hardware.table(MtconnectTable)
     if model is None or not model.enabled:
         return
     at = f"{model.bind}:{model.port}"
@@ -158,11 +161,12 @@ def _place(axis: Axis, at: float, machine: Machine) -> str:
 def _node(machine: Machine, name: str) -> str:
     """The node of a drive, or the port of an inverter."""
     hardware = machine.hardware
-    if name == "spindle" and hardware.spindle_driver == "vfd" and hardware.vfd is not None:
-        return hardware.vfd.port
-    if machine.backend != "canopen" or hardware.canopen is None:
+    inverter, can = hardware.table(InverterTable), hardware.table(CanopenTable)
+    if name == "spindle" and hardware.spindle_driver == "vfd" and inverter is not None:
+        return inverter.line.port
+    if machine.backend != "canopen" or can is None:
         return ""
-    return next((f"node {node.id}" for node in hardware.canopen.nodes if node.name == name), "")
+    return next((f"node {node.id}" for node in can.nodes if node.name == name), "")
 
 
 def _terminals(machine: Machine) -> dict[str, str]:

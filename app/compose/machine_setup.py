@@ -17,7 +17,8 @@ def read_machine(path: str | None) -> Machine:
 
     Raises CommandError naming every mistake.
     """
-    from core.machine.machine_file import MachineFileError, named_machine
+    from app.compose.machine_files import named_machine
+    from core.table_schema import MachineFileError
 
     try:
         return named_machine(path)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from app.compose.canopen_backend import canopen_peers
 from core.machine.machine_model import Machine
 from core.ports import DriverError
+from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import StepClock
 from drivers.feeder.feeder_loop import keep_memory, real_time
 
@@ -125,8 +126,13 @@ def play_peers(
 
     Raises DriverError when it cannot be opened.
     """
-    bus = machine.hardware.canopen
-    assert bus is not None  # a rule of the machine file
+    can = machine.hardware.table(CanopenTable)
+    assert can is not None  # a rule of the machine file
+    bus = can.bus
+    if not bus.own_process:
+        raise DriverError(
+            "interface virtual lives within one process, which plays its drives itself; take udp_multicast"
+        )
     clock, zero, epoch = StepClock(), time.monotonic(), time.time()
     peers = canopen_peers(machine, clock)
     keep_memory()

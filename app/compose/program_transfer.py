@@ -11,7 +11,7 @@ from app.desk.program_loading import LoadingSteps
 from app.programs.whole_file import FileError
 from app.transfer.serial_line import Received
 from core.language.source import Source, SourceError, load_source
-from core.machine.hardware_model import DncModel
+from core.machine.serial_table import DncModel
 from core.ports import Clock, DriverError
 from drivers.clocks import RealClock
 from drivers.serial_line import LineSettings

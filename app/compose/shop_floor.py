@@ -10,14 +10,14 @@ from pathlib import Path
 from app.shopfloor.floor_reading import UNKNOWN, FloorReader, Reading
 from app.shopfloor.status_file import NAME, StatusFile, StatusKeeper, status_of
 from core.executor.snapshot import Snapshot
-from core.machine.hardware_model import MtconnectModel
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.clocks import RealClock
 from drivers.mtconnect.agent_links import listening
 from drivers.mtconnect.devices_xml import devices_xml
-from drivers.mtconnect.mtconnect_adapter import Adapter, Keeper, Settings, utc_now
+from drivers.mtconnect.mtconnect_adapter import Adapter, Keeper, utc_now
 from drivers.mtconnect.mtconnect_items import Category, Component, Layout, machine_items
+from drivers.mtconnect.mtconnect_table import MtconnectTable
 from drivers.mtconnect.shdr_lines import Active, Report, stamp
 
 
@@ -28,7 +28,7 @@ def open_shop_floor(
 
     A port that cannot be opened is told, and the machine runs all the same.
     """
-    model = machine.hardware.mtconnect
+    model = machine.hardware.table(MtconnectTable)
     if model is None or not model.enabled:
         return _nothing
     keeper = Keeper(adapter_of(machine, model, snapshot))
@@ -40,7 +40,13 @@ def open_shop_floor(
     return keeper.close
 
 
-def try_shop_floor(machine: Machine, model: MtconnectModel) -> None:
+def told_to_agents(machine: Machine) -> bool:
+    """Whether its file wants agents to be told of it."""
+    model = machine.hardware.table(MtconnectTable)
+    return model is not None and model.enabled
+
+
+def try_shop_floor(machine: Machine, model: MtconnectTable) -> None:
     """Open the port and close it again, make the model and throw it away. Raises DriverError."""
     listening(model.bind, model.port).close()
     device_model(machine, utc_now())
@@ -58,12 +64,11 @@ def keep_status(machine: Machine, snapshot: Callable[[], Snapshot], folder: Path
     return keeper.close
 
 
-def adapter_of(machine: Machine, model: MtconnectModel, snapshot: Callable[[], Snapshot]) -> Adapter:
+def adapter_of(machine: Machine, model: MtconnectTable, snapshot: Callable[[], Snapshot]) -> Adapter:
     """The adapter on real time; it looks at snapshots and at nothing else."""
     device = device_of(machine, model.device)
     reader = FloorReader(machine, _conditions(device), time.monotonic)
-    settings = Settings(model.bind, model.port, model.heartbeat)
-    return Adapter(settings, tuple(device.all_items()), lambda: _report(reader.look(snapshot())), RealClock())
+    return Adapter(model, tuple(device.all_items()), lambda: _report(reader.look(snapshot())), RealClock())
 
 
 def device_of(machine: Machine, name: str) -> Component:
@@ -81,7 +86,7 @@ def device_of(machine: Machine, name: str) -> Component:
 
 def device_model(machine: Machine, at: datetime) -> str:
     """``Devices.xml`` for the agent. Raises DriverError without an [mtconnect] table or for a bad name."""
-    model = machine.hardware.mtconnect
+    model = machine.hardware.table(MtconnectTable)
     if model is None:
         raise DriverError(
             f"{machine.source}: there is no [mtconnect] table; it says under which name and port "

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from core.machine.machine_model import Axis, Machine
 from core.ports import Clock
-from drivers.lookalikes.plant_config import PlannedFault, SimAxis, SimCollet, SimConfig, SimOutput, SimSpindle
+from drivers.lookalikes.plant_config import SimAxis, SimCollet, SimConfig, SimOutput, SimSpindle
 from drivers.simulated.simulated_machine import Simulation, build_simulation
+from drivers.simulated.simulated_table import SimulatedTable
 
 
 def simulated(machine: Machine, clock: Clock) -> Simulation:
@@ -15,7 +16,7 @@ def simulated(machine: Machine, clock: Clock) -> Simulation:
 
 def sim_config(machine: Machine) -> SimConfig:
     """The plant's figures from the machine file's."""
-    spindle = machine.spindle
+    spindle, sim = machine.spindle, machine.hardware.table(SimulatedTable) or SimulatedTable()
     return SimConfig(
         axes=tuple(_axis(axis, machine) for axis in machine.axes),
         spindle=SimSpindle(
@@ -28,11 +29,8 @@ def sim_config(machine: Machine) -> SimConfig:
         },
         inputs=tuple(machine.inputs),
         commit=machine.timing.commit,
-        faults=tuple(
-            PlannedFault(f.at, f.what, f.axis, f.value, f.seconds, f.text)
-            for f in machine.hardware.sim.faults
-        ),
-        seed=machine.hardware.sim.seed,
+        faults=sim.faults,
+        seed=sim.seed,
     )
 
 

@@ -29,6 +29,7 @@ from app.special.special_functions import SpecialFunction, SpecialFunctions
 from app.special.spindle_limit import SpindleSpeedLimit
 from app.transfer.serial_transfer import SerialTransfer
 from core.machine.machine_model import Machine
+from core.machine.serial_table import DncModel
 
 MakeFunction = Callable[[Desk, Machine, Persistence, Latest], SpecialFunction]
 
@@ -50,7 +51,7 @@ def _transfer(
     """RS-232, at first as [dnc] of the machine file says. What comes in is proved as an import is."""
     ending = {"mill": ".h"}.get(machine.kind, ".nc")
     lines = SerialLines(proving(workshop), ending)
-    return SerialTransfer(desk, keep, lines, machine.hardware.dnc or PLAIN, own)
+    return SerialTransfer(desk, keep, lines, machine.hardware.table(DncModel) or PLAIN, own)
 
 
 # One line for each special function, in the order of the list; one whose hardware is not there has none.

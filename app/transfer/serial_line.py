@@ -9,7 +9,7 @@ from typing import Protocol, TypeVar
 
 from app.programs.copy_rename_delete import good_name, taken
 from app.programs.whole_file import FileError, write_new
-from core.machine.hardware_model import DncModel
+from core.machine.serial_table import DncModel
 
 T_co = TypeVar("T_co", covariant=True)
 

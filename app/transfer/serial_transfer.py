@@ -18,7 +18,7 @@ from app.special.special_functions import SpecialFunction
 from app.transfer.serial_line import Carrying, Lines, Reach, Received, free_name, stored
 from app.transfer.serial_settings import ROWS, form_of, kept_form
 from core.executor.snapshot import Snapshot
-from core.machine.hardware_model import DncModel
+from core.machine.serial_table import DncModel
 from core.store.store_errors import StoreError
 
 # --- What the RS-232 function shows: its settings, how far a transfer has come, a program that has come in.

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import math
 import tomllib
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-import resources
-from core.machine import hardware_rules, machine_defaults, machine_rules, machine_tables, signal_rules
-from core.machine.hardware_build import hardware_of
-from core.machine.hardware_tables import HardwareReading
+from core.machine import (
+    driver_tables,
+    machine_defaults,
+    machine_rules,
+    machine_tables,
+    signal_rules,
+    terminal_wiring,
+)
+from core.machine.driver_tables import DriverReading, tables_there
 from core.machine.machine_model import (
     Axis,
     InputModel,
@@ -22,24 +28,17 @@ from core.machine.machine_model import (
 )
 from core.machine.machine_reading import Reading
 from core.machine.mill_kinematics import KinematicsReading
-from core.table_schema import Finding, MachineFileError
+from core.machine.station_rules import wrong_palms, wrong_wheel
+from core.table_schema import Driver, FileReading, Finding, MachineFileError
 
-__all__ = ["MachineFileError", "load_machine", "named_machine", "parse_machine", "shipped_machine"]
-
-SHIPPED = "gt75.toml"
 _NONE = (-math.inf, math.inf)
 _ONE_TURN = (-360.0, 360.0)  # of a C that does not wrap, degrees
 
 
-def load_machine(path: Path | None = None) -> Machine:
-    """The machine that ``path`` describes; None: the shipped simulated lathe.
-
-    Raises MachineFileError with everything that is wrong, also where the file cannot be read at all.
-    """
-    if path is None:
-        return parse_machine(resources.machine_file(SHIPPED), SHIPPED)
+def text_of(path: Path) -> str:
+    """The text of a machine file. Raises MachineFileError where it cannot be read at all."""
     try:
-        text = path.read_text(encoding="utf-8")
+        return path.read_text(encoding="utf-8")
     except OSError as error:
         reason = error.strerror or "cannot be read"
         raise MachineFileError(
@@ -49,49 +48,43 @@ def load_machine(path: Path | None = None) -> Machine:
         raise MachineFileError(
             [Finding("file", "", "is not UTF-8 text; save it as such")], str(path)
         ) from error
-    return parse_machine(text, str(path))
 
 
-def named_machine(name: str | None) -> Machine:
-    """The machine of a file, a shipped one by its name, or (None) the shipped lathe; as ``load_machine``."""
-    if name and name in resources.machine_names() and not Path(name).exists():
-        return shipped_machine(name)
-    return load_machine(Path(name) if name else None)
+def parse_machine(text: str, source: str, drivers: Sequence[Driver]) -> Machine:
+    """The machine that the TOML ``text`` describes, with what these drivers add to it; ``source`` names it.
 
-
-def shipped_machine(name: str) -> Machine:
-    """One of the machines that come with the product. Raises FileNotFoundError for another name."""
-    return parse_machine(resources.machine_file(f"{name}.toml"), f"{name}.toml")
-
-
-def parse_machine(text: str, source: str) -> Machine:
-    """The machine that the TOML ``text`` describes; ``source`` names it. Raises MachineFileError."""
+    Raises MachineFileError with everything that is wrong.
+    """
     try:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise MachineFileError([Finding("TOML", "", str(error))], source) from error
-    reading = Reading(data)
+    reading = Reading(data, drivers)
     untold = [*machine_defaults.fill(reading)]
-    hardware = HardwareReading(data, reading.values)
-    rotary = [name for name in _axis_names(reading) if name not in machine_tables.SLIDES[reading.kind]]
+    axes, terminals = _axis_names(reading), signal_rules.terminals(reading)
+    file = FileReading(data, reading.values, axes, terminals, tables_there(data, drivers))
+    added = DriverReading(file, drivers)
+    rotary = [name for name in axes if name not in machine_tables.SLIDES[reading.kind]]
     kinematics = KinematicsReading(data, reading.values, reading.kind, rotary)
     findings = [
         *reading.findings,
         *untold,
-        *hardware.findings,
+        *added.findings,
         *kinematics.findings,
         *machine_rules.broken(reading.values),
         *signal_rules.broken(reading),
-        *hardware_rules.broken(hardware, _axis_names(reading), signal_rules.terminals(reading)),
+        *terminal_wiring.shared(file, drivers),
+        *terminal_wiring.pots(file, drivers),
+        *wrong_wheel(file),
+        *wrong_palms(file),
+        *driver_tables.broken(file, drivers),
     ]
     if findings:
         raise MachineFileError(findings, source)
-    return replace(_machine(reading, hardware, kinematics, source), text=text)
+    return replace(_machine(reading, added, kinematics, source), text=text)
 
 
-def _machine(
-    reading: Reading, hardware: HardwareReading, kinematics: KinematicsReading, source: str
-) -> Machine:
+def _machine(reading: Reading, added: DriverReading, kinematics: KinematicsReading, source: str) -> Machine:
     values = reading.values
     return Machine(
         name=values.text("machine.name"),
@@ -120,7 +113,7 @@ def _machine(
         kind=reading.kind,
         c_modulo=_of_c(reading, "modulo"),
         c_own_drive=_of_c(reading, "own_drive"),
-        hardware=hardware_of(hardware, _axis_names(reading), reading.outputs),
+        hardware=added.hardware(reading.outputs),
         kinematics=kinematics.model(),
     )
 

@@ -2,28 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from core.machine import machine_tables
-from core.table_schema import Field, Finding, Values, joined, read_table, unknown_keys, written
+from core.machine.driver_tables import children_of
+from core.table_schema import Driver, Field, Finding, Values, joined, read_table, unknown_keys, written
 
 
 class Reading:
     """Values and findings of one file, and the names that its owner gave to signals and M codes."""
 
-    def __init__(self, data: Mapping[str, object]) -> None:
+    def __init__(self, data: Mapping[str, object], drivers: Sequence[Driver]) -> None:
         self.data = data
+        self._drivers = drivers
         self.values = Values(_inch(data))
         self.kind = _kind(data)
         self.outputs: list[str] = []
         self.inputs: list[str] = []
         self.m_codes: list[str] = []
-        self.findings = _unknown_tables(data)
+        self.findings = _unknown_tables(data, machine_tables.top_tables(drivers))
         self._read()
 
     def _read(self) -> None:
-        self._table("machine", machine_tables.MACHINE)
-        for path, keys in machine_tables.TABLES:
+        self._table("machine", machine_tables.machine_fields(self._drivers))
+        for path, keys in machine_tables.plain_tables(self._drivers):
             if path in machine_tables.TABLES_OF_A_LATHE and self.kind != "lathe":
                 self._of_a_lathe(path)
             else:
@@ -36,7 +38,7 @@ class Reading:
 
     def _table(self, path: str, keys: tuple[Field, ...]) -> None:
         table = self.data.get(path, {} if path in machine_tables.MAY_BE_MISSING else None)
-        self._keys(table, path, keys, machine_tables.CHILDREN.get(path, ()))
+        self._keys(table, path, keys, children_of(self._drivers, path))
 
     def _keys(
         self, table: object, path: str, keys: tuple[Field, ...], children: tuple[str, ...] = ()
@@ -106,10 +108,10 @@ def _kind(data: Mapping[str, object]) -> str:
     return kind if isinstance(kind, str) and kind in machine_tables.KINDS else "lathe"
 
 
-def _unknown_tables(data: Mapping[str, object]) -> list[Finding]:
+def _unknown_tables(data: Mapping[str, object], top: Sequence[str]) -> list[Finding]:
     findings = []
-    for found in unknown_keys(data, list(machine_tables.TOP), ""):
-        known = f"this version knows {', '.join(f'[{name}]' for name in machine_tables.TOP)}"
+    for found in unknown_keys(data, list(top), ""):
+        known = f"this version knows {', '.join(f'[{name}]' for name in top)}"
         guess = found.expected.removeprefix("unknown key; ")
         near = f"{guess} " if guess.startswith("did") else ""
         findings.append(Finding(f"[{found.path}]", "", f"unknown table; {near}{known}"))

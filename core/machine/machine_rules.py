@@ -8,9 +8,6 @@ from typing import NamedTuple
 
 from core.table_schema import Finding, Unit, Values, shown
 
-# Command or encoder counts per second that a backend takes.
-COUNT_RATE = {"sim": 1e6, "canopen": 2.0**23, "grblhal": 3e5}
-
 
 class Rule(NamedTuple):
     """``wrong`` answers what was expected at ``path``, or nothing; it runs when ``needs`` are all there."""
@@ -38,21 +35,6 @@ def _below(path: str, limit: str, why: str, unit: Unit) -> Rule:
         return f"{shown(value, unit, inch)} is over {limit} = {shown(bound, unit, inch)}; {why}"
 
     return Rule(path, (limit,), wrong)
-
-
-def _count_rate(axis: str) -> Rule:
-    path = f"axis.{axis}.vmax"
-
-    def wrong(values: Values) -> str:
-        rate = values.number(path) / values.number(f"axis.{axis}.count")
-        limit = COUNT_RATE[values.text("machine.backend")]
-        if rate <= limit:
-            return ""
-        return (
-            f"{rate:.6g} counts/s is over the {limit:.6g} of this backend; lower vmax or take a coarser count"
-        )
-
-    return Rule(path, (f"axis.{axis}.count", "machine.backend"), wrong)
 
 
 def _home_inside(axis: str) -> Rule:
@@ -128,7 +110,6 @@ def _feedback(values: Values) -> str:
 def _slide(axis: str) -> tuple[Rule, ...]:
     path = f"axis.{axis}"
     return (
-        _count_rate(axis),
         _home_inside(axis),
         _jog_run_on(axis),
         _homing(axis),
@@ -153,7 +134,6 @@ def _slide(axis: str) -> tuple[Rule, ...]:
 def _rotary(axis: str) -> tuple[Rule, ...]:
     path = f"axis.{axis}"
     return (
-        _count_rate(axis),
         _home_inside(axis),
         _homing(axis),
         _below(f"{path}.count", f"{path}.in_pos", "in position must be a count at least", Unit.DEGREES),

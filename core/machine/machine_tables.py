@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
-from core.machine.hardware_tables import SPINDLE_DRIVERS
-from core.machine.hardware_tables import TOP as HARDWARE
-from core.table_schema import Field, Kind, Unit
+from core.machine.driver_tables import tables_of
+from core.table_schema import Driver, Field, Kind, Unit
 
-BACKENDS = ("sim", "canopen", "grblhal")
 KINDS = ("lathe", "mill")
 SLIDES = {"lathe": ("X", "Z"), "mill": ("X", "Y", "Z")}
 ROTARY = {"lathe": (), "mill": ("A", "B", "C")}  # those a machine may have; a lathe's C is its spindle
 
 _NUMBER, _WHOLE, _FLAG, _TEXT, _CHOICE = Kind.NUMBER, Kind.WHOLE, Kind.FLAG, Kind.TEXT, Kind.CHOICE
 
-MACHINE = (
+_MACHINE = (
     Field("name", _TEXT),
     Field("units", _CHOICE, choices=("inch", "mm")),
     Field("kind", _CHOICE, choices=KINDS, default="lathe"),
-    Field("backend", _CHOICE, choices=BACKENDS, default="sim"),
     Field("feeder", _FLAG, default=False),
     Field("x_is", _CHOICE, choices=("radius", "diameter"), default="diameter"),
     Field("commit_ms", _NUMBER, Unit.MILLISECONDS, 0.001, 0.2),
@@ -89,7 +87,7 @@ ROTARY_AXIS = (
     Field("absolute", _FLAG, default=False),
 )
 C_OPTION = (Field("feedback", _FLAG, default=False),)
-SPINDLE = (
+_SPINDLE = (
     Field("rpm", Kind.PAIR, Unit.RPM, 1.0, 20000.0),
     Field("accel_rpm_s", _NUMBER, Unit.RPM_PER_SECOND, 10.0, 50000.0),
     Field("decel_rpm_s", _NUMBER, Unit.RPM_PER_SECOND, 10.0, 50000.0, derived=True),
@@ -99,7 +97,6 @@ SPINDLE = (
     Field("stop_below", _NUMBER, Unit.RPM, 0.5, 50.0),
     Field("encoder_ppr", _WHOLE, low=0, high=100000),
     Field("controlled", _FLAG, default=True),  # false: it has one speed, and S none to set
-    Field("driver", _CHOICE, choices=SPINDLE_DRIVERS, default="sim"),
 )
 COLLET = (
     Field("open_s", _NUMBER, Unit.SECONDS, 0.01, 10.0, default=0.5),
@@ -125,26 +122,40 @@ M_CODE = (
     Field("on", _FLAG),
     Field("enabled", _FLAG, default=True),
 )
-SIM = (
-    Field("seed", _WHOLE, low=0, high=2**31, default=1),
-    Field("realtime", _FLAG, default=False),
-)
 
-# Plain tables: path and keys. axis, io and m_codes hold tables, some under names of the owner's choice.
-TABLES = (
-    ("limits", LIMITS),
-    ("c_axis", C_OPTION),
-    ("spindle", SPINDLE),
-    ("collet", COLLET),
-    ("interlocks", INTERLOCKS),
-    ("sim", SIM),
-)
-TOP = (
-    *("machine", "limits", "axis", "c_axis", "spindle", "collet", "interlocks", "io", "m_codes", "sim"),
-    "kinematics",
-    *HARDWARE,
-)
-CHILDREN = {"spindle": ("vfd", "encoder"), "sim": ("faults",)}  # read with what the machine is wired to
+
+def machine_fields(drivers: Sequence[Driver]) -> tuple[Field, ...]:
+    """[machine]: which backends there are is the drivers' word."""
+    backends = tuple(driver.backend for driver in drivers if driver.backend)
+    return (*_MACHINE[:3], Field("backend", _CHOICE, choices=backends, default="sim"), *_MACHINE[3:])
+
+
+def plain_tables(drivers: Sequence[Driver]) -> tuple[tuple[str, tuple[Field, ...]], ...]:
+    """Path and keys; axis, io and m_codes hold tables, some under names of the owner's choice.
+
+    What turns the spindle is the drivers' word.
+    """
+    words = tuple(driver.spindle for driver in drivers if driver.spindle)
+    return (
+        ("limits", LIMITS),
+        ("c_axis", C_OPTION),
+        ("spindle", (*_SPINDLE, Field("driver", _CHOICE, choices=words, default="sim"))),
+        ("collet", COLLET),
+        ("interlocks", INTERLOCKS),
+    )
+
+
+def top_tables(drivers: Sequence[Driver]) -> tuple[str, ...]:
+    """Every table that a file may have, in the order in which its owner is told of them."""
+    own = [table for table in tables_of(drivers) if "." not in table.path]
+    return (
+        *("machine", "limits", "axis", "c_axis", "spindle", "collet", "interlocks", "io", "m_codes"),
+        *(table.path for table in own if table.always),
+        "kinematics",
+        *(table.path for table in own if not table.always),
+    )
+
+
 # A mill has none of these; its model holds what stands here.
 TABLES_OF_A_LATHE: dict[str, tuple[Field, ...]] = {
     "c_axis": C_OPTION,
@@ -153,7 +164,7 @@ TABLES_OF_A_LATHE: dict[str, tuple[Field, ...]] = {
         Field("close_s", _NUMBER, Unit.SECONDS, 0.0, 10.0, default=0.0),
     ),
 }
-MAY_BE_MISSING = ("limits", "collet", "c_axis", "interlocks", "m_codes", "sim")
+MAY_BE_MISSING = ("limits", "collet", "c_axis", "interlocks", "m_codes")
 
 # M codes with a meaning of their own; the machine file cannot assign them.
 FIXED_M_CODES = frozenset((0, 1, 2, 3, 4, 5, 8, 9, 12, 13, 19, 30, 31, 89, *range(91, 100)))

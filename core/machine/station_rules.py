@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from core.machine.hardware_tables import HardwareReading
-from core.table_schema import Finding, written
+from core.table_schema import FileReading, Finding, written
 
 WHEEL = "handwheel"
 ENABLE = "wheel_enable"  # held down while the wheel may move anything
@@ -18,24 +17,20 @@ def selector(axis: str) -> str:
     return f"wheel_{axis.lower()}"
 
 
-def wrong_wheel(reading: HardwareReading, axes: tuple[str, ...]) -> Iterator[Finding]:
-    """Every finding."""
-    values, there = reading.values, WHEEL in reading.analog
-    wired = reading.data.get("io")
-    inputs = wired.get("in") if isinstance(wired, dict) else None
-    if there and values.has("machine.backend") and values.text("machine.backend") == "grblhal":
-        yield Finding(f"io.analog.{WHEEL}", "", "this backend has no input that counts; take it out")
-    for name in reading.analog:
+def wrong_wheel(file: FileReading) -> Iterator[Finding]:
+    """A finding for every count and every switch that is no handwheel's."""
+    values, analog = file.values, file.names("io.analog")
+    for name in analog:
         path = f"io.analog.{name}.counts_per_click"
         if values.has(path) and name == WHEEL and values.number(path) == 0:
             yield Finding(path, "0", "expected counts, negative where the wheel turns the other way round")
         if values.has(path) and name != WHEEL and values.number(path) != 1:
             yield Finding(path, f"{values.number(path):g}", "a pot has no clicks; take it out")
-    known = [ENABLE, *FACTORS, *(selector(axis) for axis in axes)]
-    for name in inputs if isinstance(inputs, dict) else ():
+    known = [ENABLE, *FACTORS, *(selector(axis) for axis in file.axes)]
+    for name in file.names("io.in"):
         if name.startswith("wheel_") and name not in known:
             yield Finding(f"io.in.{name}", "", f"no switch of a handwheel: one of {', '.join(known)}")
-        elif name.startswith("wheel_") and not there:
+        elif name.startswith("wheel_") and WHEEL not in analog:
             at = written(values.text(f"io.in.{name}.at")) if values.has(f"io.in.{name}.at") else ""
             yield Finding(f"io.in.{name}", at, "a switch of the handwheel; expected [io.analog] handwheel")
 
@@ -52,10 +47,8 @@ WHY = (
 )
 
 
-def wrong_palms(reading: HardwareReading) -> Iterator[Finding]:
+def wrong_palms(file: FileReading) -> Iterator[Finding]:
     """A finding for every input that is one button of two."""
-    wired = reading.data.get("io")
-    inputs = wired.get("in") if isinstance(wired, dict) else None
-    for name in inputs if isinstance(inputs, dict) else ():
+    for name in file.names("io.in"):
         if _PALM.fullmatch(name):
             yield Finding(f"io.in.{name}", "", WHY)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from drivers.canopen.canopen_table import BusConfig
+
 Objects = tuple[tuple[int, int, int], ...]  # index, sub-index, value: written at every start and read back
 
 
@@ -99,18 +101,6 @@ class PotConfig:
     low: float = 0.0
     high: float = 1.0
     switch: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class BusConfig:
-    """The wire. Times in seconds."""
-
-    interface: str
-    channel: str
-    bitrate: int = 1_000_000
-    host_id: int = 127
-    sync: float = 0.01
-    heartbeat: float = 0.1
 
 
 @dataclass(frozen=True, slots=True)

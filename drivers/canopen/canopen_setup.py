@@ -12,8 +12,9 @@ from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
 from core.ports import DriverError, Segments
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus, Node
-from drivers.canopen.canopen_config import AxisConfig, BusConfig, Objects
+from drivers.canopen.canopen_config import AxisConfig, Objects
 from drivers.canopen.canopen_objects import MODE_BITS
+from drivers.canopen.canopen_table import BusConfig
 
 _Answer = TypeVar("_Answer")
 

@@ -13,20 +13,12 @@ from datetime import UTC, datetime
 from core.ports import Clock, DriverError
 from drivers.mtconnect.agent_links import AgentLink, GoneError, LostError, accepted, listening
 from drivers.mtconnect.mtconnect_items import DataItem
+from drivers.mtconnect.mtconnect_table import MtconnectTable
 from drivers.mtconnect.shdr_lines import Report, Told, stamp
 
 LOOK = 0.1  # s between two looks at the machine
 MOST = 8  # agents at a time
 _log = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True, slots=True)
-class Settings:
-    """Where agents find the adapter, and how often they shall ping, in s."""
-
-    bind: str
-    port: int
-    heartbeat: float
 
 
 @dataclass(slots=True)
@@ -49,7 +41,7 @@ class Adapter:
 
     def __init__(
         self,
-        settings: Settings,
+        settings: MtconnectTable,
         items: tuple[DataItem, ...],
         report: Callable[[], Report],
         clock: Clock,

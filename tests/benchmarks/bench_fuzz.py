@@ -10,10 +10,10 @@ import resource
 import sys
 import time
 
+from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
-from core.machine.machine_file import load_machine
 from core.proving.prove_program import prove
 from tests.interpreter.mutation import mutated
 

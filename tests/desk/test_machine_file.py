@@ -12,6 +12,7 @@ import pytest
 import resources
 from app.compose.accepted_machine import differences, key_of, record_of
 from app.compose.journal import Journal
+from app.compose.machine_files import load_machine
 from app.compose.screen_desk import desk_and_executor
 from app.desk.desk import Desk
 from app.desk.persistence import NoPersistence
@@ -19,7 +20,6 @@ from app.special.machine_file_acceptance import MachineFileAcceptance
 from app.special.special_functions import SpecialFunctions
 from core.executor.executor import Executor
 from core.executor.snapshot import State
-from core.machine.machine_file import load_machine
 from core.machine.machine_model import Machine
 from drivers.clocks import StepClock
 

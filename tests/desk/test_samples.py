@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from app.cli.toml_files import read_offsets
+from app.compose.machine_files import load_machine, named_machine
 from app.compose.machine_setup import setup_for
 from core.language.sinumerik.subprogram_files import with_subprograms
 from core.language.source import load_source
-from core.machine.machine_file import load_machine, named_machine
 from core.proving.prove_program import prove
 from tests.screen.desks import SAMPLES
 

@@ -6,11 +6,11 @@ import dataclasses
 
 import pytest
 
-from core.machine.hardware_tables import SIM_FAULTS
 from core.ports import DriverError
 from drivers.clocks import StepClock
 from drivers.lookalikes.plant_config import PlannedFault
 from drivers.simulated.simulated_machine import Simulation, build_simulation
+from drivers.simulated.simulated_table import FAULTS
 from tests.drivers.machines import CONFIG, play, ramp, simulation
 
 
@@ -44,7 +44,7 @@ def test_a_bogged_spindle_gets_its_speed_back() -> None:
     assert sim.ports.spindle.speed() == pytest.approx(1000.0)
 
 
-@pytest.mark.parametrize("what", SIM_FAULTS)
+@pytest.mark.parametrize("what", FAULTS)
 def test_whatever_a_machine_file_may_name_the_simulation_can_break(what: str) -> None:
     sim, clock = broken(PlannedFault(0.05, what, "Z", 0.1, 0.05))
     play(sim, clock, 0.3)

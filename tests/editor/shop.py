@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
 
+from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from app.compose.workshop import proof_of
 from app.desk.latest import Watch
@@ -17,7 +18,6 @@ from core.executor.job import Job
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source, load_source
-from core.machine.machine_file import load_machine
 from core.proving.program_timeline import Timeline, timed_blocks
 from core.proving.prove_program import prove
 from core.store.store_errors import StoreError

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
+from app.compose.machine_files import load_machine
 from app.compose.machine_setup import control_limits
 from app.compose.simulated_backend import simulated
 from core.executor.commands import Command, ConfirmStart, CycleStart, EnableDrives, LoadJob
@@ -18,7 +19,6 @@ from core.executor.snapshot import Event, Snapshot, State
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.language.source import Source
-from core.machine.machine_file import load_machine
 from core.machine.machine_model import Machine
 from drivers.clocks import StepClock
 from drivers.simulated.simulated_machine import Simulation

@@ -6,10 +6,10 @@ import dataclasses
 
 import pytest
 
+from app.compose.machine_files import load_machine
 from core.executor.commands import CycleStart, FeedHold, Reset, SpindleLimit
 from core.executor.snapshot import State
 from core.executor.start_conditions import TIME_TO_READ
-from core.machine.machine_file import load_machine
 from tests.executor.rig import TICK, Rig
 
 CUT = "G90G94F300\nM03S1500\nG01F10Z-1\nM30\n"

@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 import pytest
 
+from app.compose.machine_files import load_machine
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverride, Jog, Reset, SetSwitch
 from core.executor.following_error import FollowingErrorWatch
 from core.executor.raised_alarm import AlarmError
 from core.executor.snapshot import State
-from core.machine.machine_file import load_machine
 from core.ports import AxisSample
 from tests.executor.rig import Rig
 

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import pytest
 
+from app.compose.machine_files import load_machine
 from core.executor.commands import CycleStart, LoadJob, Prepare, SetSwitch
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import State
 from core.interpreter.omniturn.carry_over import RAPID, UNITS, inherited_settings
 from core.language.source import Dialect, Source
-from core.machine.machine_file import load_machine
 from tests.executor.lines import mdi
 from tests.executor.rig import INCH, Rig
 

@@ -6,11 +6,11 @@ import dataclasses
 
 import pytest
 
+from app.compose.machine_files import load_machine
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, Home, Reset, SetSwitch
 from core.executor.snapshot import Snapshot, State
 from core.executor.watchdog import ExecutorThread
 from core.interpreter.actions import Collet, Dwell, SpindleRun
-from core.machine.machine_file import load_machine
 from core.machine.machine_model import Machine
 from drivers.clocks import RealClock
 from tests.executor.made import Maker

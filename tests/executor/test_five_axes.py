@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from app.compose.machine_files import parse_machine
 from core.executor.commands import FeedHold
 from core.executor.snapshot import Snapshot, State
 from core.geometry.machine_travel import FloatArray, Travel
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
-from core.machine.machine_file import parse_machine
 from tests.executor.rig import Rig
 from tests.machine.mill import MILL
 

@@ -7,6 +7,7 @@ import math
 
 import pytest
 
+from app.compose.machine_files import load_machine
 from core.executor.commands import (
     CycleStart,
     EnableDrives,
@@ -21,7 +22,6 @@ from core.executor.commands import (
 from core.executor.handwheel import WheelClicks
 from core.executor.snapshot import State
 from core.machine.hardware_model import AnalogModel
-from core.machine.machine_file import load_machine
 from core.machine.machine_model import InputModel, Machine
 from tests.executor.rig import INCH, TICK, Rig
 

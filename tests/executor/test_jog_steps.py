@@ -7,6 +7,7 @@ import math
 
 import pytest
 
+from app.compose.machine_files import load_machine
 from core.executor.commands import (
     CycleStart,
     EnableDrives,
@@ -18,7 +19,6 @@ from core.executor.commands import (
     Reset,
 )
 from core.executor.snapshot import State
-from core.machine.machine_file import load_machine
 from core.machine.machine_model import Machine
 from tests.executor.rig import INCH, TICK, Rig, unhomed_machine
 

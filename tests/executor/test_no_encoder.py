@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 
+from app.compose.machine_files import load_machine
 from core.executor.snapshot import State
-from core.machine.machine_file import load_machine
 from tests.executor.rig import Rig
 
 

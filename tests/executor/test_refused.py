@@ -6,6 +6,7 @@ import dataclasses
 
 import pytest
 
+from app.compose.machine_files import load_machine
 from core.executor.commands import (
     Command,
     CycleStart,
@@ -22,7 +23,6 @@ from core.executor.snapshot import TRANSITIONS, State, TransitionError, demand_a
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.machine_requirements import THREAD, Need
 from core.language.source import Source
-from core.machine.machine_file import load_machine
 from tests.executor.rig import Rig, unhomed_machine
 
 TEXT = "G90G94F300\nX1\nM30\n"

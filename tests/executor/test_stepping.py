@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 from app.cli.toml_files import read_offsets
+from app.compose.machine_files import load_machine, shipped_machine
 from app.compose.machine_setup import setup_for
 from core.executor.commands import CycleStart, FeedHold, SetSwitch
 from core.executor.snapshot import State
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset
 from core.language.sinumerik.subprogram_files import with_subprograms
 from core.language.source import Source, load_source
-from core.machine.machine_file import load_machine, shipped_machine
 from core.machine.machine_model import Machine
 from tests.executor.rig import INCH, Rig
 from tests.executor.stepping import has_errors, stepped_through, steps_of

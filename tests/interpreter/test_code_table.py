@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.actions import Dwell
 from core.interpreter.elementary_blocks import Block
@@ -31,7 +32,6 @@ from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.language.diagnostics import Severity
 from core.language.source import Source
-from core.machine.machine_file import load_machine
 from core.proving.prove_program import prove
 from tests.interpreter.programs import passed
 

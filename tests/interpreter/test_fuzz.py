@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import ToolOffset
 from core.language.omniturn import lex_line
 from core.language.source import Source
-from core.machine.machine_file import load_machine
 from core.proving.prove_program import prove
 from tests.interpreter.mutation import mutated
 from tests.interpreter.programs import lines, passed, setup

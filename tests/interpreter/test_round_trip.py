@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.cli.toml_files import read_offsets
+from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
@@ -15,7 +16,6 @@ from core.interpreter.omniturn.code_table import CHAPTERS
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
 from core.language.source import Source, load_source
-from core.machine.machine_file import load_machine
 from tests.worked import FOLDER
 
 INCH = 25.4

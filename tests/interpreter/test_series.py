@@ -14,6 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.elementary_blocks import Block, Series
 from core.interpreter.job_setup import Setup, ToolOffset
@@ -22,7 +23,6 @@ from core.interpreter.omniturn.omniturn_program import read_program
 from core.interpreter.omniturn.plain_moves import Columns, read_columns, read_move
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
-from core.machine.machine_file import load_machine
 from core.proving.prove_program import prove
 from tests.interpreter.mutation import SEEDS, mutated
 from tests.interpreter.programs import body, inches, lines, setup

@@ -11,7 +11,8 @@ import pytest
 
 from app.cli.main import main
 from app.compose.kinematics_chain import kinematics_of
-from core.machine.machine_file import MachineFileError, parse_machine, shipped_machine
+from app.compose.machine_files import parse_machine, shipped_machine
+from core.table_schema import MachineFileError
 from resources import machine_file
 from tests.cli.conftest import Turndesk, home, offsets, turndesk
 from tests.klartext.chamfers import AXIAL, POINTS

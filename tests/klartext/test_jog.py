@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from app.compose.machine_files import load_machine, shipped_machine
 from app.jog.jog_speeds import Speeds, directions_of
 from app.offsets.offset_values import Mode
-from core.machine.machine_file import load_machine, shipped_machine
 
 MILL, LATHE = shipped_machine("ac-table-mill"), load_machine()
 

@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from app.compose.machine_files import shipped_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Dialect, Source
-from core.machine.machine_file import shipped_machine
 from core.machine.machine_model import Machine
 from core.proving.program_timeline import Timeline, timed_blocks
 from core.proving.prove_program import prove

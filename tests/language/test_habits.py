@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from app.compose.machine_files import load_machine, named_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.omniturn import lex_line
 from core.language.source import Source
-from core.machine.machine_file import load_machine, named_machine
 from core.proving.prove_program import prove
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import pytest
 
 import resources
-from core.machine.machine_file import parse_machine
+from app.compose.machine_files import parse_machine
+from drivers.canopen.canopen_table import EncoderTable
+from drivers.inverter.inverter_table import InverterTable
 from tests.machine.test_hardware import CAN, assert_refused, changed
 
 VFD = (
@@ -25,11 +27,10 @@ def with_encoder(*changes: tuple[str, str]) -> str:
 
 def test_an_encoder_that_is_a_node() -> None:
     hardware = parse_machine(with_encoder(), "can").hardware
-    assert hardware.encoder is not None
-    assert (hardware.encoder.node, hardware.encoder.index, hardware.encoder.sub) == ("turns", 0x6004, 0)
-    assert hardware.encoder.counts_per_rev == 4096
-    assert hardware.vfd is not None
-    assert hardware.vfd.disagree == pytest.approx(0.15)
+    assert hardware.table(EncoderTable) == EncoderTable("turns", 0x6004, 0, 4096)
+    inverter = hardware.table(InverterTable)
+    assert inverter is not None
+    assert inverter.config.disagree == pytest.approx(0.15)
 
 
 def test_an_encoder_at_a_drive() -> None:
@@ -37,7 +38,7 @@ def test_an_encoder_at_a_drive() -> None:
         ('node = "turns", counts_per_rev = 4096', 'node = "Z", object = "60E4:1", counts_per_rev = -2000'),
         ("turns = { id = 20, profile = 406 }\n", ""),
     )
-    found = parse_machine(text, "can").hardware.encoder
+    found = parse_machine(text, "can").hardware.table(EncoderTable)
     assert found is not None
     assert (found.node, found.index, found.sub, found.counts_per_rev) == ("Z", 0x60E4, 1, -2000)
 

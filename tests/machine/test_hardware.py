@@ -7,10 +7,14 @@ import re
 import pytest
 
 import resources
-from core.machine.can_addresses import CanTerminal, can_terminal
-from core.machine.hardware_model import SdoValue, SimFault
-from core.machine.machine_file import MachineFileError, load_machine, parse_machine
-from core.table_schema import Finding
+from app.compose.machine_files import load_machine, parse_machine
+from core.machine.serial_table import DncModel
+from core.table_schema import Finding, MachineFileError
+from drivers.canopen.canopen_table import CanopenTable, CanTerminal, SdoValue, can_terminal
+from drivers.grblhal.grblhal_table import GrblhalTable
+from drivers.inverter.inverter_table import InverterTable
+from drivers.lookalikes.plant_config import PlannedFault
+from drivers.simulated.simulated_table import SimulatedTable
 
 CAN = resources.machine_file("gt75-canopen.toml")
 SHIPPED = resources.machine_file("gt75.toml")
@@ -37,18 +41,19 @@ def assert_refused(text: str, path: str, expected: str) -> None:
 
 def test_shipped_bus_in_model_units() -> None:
     machine = parse_machine(CAN, "can")
-    bus = machine.hardware.canopen
-    assert bus is not None
+    table = machine.hardware.table(CanopenTable)
+    assert table is not None
+    bus = table.bus
     assert (bus.interface, bus.channel, bus.bitrate) == ("socketcan", "can0", 1_000_000)
-    assert (bus.sync, bus.heartbeat, bus.record, bus.host_id) == (0.01, 0.1, 0.02, 127)
-    assert [(node.name, node.id, node.profile) for node in bus.nodes] == [
+    assert (bus.sync, bus.heartbeat, table.record, bus.host_id) == (0.01, 0.1, 0.02, 127)
+    assert [(node.name, node.id, node.profile) for node in table.nodes] == [
         ("X", 1, 402),
         ("Z", 2, 402),
         ("spindle", 3, 402),
         ("io", 10, 401),
     ]
-    assert SdoValue(0x6007, 0, 3) in bus.nodes[0].sdo
-    assert bus.nodes[3].sdo == ()  # "all" means the drives
+    assert SdoValue(0x6007, 0, 3) in table.nodes[0].sdo
+    assert table.nodes[3].sdo == ()  # "all" means the drives
     assert machine.hardware.spindle_driver == "cia402"
     assert machine.hardware.homes["X"].method == 1
     assert machine.hardware.homes["X"].latch == pytest.approx(6 * 25.4 / 60)
@@ -64,12 +69,17 @@ def test_every_shipped_file_is_good(name: str) -> None:
 
 def test_other_lines() -> None:
     machine = parse_machine(resources.machine_file("gt75-vfd.toml"), "vfd")
-    vfd, dnc = machine.hardware.vfd, machine.hardware.dnc
+    vfd, dnc = machine.hardware.table(InverterTable), machine.hardware.table(DncModel)
     assert vfd is not None
-    assert (vfd.family, vfd.baud, vfd.parity, vfd.comm_loss) == ("delta-vfdb", 9600, "N", 1.5)
+    assert (vfd.config.family, vfd.line.baud, vfd.line.parity, vfd.config.comm_loss) == (
+        "delta-vfdb",
+        9600,
+        "N",
+        1.5,
+    )
     assert dnc is not None
     assert (dnc.bits, dnc.parity, dnc.flow, dnc.eol) == (7, "E", "xonxoff", "\r\n")
-    grbl = parse_machine(resources.machine_file("gt75-grblhal.toml"), "grbl").hardware.grblhal
+    grbl = parse_machine(resources.machine_file("gt75-grblhal.toml"), "grbl").hardware.table(GrblhalTable)
     assert grbl is not None
     assert (grbl.x_mode, grbl.settings) == ("G8", {13: 0, 32: 2})
 
@@ -77,9 +87,11 @@ def test_other_lines() -> None:
 def test_faults_of_the_simulation() -> None:
     faults = 'faults = [{ at = 12.0, what = "jam", axis = "Z" }, { at = 1, what = "estop" }]'
     machine = parse_machine(changed("[sim]\n", f"[sim]\nrealtime = true\n{faults}\n", SHIPPED), "t")
-    assert machine.hardware.sim.faults == (SimFault(12.0, "jam", "Z"), SimFault(1.0, "estop"))
-    assert machine.hardware.sim.realtime
-    assert not load_machine(None).hardware.sim.realtime
+    sim, shipped = machine.hardware.table(SimulatedTable), load_machine(None).hardware.table(SimulatedTable)
+    assert sim is not None
+    assert sim.faults == (PlannedFault(12.0, "jam", "Z"), PlannedFault(1.0, "estop"))
+    assert sim.realtime
+    assert shipped == SimulatedTable()
 
 
 def test_addresses_of_terminals() -> None:

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import resources
-from core.machine.machine_file import MachineFileError, load_machine, parse_machine
-from core.table_schema import Finding
+from app.compose.machine_files import load_machine, parse_machine
+from core.table_schema import Finding, MachineFileError
 
 SHIPPED = resources.machine_file("gt75.toml")
 

@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from core.machine.machine_file import MachineFileError, parse_machine
+from app.compose.machine_files import parse_machine
+from core.table_schema import MachineFileError
 from tests.machine.mill import MILL
 
 

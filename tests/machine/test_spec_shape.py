@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 import resources
-from core.machine.machine_file import MachineFileError, load_machine, parse_machine
-from core.table_schema import Finding
+from app.compose.machine_files import load_machine, parse_machine
+from core.table_schema import Finding, MachineFileError
 from tests.machine.spoil import spec_text
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 
 import pytest
 
+from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from app.compose.workshop import drawer
 from app.desk.latest import Watch
@@ -15,7 +16,6 @@ from app.path.path_picture import Picture
 from core.executor.job import Job, make_job
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
-from core.machine.machine_file import load_machine
 
 INCH = 25.4
 LIMIT = 10.0

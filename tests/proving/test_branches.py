@@ -11,12 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.cli.toml_files import read_offsets
+from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.language.source import Source, load_source
-from core.machine.machine_file import load_machine
 from core.proving import program_branches
 from core.proving.machine_checks import travel_findings
 from core.proving.proof_report import Report

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from app.cli.toml_files import read_offsets
+from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import SecondaryOffset, Setup
 from core.language.source import Source, load_source
-from core.machine.machine_file import load_machine
 from core.proving.program_timeline import Timeline, timed_series
 from core.proving.prove_program import prove
 from core.proving.setpoint_trace import setpoints

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from app.compose.special_functions import furnish
 from app.compose.workshop import drawer, proof_of
@@ -21,7 +22,6 @@ from core.executor.job import Job
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source, load_source
-from core.machine.machine_file import load_machine
 from core.proving.program_timeline import Timeline, timed_blocks
 from core.proving.prove_program import prove
 from tests.screen.fake import FakeMachine

@@ -9,6 +9,7 @@ import pytest
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
+from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from app.compose.screen_desk import desk_and_executor, step_clock
 from app.screen.look import Look
@@ -17,7 +18,6 @@ from app.screen.theme import DARK
 from core.executor.snapshot import State
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import load_source
-from core.machine.machine_file import load_machine
 from core.proving.proof_report import Report
 from core.proving.prove_program import prove
 from tests.screen.hands import Key

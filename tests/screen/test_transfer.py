@@ -20,7 +20,7 @@ from app.transfer.serial_line import Received
 from app.transfer.serial_transfer import SerialTransfer
 from core.executor.commands import FeedHold
 from core.executor.snapshot import State
-from core.machine.hardware_model import DncModel
+from core.machine.serial_table import DncModel
 from core.ports import DriverError
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import pytest
 
+from app.compose.machine_files import load_machine
 from app.shopfloor.floor_reading import PLACES, FloorReader, Value
 from core.executor.raised_alarm import AlarmError, alarm_and_reaction, make_alarm
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal_state import Modal
-from core.machine.machine_file import load_machine
 from core.machine.machine_model import InputModel, Machine
 from tests.interrupted import broken_off
 

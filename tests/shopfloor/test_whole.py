@@ -15,25 +15,26 @@ from xml.etree import ElementTree
 import pytest
 
 import resources
+from app.compose.machine_files import load_machine, named_machine
 from app.compose.screen_desk import build_desk
 from app.compose.shop_floor import adapter_of, device_model, device_of
 from core.executor.commands import CycleStart, FeedHold, Reset, SetSwitch
 from core.executor.snapshot import Snapshot, State
-from core.machine.hardware_model import MtconnectModel
-from core.machine.machine_file import load_machine, named_machine
 from core.machine.machine_model import Machine
+from drivers.mtconnect.mtconnect_table import MtconnectTable
 from tests.cli.conftest import Turndesk, home, turndesk
 from tests.drivers.mtconnect.agent import FakeAgent, kinds_of
 from tests.executor.rig import Rig
 
 __all__ = ["home", "turndesk"]
 
-MODEL = MtconnectModel(enabled=True, bind="127.0.0.1", port=0, heartbeat=10.0, device="GT75")
+MODEL = MtconnectTable(enabled=True, bind="127.0.0.1", port=0, heartbeat=10.0, device="GT75")
 LATHE = load_machine(None)
 
 
 def with_model(machine: Machine) -> Machine:
-    return dataclasses.replace(machine, hardware=dataclasses.replace(machine.hardware, mtconnect=MODEL))
+    told = dataclasses.replace(machine.hardware, tables={"mtconnect": MODEL})
+    return dataclasses.replace(machine, hardware=told)
 
 
 class Floor:

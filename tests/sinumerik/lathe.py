@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
+from app.compose.machine_files import shipped_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.dialects import interpretation
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import Setup, ZeroOffset
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, Source
-from core.machine.machine_file import shipped_machine
 from core.machine.machine_model import Machine
 from core.proving.program_timeline import Timeline, timed_blocks
 

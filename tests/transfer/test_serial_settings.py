@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from app.transfer.serial_settings import ROWS, form_of, kept_form
-from core.machine.hardware_model import DncModel
+from core.machine.serial_table import DncModel
 
 DEFAULT = DncModel("/dev/ttyUSB0", 9600, 7, "E", 1, "xonxoff", "%", "\r\n")
 PORTS = ("/dev/ttyS0", "/dev/ttyUSB0")

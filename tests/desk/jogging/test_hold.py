@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 
 import pytest
 
+from app.compose.machine_files import load_machine
 from app.jog.held_jog import JogHold
 from app.jog.jog_speeds import CONTINUOUS, Speeds
 from core.executor.commands import Command, Jog, JogStep, JogStop
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.modal_state import Modal
-from core.machine.machine_file import load_machine
 
 INCH = 25.4
 FRAME = 0.016

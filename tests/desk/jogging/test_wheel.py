@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
+from app.compose.machine_files import load_machine
 from app.jog.held_jog import JogHold
 from app.jog.jog_handwheel import WheelHold
 from app.jog.jog_speeds import CONTINUOUS, Speeds
@@ -14,7 +15,6 @@ from core.executor.commands import Command, Jog, JogStop, Wheel, WheelOff
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.modal_state import Modal
 from core.machine.hardware_model import AnalogModel
-from core.machine.machine_file import load_machine
 from core.machine.machine_model import InputModel
 
 INCH = 25.4

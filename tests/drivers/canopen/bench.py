@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import resources
 from app.compose.canopen_backend import canopen_machine, canopen_peers
-from core.machine.machine_file import parse_machine
+from app.compose.machine_files import parse_machine
 from core.machine.machine_model import Machine
 from drivers.canopen.canopen_machine import CanopenMachine
 from drivers.clocks import StepClock

@@ -9,14 +9,8 @@ import pytest
 
 from core.ports import DriverError
 from drivers.canopen.canopen_bus import Bus
-from drivers.canopen.canopen_config import (
-    BusConfig,
-    CanopenConfig,
-    ModuleConfig,
-    OutputConfig,
-    PotConfig,
-    Terminal,
-)
+from drivers.canopen.canopen_config import CanopenConfig, ModuleConfig, OutputConfig, PotConfig, Terminal
+from drivers.canopen.canopen_table import BusConfig
 from drivers.canopen.canopen_terminals import CanopenIO
 from drivers.clocks import StepClock
 from tests.drivers.canopen.foreign import NODE, ForeignModule

@@ -12,6 +12,7 @@ from canopen.profiles.p402 import BaseNode402
 
 from app.compose.canopen_backend import canopen_peers
 from drivers.canopen.canopen_objects import drive_objects
+from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import RealClock
 from drivers.lookalikes.canopen_devices import Peers
 from tests.drivers.canopen.bench import can_machine
@@ -40,8 +41,9 @@ for name in PATIENT:
 def shop() -> Iterator[tuple[Peers, BaseNode402]]:
     """X of the shipped machine under the library's master, each end with threads of its own."""
     machine = can_machine()
-    bus = machine.hardware.canopen
-    assert bus is not None
+    table = machine.hardware.table(CanopenTable)
+    assert table is not None
+    bus = table.bus
     peers, ended = canopen_peers(machine, RealClock()), threading.Event()
 
     def play() -> None:

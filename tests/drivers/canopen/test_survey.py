@@ -10,17 +10,19 @@ from app.compose.canopen_backend import canopen_config, canopen_peers
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen.canopen_survey import Answer, survey
+from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import StepClock
 from tests.drivers.canopen.bench import can_machine
 
 
 def on_one_bus(there: Machine, asked: Machine) -> Machine:
     """The machine that asks, on the channel of the one that is there."""
-    bus, own = there.hardware.canopen, asked.hardware.canopen
+    bus, own = there.hardware.table(CanopenTable), asked.hardware.table(CanopenTable)
     assert bus is not None
     assert own is not None
-    moved = dataclasses.replace(own, channel=bus.channel)
-    return dataclasses.replace(asked, hardware=dataclasses.replace(asked.hardware, canopen=moved))
+    moved = dataclasses.replace(own, bus=dataclasses.replace(own.bus, channel=bus.bus.channel))
+    tables = {**asked.hardware.tables, "canopen": moved}
+    return dataclasses.replace(asked, hardware=dataclasses.replace(asked.hardware, tables=tables))
 
 
 def surveyed(*changes: tuple[str, str], silent: str = "") -> dict[str, Answer]:

@@ -10,7 +10,7 @@ from typing import ClassVar
 
 import resources
 from app.compose.inverter_backend import ClearingAxes, halt_with
-from core.machine.machine_file import parse_machine
+from app.compose.machine_files import parse_machine
 from drivers.inverter.inverter_attendant import Keeper
 from drivers.inverter.inverter_spindle import InverterSpindle, attendant
 from drivers.lookalikes.inverters import Inverter

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+from app.compose.machine_files import load_machine
 from app.compose.simulated_backend import simulated
-from core.machine.machine_file import load_machine
 from core.machine.machine_model import Machine
 from core.ports import DriverError, MachinePorts
 from drivers.clocks import StepClock

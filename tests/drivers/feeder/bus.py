@@ -10,7 +10,7 @@ import pytest
 
 import resources
 from app.compose.canopen_backend import canopen_peers
-from core.machine.machine_file import load_machine
+from app.compose.machine_files import load_machine
 from core.ports import DriverError
 from drivers.clocks import StepClock
 from drivers.lookalikes.canopen_devices import Peers

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from app.compose.feeder_process import FeederProcess
-from core.machine.machine_file import load_machine
+from app.compose.machine_files import load_machine
 from core.ports import Segments
 from drivers.clocks import RealClock
 from drivers.feeder.feeder_client import feeder_ports

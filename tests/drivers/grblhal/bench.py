@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import resources
 from app.compose.grblhal_backend import grblhal_config
+from app.compose.machine_files import parse_machine
 from app.compose.machine_setup import setup_for
 from app.compose.workshop import proof_of
 from core.executor.commands import Command, ConfirmStart, EnableDrives, LoadJob
@@ -15,7 +16,6 @@ from core.executor.job import Job, make_job
 from core.executor.snapshot import Event, Snapshot, State
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
-from core.machine.machine_file import parse_machine
 from core.machine.machine_model import Machine
 from core.proving.prove_program import prove
 from drivers.clocks import StepClock

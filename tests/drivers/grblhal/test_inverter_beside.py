@@ -13,7 +13,7 @@ import pytest
 from app.cli.main import main
 from app.compose.backends import connect
 from app.compose.grblhal_backend import grblhal_config
-from core.machine.machine_file import load_machine, parse_machine
+from app.compose.machine_files import load_machine, parse_machine
 from core.ports import DriverError
 from core.table_schema import MachineFileError
 from drivers.clocks import RealClock

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from drivers.clocks import StepClock
 from drivers.inverter.inverter_attendant import Attendant
-from drivers.inverter.inverter_config import InverterConfig
 from drivers.inverter.inverter_spindle import InverterSpindle, attendant
+from drivers.inverter.inverter_table import InverterConfig
 from drivers.lookalikes.inverters import (
     HZ_PER_RPM,
     DeltaMemory,

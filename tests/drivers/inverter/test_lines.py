@@ -14,7 +14,7 @@ import resources
 from app.cli.main import main
 from app.compose.backends import Connected, connect
 from app.compose.machine_answers import check_ports
-from core.machine.machine_file import load_machine
+from app.compose.machine_files import load_machine
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.clocks import RealClock, StepClock

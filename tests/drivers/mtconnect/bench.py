@@ -7,8 +7,9 @@ from datetime import UTC, datetime, timedelta
 
 from drivers.clocks import StepClock
 from drivers.mtconnect.devices_xml import devices_xml
-from drivers.mtconnect.mtconnect_adapter import Adapter, Settings
+from drivers.mtconnect.mtconnect_adapter import Adapter
 from drivers.mtconnect.mtconnect_items import Component, Layout, machine_items
+from drivers.mtconnect.mtconnect_table import MtconnectTable
 from drivers.mtconnect.shdr_lines import Active, Report, Value
 from tests.drivers.mtconnect.agent import FakeAgent
 
@@ -32,7 +33,7 @@ class Bench:
         self.model = devices_xml(lathe(), "bench", BEGIN)
         self.agents: list[FakeAgent] = []
         self.adapter = Adapter(
-            Settings("127.0.0.1", 0, heartbeat),
+            MtconnectTable("127.0.0.1", 0, heartbeat),
             tuple(lathe().all_items()),
             lambda: Report(dict(self.values), dict(self.conditions)),
             self.clock,

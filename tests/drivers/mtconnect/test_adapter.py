@@ -9,7 +9,8 @@ import pytest
 from core.ports import DriverError
 from drivers.clocks import StepClock
 from drivers.mtconnect.agent_links import BEHIND, READ, AgentLink
-from drivers.mtconnect.mtconnect_adapter import MOST, Adapter, Settings
+from drivers.mtconnect.mtconnect_adapter import MOST, Adapter
+from drivers.mtconnect.mtconnect_table import MtconnectTable
 from drivers.mtconnect.shdr_lines import Active, Report
 from tests.drivers.mtconnect.bench import HEARTBEAT, Bench
 
@@ -225,7 +226,7 @@ def test_closing_hangs_up_on_everybody() -> None:
 
 
 def refusing(bind: str, port: int) -> str:
-    adapter = Adapter(Settings(bind, port, 10.0), (), lambda: Report({}, {}), StepClock())
+    adapter = Adapter(MtconnectTable(bind, port, 10.0), (), lambda: Report({}, {}), StepClock())
     with pytest.raises(DriverError) as caught:
         adapter.open()
     adapter.close()

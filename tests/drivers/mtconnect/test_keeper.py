@@ -9,7 +9,8 @@ import pytest
 
 from core.ports import DriverError
 from drivers.clocks import RealClock
-from drivers.mtconnect.mtconnect_adapter import Adapter, Keeper, Settings
+from drivers.mtconnect.mtconnect_adapter import Adapter, Keeper
+from drivers.mtconnect.mtconnect_table import MtconnectTable
 from drivers.mtconnect.shdr_lines import Report
 from tests.drivers.mtconnect.bench import lathe
 
@@ -29,7 +30,7 @@ class Machine:
 
 
 def adapter(machine: Machine, port: int = 0) -> Adapter:
-    return Adapter(Settings(HERE, port, 10.0), tuple(lathe().all_items()), machine.report, RealClock())
+    return Adapter(MtconnectTable(HERE, port, 10.0), tuple(lathe().all_items()), machine.report, RealClock())
 
 
 def threads() -> list[str]:

@@ -1,0 +1,53 @@
+"""Machine files with everything that drivers add to them: the one list of drivers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import resources
+from core.machine import machine_file, serial_table
+from core.machine.machine_model import Machine
+from core.table_schema import Driver
+from drivers.canopen import canopen_table
+from drivers.grblhal import grblhal_table
+from drivers.inverter import inverter_table
+from drivers.mtconnect import mtconnect_table
+from drivers.simulated import simulated_table
+
+SHIPPED = "gt75.toml"
+# One entry a driver, in the order in which a machine file's owner is told of them.
+DRIVERS: tuple[Driver, ...] = (
+    simulated_table.DRIVER,
+    canopen_table.DRIVER,
+    inverter_table.DRIVER,
+    grblhal_table.DRIVER,
+    serial_table.DRIVER,
+    mtconnect_table.DRIVER,
+)
+
+
+def parse_machine(text: str, source: str) -> Machine:
+    """The machine that the TOML ``text`` describes; ``source`` names it. Raises MachineFileError."""
+    return machine_file.parse_machine(text, source, DRIVERS)
+
+
+def load_machine(path: Path | None = None) -> Machine:
+    """The machine that ``path`` describes; None: the shipped simulated lathe.
+
+    Raises MachineFileError with everything that is wrong, also where the file cannot be read at all.
+    """
+    if path is None:
+        return parse_machine(resources.machine_file(SHIPPED), SHIPPED)
+    return parse_machine(machine_file.text_of(path), str(path))
+
+
+def named_machine(name: str | None) -> Machine:
+    """The machine of a file, a shipped one by its name, or (None) the shipped lathe; as ``load_machine``."""
+    if name and name in resources.machine_names() and not Path(name).exists():
+        return shipped_machine(name)
+    return load_machine(Path(name) if name else None)
+
+
+def shipped_machine(name: str) -> Machine:
+    """One of the machines that come with the product. Raises FileNotFoundError for another name."""
+    return parse_machine(resources.machine_file(f"{name}.toml"), f"{name}.toml")

@@ -1,0 +1,186 @@
+"""Tables that drivers add to a machine file, and the pots: read, checked against the rest, and built."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from core.machine.hardware_model import AnalogModel, Hardware, HomeModel
+from core.table_schema import (
+    Driver,
+    DriverTable,
+    Field,
+    FileReading,
+    Finding,
+    Kind,
+    Unit,
+    Values,
+    read_named,
+    read_table,
+    unknown_keys,
+    written,
+)
+
+ANALOG_NAMES = ("feed_pot", "spindle_pot", "handwheel")
+_ANALOG = (
+    Field("at", Kind.TEXT),
+    Field("range", Kind.PAIR, Unit.PLAIN, -1000.0, 1000.0, default=(0.0, 1.0)),
+    Field("switch", Kind.TEXT, default=""),
+    Field("counts_per_click", Kind.WHOLE, low=-1000, high=1000, default=1),
+)
+_AXES = "XYZABC"
+
+
+def tables_of(drivers: Sequence[Driver]) -> tuple[DriverTable, ...]:
+    """All tables, in the order of the drivers."""
+    return tuple(table for driver in drivers for table in driver.tables)
+
+
+def children_of(drivers: Sequence[Driver], path: str) -> tuple[str, ...]:
+    """Names of the tables that drivers have inside a table of the control's own."""
+    parted = (table.path.rpartition(".") for table in tables_of(drivers))
+    return tuple(name for parent, _, name in parted if parent == path)
+
+
+class DriverReading:
+    """The tables of the drivers that a file has; ``findings`` is what is wrong inside them."""
+
+    def __init__(self, file: FileReading, drivers: Sequence[Driver]) -> None:
+        self.file = file
+        self._tables = [table for table in tables_of(drivers) if table.path in file.tables]
+        self.findings: list[Finding] = []
+        for table in self._tables:
+            raw = file.raw(table.path)
+            raw = {} if raw is None and table.always else raw
+            self.findings += read_table(raw, table.fields, table.path, file.values, table.children)
+            self.findings += table.read_children(file)
+        self.findings += _read_analog(file)
+
+    def hardware(self, outputs: Sequence[str]) -> Hardware:
+        """Everything about wires in the model's units; only for files without a finding."""
+        file, values = self.file, self.file.values
+        refreshed = {name: values.number(f"io.out.{name}.refresh_ms") for name in outputs}
+        return Hardware(
+            feeder=values.flag("machine.feeder"),
+            spindle_driver=values.text("spindle.driver"),
+            tables={table.path: table.model(file) for table in self._tables},
+            analog={name: _analog(values, name) for name in file.names("io.analog")},
+            homes={name: _home(values, name) for name in file.axes if values.has(f"axis.{name}.home.order")},
+            refresh={name: longest for name, longest in refreshed.items() if longest > 0.0},
+        )
+
+
+def tables_there(data: Mapping[str, object], drivers: Sequence[Driver]) -> tuple[str, ...]:
+    """Paths of the drivers' tables that a file has, or that count as there without being written."""
+
+    def there(table: DriverTable) -> bool:
+        found: object = data
+        for key in table.path.split("."):
+            found = found.get(key) if isinstance(found, dict) else None
+        return found is not None or table.always
+
+    return tuple(table.path for table in tables_of(drivers) if there(table))
+
+
+def _read_analog(file: FileReading) -> Iterator[Finding]:
+    table = file.raw("io.analog")
+    if isinstance(table, dict):
+        yield from unknown_keys(table, list(ANALOG_NAMES), "io.analog")
+        table = {name: entry for name, entry in table.items() if name in ANALOG_NAMES}
+    yield from read_named({} if table is None else table, _ANALOG, "io.analog", file.values)
+
+
+def _analog(values: Values, name: str) -> AnalogModel:
+    path = f"io.analog.{name}"
+    low, high = values.pair(f"{path}.range")
+    clicks = values.whole(f"{path}.counts_per_click")
+    return AnalogModel(name, values.text(f"{path}.at"), low, high, values.text(f"{path}.switch"), clicks)
+
+
+def _home(values: Values, axis: str) -> HomeModel:
+    path, has = f"axis.{axis}.home", values.has
+    return HomeModel(
+        method=values.whole(f"{path}.method") if has(f"{path}.method") else 0,
+        latch=values.number(f"{path}.latch") if has(f"{path}.latch") else 0.0,
+        offset=values.number(f"{path}.offset") if has(f"{path}.offset") else 0.0,
+    )
+
+
+# --- rules between drivers and the rest of the file --------------------------------------------------------
+
+
+def broken(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
+    """Every finding about backend, spindle driver, ports and renewed outputs; then the drivers' own."""
+    yield from _backend(file, drivers)
+    yield from _spindle(file, drivers)
+    yield from _count_rates(file.values, drivers)
+    yield from _renewed(file)
+    yield from _guard(file)
+    yield from _ports(file.values, drivers)
+    for table in tables_of(drivers):
+        yield from table.rules(file)
+
+
+def _backend(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
+    for driver in drivers:
+        path = driver.tables[0].path
+        if driver.backend and path not in file.tables and file.values.says("machine.backend", driver.backend):
+            yield Finding(f"[{path}]", "", f'missing; machine.backend = "{driver.backend}" needs it')
+
+
+def _spindle(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
+    values, path = file.values, "spindle.driver"
+    if not values.has(path, "machine.backend"):
+        return
+    word, backend = values.text(path), values.text("machine.backend")
+    beside = {
+        driver.spindle: driver.tables[0].path for driver in drivers if driver.spindle and not driver.backend
+    }
+    allowed = [*(driver.spindle for driver in drivers if driver.backend == backend), *beside]
+    if word not in allowed:
+        expected = f"expected {' or '.join(allowed)} with machine.backend = {written(backend)}"
+        yield Finding(path, written(word), expected)
+    elif word in beside and beside[word] not in file.tables:
+        yield Finding(beside[word], "", f'missing; spindle.driver = "{word}" needs it')
+
+
+def _count_rates(values: Values, drivers: Sequence[Driver]) -> Iterator[Finding]:
+    """Counts per second of an axis, which the backend must take."""
+    rates = {driver.backend: driver.count_rate for driver in drivers}
+    for axis in _AXES:
+        path, count = f"axis.{axis}.vmax", f"axis.{axis}.count"
+        if not values.has(path, count, "machine.backend"):
+            continue
+        rate, limit = values.number(path) / values.number(count), rates[values.text("machine.backend")]
+        if rate > limit:
+            yield Finding(
+                path,
+                "",
+                f"{rate:.6g} counts/s is over the {limit:.6g} of this backend;"
+                " lower vmax or take a coarser count",
+            )
+
+
+def _renewed(file: FileReading) -> Iterator[Finding]:
+    values = file.values
+    for path in file.terminals:
+        wanted = path.startswith("io.out.") and values.has(f"{path}.refresh_ms", f"{path}.safe")
+        if wanted and values.number(f"{path}.refresh_ms") and values.found[f"{path}.safe"] is not False:
+            expected = "an output that falls when nobody renews it needs safe = false"
+            yield Finding(f"{path}.refresh_ms", f"{1000 * values.number(f'{path}.refresh_ms'):g}", expected)
+
+
+def _guard(file: FileReading) -> Iterator[Finding]:
+    path = "interlocks.guard_stops"
+    if file.values.has(path) and file.values.flag(path) and "io.in.guard" not in file.terminals:
+        yield Finding(path, "true", "needs the guard's switch as the input guard, on while it is closed")
+
+
+def _ports(values: Values, drivers: Sequence[Driver]) -> Iterator[Finding]:
+    """A serial port has one owner."""
+    taken: dict[str, str] = {}
+    for path in (table.port for table in tables_of(drivers) if table.port):
+        if values.has(path):
+            port = values.text(path)
+            first = taken.setdefault(port, path)
+            if first != path:
+                yield Finding(path, written(port), f"expected a port of its own; {first} has it")

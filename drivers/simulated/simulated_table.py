@@ -1,0 +1,118 @@
+"""[sim] of the machine file: the simulation's pace and seed, and what breaks in it by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from core.table_schema import (
+    Driver,
+    DriverTable,
+    Field,
+    FileReading,
+    Finding,
+    Kind,
+    Unit,
+    Values,
+    read_table,
+    written,
+)
+
+if TYPE_CHECKING:
+    from drivers.lookalikes.plant_config import PlannedFault
+
+FAULTS = (
+    "jam",
+    "encoder_stuck",
+    "runaway",
+    "drive_fault",
+    "spindle_bog",
+    "spindle_wander",
+    "spindle_ignores_stop",
+    "spindle_fault",
+    "collet_sensor_stuck",
+    "station_silent",
+    "pot_noise",
+    "estop",
+)
+_OF_AN_AXIS = frozenset(("jam", "encoder_stuck", "runaway", "drive_fault"))
+_FIELDS = (
+    Field("seed", Kind.WHOLE, low=0, high=2**31, default=1),
+    Field("realtime", Kind.FLAG, default=False),
+)
+_FAULT = (
+    Field("at", Kind.NUMBER, Unit.SECONDS, 0.0, 1e6),
+    Field("what", Kind.CHOICE, choices=FAULTS),
+    Field("axis", Kind.TEXT, default=""),
+    Field("value", Kind.NUMBER, Unit.PLAIN, -1e6, 1e6, default=0.0),
+    Field("seconds", Kind.NUMBER, Unit.SECONDS, 0.0, 1e6, default=0.0),
+    Field("text", Kind.TEXT, default=""),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedTable:
+    """The simulated machine's own settings."""
+
+    seed: int = 1
+    realtime: bool = False  # a run without a screen keeps the machine's pace too
+    faults: tuple[PlannedFault, ...] = ()
+
+
+def _read(file: FileReading) -> Iterator[Finding]:
+    entries = file.raw("sim.faults")
+    if entries is not None and not isinstance(entries, list):
+        yield Finding("sim.faults", written(entries), "expected a list of tables, [{...}]")
+        return
+    for path, entry in zip(_paths(file), entries or (), strict=True):
+        yield from read_table(entry, _FAULT, path, file.values)
+
+
+def _paths(file: FileReading) -> list[str]:
+    """Of the faults, counted from 1."""
+    entries = file.raw("sim.faults")
+    return [f"sim.faults.{n}" for n in range(1, len(entries) + 1)] if isinstance(entries, list) else []
+
+
+def _rules(file: FileReading) -> Iterator[Finding]:
+    values, axes = file.values, file.axes
+    for path in _paths(file):
+        if not values.has(f"{path}.what", f"{path}.axis"):
+            continue
+        what, axis = values.text(f"{path}.what"), values.text(f"{path}.axis")
+        if what in _OF_AN_AXIS and axis not in axes:
+            expected = f"{what} happens to an axis: one of {', '.join(axes)}"
+            yield Finding(f"{path}.axis", written(axis), expected)
+        if what not in _OF_AN_AXIS and axis:
+            yield Finding(f"{path}.axis", written(axis), f"{what} happens to no axis; take it out")
+
+
+def _table(file: FileReading) -> SimulatedTable:
+    values = file.values
+    return SimulatedTable(
+        seed=values.whole("sim.seed"),
+        realtime=values.flag("sim.realtime"),
+        faults=tuple(_fault(values, path) for path in _paths(file)),
+    )
+
+
+def _fault(values: Values, path: str) -> PlannedFault:
+    from drivers.lookalikes.plant_config import PlannedFault  # noqa: PLC0415  few files plan any
+
+    return PlannedFault(
+        at=values.number(f"{path}.at"),
+        what=values.text(f"{path}.what"),
+        axis=values.text(f"{path}.axis"),
+        value=values.number(f"{path}.value"),
+        seconds=values.number(f"{path}.seconds"),
+        text=values.text(f"{path}.text"),
+    )
+
+
+DRIVER = Driver(
+    tables=(DriverTable("sim", _FIELDS, _table, ("faults",), _read, _rules, always=True),),
+    backend="sim",
+    spindle="sim",
+    count_rate=1e6,
+)
