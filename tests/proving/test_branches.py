@@ -153,7 +153,7 @@ def test_the_range_of_the_cycle_time_is_that_of_the_inputs() -> None:
     assert off.times.cycle < on.times.cycle - 10
     for report in (off, on):
         assert report.ways.cycle == pytest.approx((off.times.cycle, on.times.cycle), abs=0.05)
-        assert report.ways.gone == 5
+        assert report.ways.proved == 5
 
 
 def test_block_delete_counts_in_the_range() -> None:
@@ -167,7 +167,7 @@ def test_a_program_that_asks_nothing_is_gone_through_once() -> None:
     reading = ReadProgram(Source("A", "\n".join((*HEAD, "M98P1", *SUB))))
     assert program_branches.Branches(reading, circumstances(), MACHINE, ideal=False).root is None
     report = proved("Z-1", "M30")
-    assert (report.ways.gone, report.ways.left) == (1, 0)
+    assert (report.ways.proved, report.ways.unproved) == (1, 0)
     assert report.ways.cycle == (report.times.cycle,) * 2
 
 
@@ -189,12 +189,12 @@ def test_what_cannot_be_gone_through_is_named(monkeypatch: pytest.MonkeyPatch) -
         "warning",
     )
     assert "Never proved: input " in found.message
-    assert report.ways.gone == 3
+    assert report.ways.proved == 3
 
 
 def test_outcomes_that_no_proof_could_go_through_one_by_one_end() -> None:
     report = proved(*many(14))
-    assert report.ways.left > 0
+    assert report.ways.unproved > 0
     assert [d.code for d in report.diagnostics] == ["unreached-branch"]
     assert "Never proved" not in report.diagnostics[0].message  # every subroutine was
 
@@ -203,7 +203,7 @@ def test_a_loop_of_bar_work_with_many_passes_is_proved() -> None:
     sub = ("LF", "M30", "}1", "X.6Z.2", "X.5Z.1", "M99")
     report = proved("LS900", "Z-.1F50", "M97I1C1P1", "Z.1", *sub)
     assert errors(report) == []
-    assert report.ways.gone == program_branches.MOST_WAYS
+    assert report.ways.proved == program_branches.MOST_WAYS
 
 
 def test_a_subroutine_that_nothing_calls_is_told() -> None:
@@ -216,7 +216,7 @@ def test_the_bar_feeders_sample_proves_and_its_end_of_bar_too() -> None:
     tools, secondary = read_offsets(SAMPLES / "offsets.toml")
     source = load_source(SAMPLES / "pinbar.nc")
     setup = setup_for(MACHINE, tools=tools, secondary=secondary)
-    assert prove(source, setup, MACHINE).ways.gone == 2
+    assert prove(source, setup, MACHINE).ways.proved == 2
     worse = replace(source, text=source.text.replace("M31\n", "M31\nZ9.5\n"))
     (found,) = prove(worse, setup, MACHINE).errors
     assert (found.line, found.code) == (35, "soft-limit")
@@ -259,4 +259,4 @@ def test_the_proof_finds_what_some_set_of_answers_does_and_nothing_else(
     expected = set(by_every_answer(text, questions))
     report = prove(Source("A", text), circumstances(), MACHINE)
     assert {d.line for d in report.diagnostics if d.code == "soft-limit"} == expected
-    assert report.ways.left == 0
+    assert report.ways.unproved == 0
