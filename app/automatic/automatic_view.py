@@ -17,7 +17,7 @@ from app.path.path_aspects import tip_of
 from app.path.path_view import PathView
 from app.programs.file_prompt_view import FilePrompt
 from app.screen import page_table
-from app.screen.page_base import Doings, Host, Page
+from app.screen.page_base import Host, KeyActions, Page
 from app.screen.program_listing import Listing
 from app.screen.window_bars import CommentLine
 from app.screen.window_layout import Rect, work_parts
@@ -128,7 +128,7 @@ class AutomaticPage(Page):
         """Which of the two the keys of looking around are for."""
         return self.path if self.space.scene is None else self.space
 
-    def doings(self) -> Doings:
+    def key_actions(self) -> KeyActions:
         """What the page itself does, by key."""
         return {
             "F2": self.ask_file,

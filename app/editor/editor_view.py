@@ -31,7 +31,7 @@ from app.editor.versions_view import VersionList
 from app.path.measuring import measuring_words
 from app.screen import page_table
 from app.screen.letter_keys import PROGRAMS, LetterPad, strike
-from app.screen.page_base import Doings, Host, Page
+from app.screen.page_base import Host, KeyActions, Page
 from app.working_plane.plane_instant import at_line, plane_words
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
@@ -112,7 +112,7 @@ class EditorPage(Page):
         now = self._keys()
         return tuple(now[n].label if n in now else "" for n in range(1, 11))
 
-    def doings(self) -> Doings:
+    def key_actions(self) -> KeyActions:
         """The function keys of the moment."""
         found = {f"F{number}": key.action for number, key in self._keys().items()}
         if self.mode is Mode.LOOK:  # keys of the Automatic page that mean the same here

@@ -16,7 +16,7 @@ from app.jog.tool_setting_view import ToolPanel
 from app.jog.touch_off import TOUCH_X, TOUCH_Z
 from app.screen import page_table
 from app.screen.entry_panel import Asked, AskedPanel, KeyPad
-from app.screen.page_base import Doings, Host, Page
+from app.screen.page_base import Host, KeyActions, Page
 from core.executor.snapshot import Snapshot
 
 Key = Qt.Key
@@ -105,7 +105,7 @@ class JogPage(Page):
         self.pad.let_go()
         self.model.let_go()
 
-    def doings(self) -> Doings:
+    def key_actions(self) -> KeyActions:
         """Steps, speeds, readout, touching off, undo."""
         model = self.model
         return {

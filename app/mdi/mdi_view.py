@@ -17,7 +17,7 @@ from app.mdi.mdi_model import MdiModel
 from app.screen import page_table
 from app.screen.letter_keys import LINES, LetterPad
 from app.screen.look import LEFT, Look, put, put_raw
-from app.screen.page_base import Doings, Host, Page
+from app.screen.page_base import Host, KeyActions, Page
 from app.screen.panel import Panel, Press
 from core.executor.snapshot import CYCLE, Snapshot, Starts
 from core.interpreter.checkpoint import Checkpoint
@@ -192,7 +192,7 @@ class MdiPage(Page):
         self.letters = LetterPad(self.look, self._touched, self, LINES)
         self.inforce = InForcePanel(self.look, self)
 
-    def doings(self) -> Doings:
+    def key_actions(self) -> KeyActions:
         """Keys of this page alone."""
         return {
             "F2": lambda: self._go(page_table.AUTOMATIC),

@@ -22,7 +22,7 @@ from app.path.path_view import PathView
 from app.screen import page_table
 from app.screen.entry_panel import Asked, AskedPanel, KeyPad
 from app.screen.look import LEFT, Look, put
-from app.screen.page_base import Doings, Host, Page
+from app.screen.page_base import Host, KeyActions, Page
 from app.screen.panel import Panel
 from core.executor.snapshot import Snapshot
 
@@ -56,7 +56,7 @@ class EffectView(PathView):
             factor = NEAR * self.width() / (apart * frame.scale)
             self.zoom(max(0, math.ceil(math.log(factor, ZOOM_STEP))))
 
-    def doings(self) -> Doings:
+    def key_actions(self) -> KeyActions:
         """Looking around by keys, as on the Automatic page."""
         return {
             "Zoom in": partial(self.zoom, 1),
@@ -146,9 +146,9 @@ class OffsetPage(Page):
         """The table as it is now."""
         raise NotImplementedError
 
-    def doings(self) -> Doings:
+    def key_actions(self) -> KeyActions:
         """Undo, history, effect, and the other tables."""
-        around = self.effect.doings() if self.effect_model.open else {}
+        around = self.effect.key_actions() if self.effect_model.open else {}
         return {
             **around,
             "F4": self.model.undo,

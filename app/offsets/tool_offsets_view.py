@@ -15,7 +15,7 @@ from app.offsets.offsets_view import OffsetPage
 from app.offsets.tool_offsets import COLUMNS, PAGE, ToolOffsets
 from app.screen import page_table
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
-from app.screen.page_base import Doings, Host
+from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Panel
 from app.screen.tool_tip_drawing import draw_tip
 from core.executor.snapshot import Snapshot
@@ -176,9 +176,9 @@ class ToolOffsetsPage(OffsetPage):
         super().__init__(host, parent, ToolOffsets(host.desk))
         self.table = ToolTable(self.look, self.model, self)
 
-    def doings(self) -> Doings:
+    def key_actions(self) -> KeyActions:
         """Add to what is there; X and Z from the master; the rest as on F9."""
-        return {**super().doings(), "F2": self.model.add, "F3": self.model.turn_relative}
+        return {**super().key_actions(), "F2": self.model.add, "F3": self.model.turn_relative}
 
     def show_table(self, _snapshot: Snapshot) -> None:
         """The table as it is now."""

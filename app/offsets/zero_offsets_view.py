@@ -15,7 +15,7 @@ from app.offsets.offsets_view import OffsetPage
 from app.offsets.zero_offsets import ZERO_FIELDS, ZeroOffsets
 from app.screen import page_table
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
-from app.screen.page_base import Doings, Host
+from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Panel
 from core.executor.snapshot import Snapshot
 from core.store.store_rows import ZERO_CODES, ZeroRow
@@ -96,9 +96,9 @@ class ZeroOffsetsPage(OffsetPage):
         super().__init__(host, parent, ZeroOffsets(host.desk))
         self.table = ZeroTable(self.look, self.model.choose, self)
 
-    def doings(self) -> Doings:
+    def key_actions(self) -> KeyActions:
         """The position of the machine; no effect is drawn of these."""
-        shared = {key: act for key, act in super().doings().items() if key not in {"F6", "F10"}}
+        shared = {key: act for key, act in super().key_actions().items() if key not in {"F6", "F10"}}
         return {**shared, "F2": self.model.here}
 
     def show_table(self, snapshot: Snapshot) -> None:

@@ -19,7 +19,7 @@ from app.programs.program_rows import Program
 from app.screen import page_table
 from app.screen.letter_keys import LetterPad
 from app.screen.look import LEFT, Look, put
-from app.screen.page_base import Doings, Host
+from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Panel
 from app.screen.sheet_panel import ListPage, SheetPanel
 from app.working_plane.plane_instant import at_line
@@ -104,7 +104,7 @@ class ProgramsPage(ListPage):
         own = {"F3": "" if self.model.transfer.open else "EDIT"}
         return self.labels_of(own, self.model.keys())
 
-    def doings(self) -> Doings:
+    def key_actions(self) -> KeyActions:
         """The keys of this moment."""
         keys = self.model.keys()
         own = {} if self.model.transfer.open else {"F3": self._edit}

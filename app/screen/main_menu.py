@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.screen import page_table
 from app.screen.look import CENTRE, LEFT, Look, put
-from app.screen.page_base import Doings, Host, Page
+from app.screen.page_base import Host, KeyActions, Page
 from app.screen.page_table import IN_MENU, PageEntry
 from app.screen.panel import Panel
 
@@ -31,7 +31,7 @@ class MenuPage(Page):
         super().__init__(host, parent)
         self.list = _Tiles(self.look, host.press, self)
 
-    def doings(self) -> Doings:
+    def key_actions(self) -> KeyActions:
         """The function keys of the entries."""
         return {entry.key: partial(self._open, entry.name) for entry in IN_MENU}
 

@@ -93,7 +93,7 @@ class MainWindow(QWidget):
     def press(self, key: str) -> None:
         """Do what a key does; fingers on the screen come here too."""
         frame = self.frame
-        action = (frame.doings().get(key) if frame else None) or self._keys.get(key)
+        action = (frame.key_actions().get(key) if frame else None) or self._keys.get(key)
         if action is not None:
             if frame is not None:
                 frame.page.pressed()

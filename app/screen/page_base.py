@@ -8,8 +8,8 @@ spindle, lamps, dock, prompt and function keys belong to the ``Frame``. To plug 
 ``LABELS``    ten labels of up to eight characters for the function keys; an empty one is no key. F1 is MENU.
 ``labels()``  the same, where they change with what the page is doing.
 ``STARTS``    whether cycles are started while it is shown; only the Automatic page's palms start anything.
-``doings()``  what its keys do, by the names of ``app.screen.keys``. They go before the frame's own keys; H,
-              E, D, R, A and the pots work on every page, as does F1.
+``key_actions()``  what its keys do, by the names of ``app.screen.keys``. They go before the frame's own
+              keys; H, E, D, R, A and the pots work on every page, as does F1.
 ``key_down``  sees every key that goes down (also a repeating one) before all else; True takes it.
 ``pressed()`` is told before any other key or finger acts: what is held on the page ends then.
 ``key_up``    sees every key that comes up; ``let_go()``: no release will arrive any more, let go of all.
@@ -48,7 +48,7 @@ from app.desk.program_loading import Loaded
 from app.screen.look import Look
 from core.executor.snapshot import Snapshot
 
-Doings = Mapping[str, Callable[[], None]]
+KeyActions = Mapping[str, Callable[[], None]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +78,7 @@ class Page(QWidget):
         """The labels of this moment; asked for once a frame."""
         return self.LABELS
 
-    def doings(self) -> Doings:
+    def key_actions(self) -> KeyActions:
         """Keys of this page alone."""
         return {}
 

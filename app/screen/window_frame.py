@@ -213,12 +213,12 @@ class Frame(FrameParts):
         self.window().setFocus()
         page.opened()
 
-    def doings(self) -> dict[str, Callable[[], None]]:
+    def key_actions(self) -> dict[str, Callable[[], None]]:
         """What keys do here: those of the page, before those of the frame."""
         return {
             "F1": partial(self._go, page_table.MENU),
             "F7": self.toggle_log,
-            **self.page.doings(),
+            **self.page.key_actions(),
             **(self._log_doings() if self.log.isVisible() else {}),
         }
 

@@ -18,7 +18,7 @@ from app.path.path_view import PathView
 from app.screen import page_table
 from app.screen.entry_panel import draw_entry
 from app.screen.look import LEFT, Look, put
-from app.screen.page_base import Doings, Host, Page
+from app.screen.page_base import Host, KeyActions, Page
 from app.screen.panel import Panel
 from app.screen.program_listing import Listing
 from app.searchto.searchto_model import SearchtoModel, Stage
@@ -130,7 +130,7 @@ class SearchtoPage(Page):
         self.starts = StartsPanel(self.look, self)
         self._loaded: Loaded | None = None
 
-    def doings(self) -> Doings:
+    def key_actions(self) -> KeyActions:
         """Keys of this page alone."""
         model = self.model
         return {

@@ -15,7 +15,7 @@ from app.screen import page_table
 from app.screen.entry_panel import KeyPad
 from app.screen.letter_keys import LetterPad
 from app.screen.look import CENTRE, LEFT, Look, put
-from app.screen.page_base import Doings, Host
+from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Panel
 from app.screen.sheet_panel import ListPage, SheetPanel
 from app.special.special_functions import SpecialFunctions
@@ -109,7 +109,7 @@ class SpecialPage(ListPage):
         """Those of the function that is shown, beside the page's own."""
         return self.labels_of({}, self.model.section.keys())
 
-    def doings(self) -> Doings:
+    def key_actions(self) -> KeyActions:
         """The keys of the function that is shown; pressing one goes into it."""
         keys = self.model.section.keys()
         return {name: partial(self._do, name) for name in keys}
