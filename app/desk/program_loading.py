@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import gc
-import threading
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.desk.latest import AbandonedError, Watch, sentence
+from app.desk.latest import Latest, Request, Watch
 from core.executor.commands import Command, GiveProof, LoadJob
 from core.executor.job import Job, Proof
 from core.language.diagnostics import Diagnostic, Severity
@@ -97,41 +96,22 @@ class ProgramLoader:
 
     workshop: LoadingSteps
     post: Callable[[Command], None]
+    worker: Latest = field(default_factory=lambda: Latest("loading"))
+    loads: int = 0  # how often loading has begun, or was ended
     _now: Loaded = field(default_factory=Loaded)
-    _ticket: int = 0
-    _future: Future[None] | None = None
-    _lock: threading.Lock = field(default_factory=threading.Lock)
-    _pool: ThreadPoolExecutor = field(
-        default_factory=lambda: ThreadPoolExecutor(1, thread_name_prefix="loading")
-    )
 
     @property
     def now(self) -> Loaded:
-        """The program on the desk. A worker that has died shows as trouble, not as endless waiting."""
-        future = self._future
-        if future is not None and future.done():
-            error = future.exception()
-            self._future = None
-            if error is not None and not isinstance(error, AbandonedError):
-                self._now = replace(self._now, phase=Phase.UNREADABLE, trouble=sentence(error))
+        """The program on the desk. Work that has failed shows as trouble, not as endless waiting."""
+        self.worker.poll()
         return self._now
 
     def load(self, path: Path, block_delete: bool = False) -> None:
         """Start loading; what was being loaded before is given up."""
-        with self._lock:
-            self._ticket += 1
-            ticket = self._ticket
+        with self.worker.lock:
+            self.loads += 1
             self._now = Loaded(Phase.READING, path, block_delete)
-        self._future = self._pool.submit(self._work, ticket, path, block_delete)
-
-    @property
-    def loads(self) -> int:
-        """How often loading has begun."""
-        return self._ticket
-
-    def submit(self, work: Callable[[], None]) -> Future[None]:
-        """Have something done by the worker that loads, after what it has in hand."""
-        return self._pool.submit(work)
+            self.worker.ask(partial(self._load, path, block_delete), _published, self._failed)
 
     def adopt(self, loaded: Loaded) -> None:
         """The same program under other circumstances is the one on the desk now."""
@@ -139,46 +119,45 @@ class ProgramLoader:
 
     def settled(self, timeout: float) -> Loaded:
         """Wait until loading is over and look; for scripts and tests, never for the screen."""
-        if self._future is not None:
-            wait([self._future], timeout)
+        self.worker.settle(timeout)
         return self.now
 
     def close(self) -> None:
         """Give up whatever is being loaded and end the worker."""
-        with self._lock:
-            self._ticket += 1
-        self._pool.shutdown(wait=True, cancel_futures=True)
+        self.loads += 1
+        self.worker.close()
 
-    def _work(self, ticket: int, path: Path, block_delete: bool) -> None:
-        source = self.workshop.read(path)
-        job = self.workshop.make_job(source, block_delete)
+    def _load(self, path: Path, block_delete: bool, request: Request) -> None:
+        steps = self.workshop
+        source = steps.read(path)
+        job = steps.make_job(source, block_delete)
         _ = source.lines  # split here once, so that the screen never does
-        self._publish(ticket, lambda now: replace(now, phase=Phase.PROVING, source=source, job=job))
+        self._publish(request, lambda now: replace(now, phase=Phase.PROVING, source=source, job=job))
         self.post(LoadJob(job))
-        watch = self._watch(ticket)
-        proof, found = self._proved(job, watch)
+        proved = steps.prove(job, partial(self._reached, request))
+        proof, found = proved.proof, proved.diagnostics
         self._publish(
-            ticket,
+            request,
             lambda now: replace(now, phase=Phase.DRAWING, proof=proof, diagnostics=found, reached=0),
         )
         self.post(GiveProof(proof))
-        picture = self.workshop.draw(job, watch)
+        picture = steps.draw(job, partial(self._reached, request))
         phase = Phase.REFUSED if proof.errors else Phase.READY
-        self._publish(ticket, lambda now: replace(now, phase=phase, picture=picture))
+        self._publish(request, lambda now: replace(now, phase=phase, picture=picture))
         _keep_out_of_collections()
 
-    def _proved(self, job: Job, watch: Watch) -> tuple[Proof, tuple[Diagnostic, ...]]:
-        proved = self.workshop.prove(job, watch)
-        return proved.proof, proved.diagnostics
+    def _reached(self, request: Request, count: float) -> None:
+        self._publish(request, lambda now: replace(now, reached=int(count)))
 
-    def _watch(self, ticket: int) -> Watch:
-        return lambda count: self._publish(ticket, lambda now: replace(now, reached=int(count)))
+    def _publish(self, request: Request, change: Callable[[Loaded], Loaded]) -> None:
+        request.publish(lambda: self.adopt(change(self._now)))
 
-    def _publish(self, ticket: int, change: Callable[[Loaded], Loaded]) -> None:
-        with self._lock:
-            if ticket != self._ticket:
-                raise AbandonedError
-            self._now = change(self._now)
+    def _failed(self, why: str) -> None:
+        self._now = replace(self._now, phase=Phase.UNREADABLE, trouble=why)
+
+
+def _published(_done: None) -> None:
+    """What was loaded has been published step by step."""
 
 
 def _keep_out_of_collections() -> None:

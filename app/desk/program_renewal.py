@@ -6,19 +6,17 @@ the executor takes it up at the end of the part.
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
-from concurrent.futures import Future
 from dataclasses import dataclass, field, replace
 from functools import partial
 
-from app.desk.latest import AbandonedError, sentence
+from app.desk.latest import AbandonedError, Latest, Request
 from app.desk.program_loading import Loaded, Phase, ProgramLoader
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook, secondary_offsets, tool_offsets
 from core.executor.commands import Command, Renew, UseOffsets
-from core.executor.job import outdated
+from core.executor.job import Job, outdated
 from core.executor.snapshot import Snapshot, State
 
 # --- The program under way with the offsets of now: proved and drawn while the old one runs.
@@ -33,24 +31,25 @@ class Renewing:
     """
 
     session: ProgramLoader
-    _ticket: int = 0
+    worker: Latest = field(init=False)  # on the thread that loads, after what that has in hand
     _loads: int = 0  # of the session when it was begun
     _next: Loaded | None = None
     _shown: Loaded | None = None
     _told: bool = True
-    _future: Future[None] | None = None
-    _lock: threading.Lock = field(default_factory=threading.Lock)
+    _trouble: str = ""
+
+    def __post_init__(self) -> None:
+        self.worker = Latest("renewing", beside=self.session.worker)
 
     def begin(self) -> bool:
         """Announce it, so that nothing is begun with the old offsets, and prove; False without a program."""
         now = self.session.now
         if now.job is None:
             return False
-        with self._lock:
-            self._ticket += 1
-            self._loads, self._next, self._told = self.session.loads, None, False
+        self.worker.give_up()
+        self._loads, self._next, self._told, self._trouble = self.session.loads, None, False, ""
         self.session.post(Renew())
-        self._future = self.session.submit(partial(self._work, self._ticket, now))
+        self.worker.ask(partial(self._renew, now, now.job), self._ready, self._failed)
         return True
 
     def taken(self, snapshot: Snapshot) -> bool:
@@ -67,10 +66,11 @@ class Renewing:
 
     def trouble(self) -> str:
         """Told once: why no next part will be begun; the executor hears what could not be proved at all."""
-        failed = self._failure()
-        if failed:
-            self.session.post(Renew(trouble=failed))
-            return failed
+        self.worker.poll()
+        if self._trouble:
+            why, self._trouble = self._trouble, ""
+            self.session.post(Renew(trouble=why))
+            return why
         ready = self._next
         if self._told or ready is None or ready.proof is None:
             return ""
@@ -79,39 +79,37 @@ class Renewing:
 
     def settled(self, timeout: float) -> None:
         """Wait until the worker has done with it; for scripts and tests, never for the screen."""
-        if self._future is not None:
-            self._future.exception(timeout)
+        self.worker.settle(timeout)
 
-    def _failure(self) -> str:
-        future = self._future
-        if future is None or not future.done():
-            return ""
-        self._future = None
-        error = None if future.cancelled() else future.exception()
-        return "" if error is None or isinstance(error, AbandonedError) else sentence(error)
-
-    def _work(self, ticket: int, now: Loaded) -> None:
-        assert now.job is not None
-        workshop, watch = self.session.workshop, partial(self._still, ticket)
-        job = workshop.renew_job(now.job)
-        proved = workshop.prove(job, watch)
+    def _renew(self, now: Loaded, old: Job, request: Request) -> Loaded:
+        steps, watch = self.session.workshop, partial(self._go_on, request)
+        job = steps.renew_job(old)
+        proved = steps.prove(job, watch)
         fresh = replace(
             now, job=job, proof=proved.proof, diagnostics=proved.diagnostics, phase=Phase.DRAWING, reached=0
         )
-        self._publish(ticket, fresh)
+        request.publish(partial(self._publish, fresh))
         self.session.post(Renew(job, proved.proof))
-        picture = workshop.draw(job, watch)
-        phase = Phase.REFUSED if proved.proof.errors else Phase.READY
-        self._publish(ticket, replace(fresh, phase=phase, picture=picture))
+        picture = steps.draw(job, watch)
+        return replace(fresh, phase=Phase.REFUSED if proved.proof.errors else Phase.READY, picture=picture)
 
-    def _still(self, ticket: int, _reached: float = 0.0) -> None:
-        if ticket != self._ticket or self.session.loads != self._loads:
+    def _go_on(self, request: Request, reached: float) -> None:
+        request(reached)
+        self._still_loaded()
+
+    def _publish(self, fresh: Loaded) -> None:
+        self._still_loaded()
+        self._next = fresh
+
+    def _still_loaded(self) -> None:
+        if self.session.loads != self._loads:
             raise AbandonedError
 
-    def _publish(self, ticket: int, fresh: Loaded) -> None:
-        with self._lock:
-            self._still(ticket)
-            self._next = fresh
+    def _ready(self, fresh: Loaded) -> None:
+        self._next = fresh
+
+    def _failed(self, why: str) -> None:
+        self._trouble = why
 
 
 @dataclass(slots=True)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
 
 from app.desk import prompt_line
-from app.desk.latest import AbandonedError, Watch
+from app.desk.latest import Latest, Watch
 from app.desk.persistence import NoPersistence, Persistence
 from app.desk.program_loading import Proved
 from app.desk.translation import tr
@@ -136,12 +136,8 @@ class MdiModel:
     open: bool = False
     found: tuple[Diagnostic, ...] = ()  # what proving had to say of the line
     ready: Job | None = None  # proved and prepared
-    _asked: Future[tuple[Job, Proved]] | None = None
-    _ticket: int = 0
+    worker: Latest = field(default_factory=lambda: Latest("loading-mdi"))
     _begun: int = 0  # lines that the executor has begun, as far as they were seen
-    _pool: ThreadPoolExecutor = field(
-        default_factory=lambda: ThreadPoolExecutor(1, thread_name_prefix="loading-mdi")
-    )
 
     # --- page ----------------------------------------------------------------------------------------
 
@@ -172,8 +168,7 @@ class MdiModel:
 
     def close(self) -> None:
         """End the worker."""
-        self._ticket += 1
-        self._pool.shutdown(wait=True, cancel_futures=True)
+        self.worker.close()
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -211,9 +206,7 @@ class MdiModel:
             self.say(tr("TYPE A LINE FIRST; ARROW UP BRINGS EARLIER ONES BACK"))
             return
         self._unready()
-        self._ticket += 1
-        watch = self._watch(self._ticket)
-        self._asked = self._pool.submit(self.prove, self.typing.text, snapshot, watch)
+        self.worker.ask(partial(self.prove, self.typing.text, snapshot), self._proved, self._failed)
 
     def recall(self, back: int) -> None:
         """Take up the line that stands so far up the history."""
@@ -223,10 +216,10 @@ class MdiModel:
 
     def escape(self) -> bool:
         """Take a ready line back, then what is typed; False when there was neither."""
-        begun = self.ready or self.typing.text or self._asked
+        begun = self.ready or self.typing.text or self.busy
         if self.snapshot().state in prompt_line.UNDER_WAY or not begun:
             return False
-        if self.ready is None and self._asked is None:
+        if self.ready is None and not self.busy:
             self.typing.put("")
         self._unready()
         return True
@@ -244,15 +237,12 @@ class MdiModel:
         if self.ready is not None and begun:
             self.ready, self.found = None, ()
             self.typing.done()
-        asked = self._asked
-        if asked is not None and asked.done():
-            self._asked = None
-            self._take_up(asked)
+        self.worker.poll()
 
     @property
     def busy(self) -> bool:
         """Whether the proof of a line is still to come."""
-        return self._asked is not None
+        return self.worker.busy
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:
@@ -275,17 +265,14 @@ class MdiModel:
 
     def settle(self, timeout: float) -> None:
         """Wait for the proof; for scripts and tests, never for the screen."""
-        if self._asked is not None:
-            wait([self._asked], timeout)
+        self.worker.settle(timeout)
         self.look(self.snapshot())
 
-    def _take_up(self, asked: Future[tuple[Job, Proved]]) -> None:
-        error = asked.exception()
-        if error is not None:
-            if not isinstance(error, AbandonedError):
-                self.say(tr("THE LINE CANNOT BE PROVED: {why}").format(why=error))
-            return
-        job, proved = asked.result()
+    def _failed(self, why: str) -> None:
+        self.say(tr("THE LINE CANNOT BE PROVED: {why}").format(why=why))
+
+    def _proved(self, answer: tuple[Job, Proved]) -> None:
+        job, proved = answer
         self.found = (*proved.diagnostics, *never_set(job, proved))
         if not self.errors:
             self.ready = job
@@ -296,12 +283,5 @@ class MdiModel:
         self.post(Prepare(Starts.LINE))
 
     def _withdraw(self) -> None:
-        self._ticket += 1
-        self._asked, self.ready, self.found = None, None, ()
-
-    def _watch(self, ticket: int) -> Watch:
-        def watch(_count: float) -> None:
-            if ticket != self._ticket:
-                raise AbandonedError
-
-        return watch
+        self.worker.give_up()
+        self.ready, self.found = None, ()

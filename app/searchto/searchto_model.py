@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Future
 from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from typing import TYPE_CHECKING
@@ -25,7 +24,7 @@ from core.language.source import Dialect, Source
 if TYPE_CHECKING:
     from core.interpreter.restart.state_rebuild import StateRebuild
 
-# --- How far the operator is on the SEARCHTO page.
+WAY_OUT = "(WAY OUT OF THE PART)"
 
 
 class Stage(Enum):
@@ -39,12 +38,9 @@ class Stage(Enum):
     READY = auto()
 
 
-# --- The SEARCHTO page opened and left: who starts what meanwhile, and what is forgotten.
-
-
 @dataclass(slots=True)
-class SearchOpening:
-    """What SEARCHTO holds. ``say`` answers on the prompt line, ``clear`` takes that back."""
+class SearchtoModel:
+    """The model behind the SEARCHTO page. ``say`` answers on the prompt line, ``clear`` takes that back."""
 
     session: ProgramLoader
     post: Callable[[Command], None]
@@ -71,7 +67,9 @@ class SearchOpening:
     _going_out: bool = False
 
     def __post_init__(self) -> None:
-        self.finder = Finder(self.rebuild, self.session.workshop.prove)
+        self.finder = Finder(self.rebuild, self.session.workshop.prove, self._found, self._not_searched)
+
+    # --- opened and left -----------------------------------------------------------------------------
 
     @property
     def has_keyboard(self) -> bool:
@@ -106,7 +104,7 @@ class SearchOpening:
 
     def close(self) -> None:
         """End the worker."""
-        self.finder.close()
+        self.finder.worker.close()
 
     def _why_closed(self, snapshot: Snapshot, loaded: Loaded) -> str:
         if snapshot.state in CYCLE:
@@ -126,48 +124,10 @@ class SearchOpening:
             self.post(Prepare(Starts.RESTART))
 
     def _withdraw(self) -> None:
-        self.finder.give_up()
+        self.finder.worker.give_up()
         self.stage, self.answer, self.plan, self.proved = Stage.CHOOSE, None, None, None
         self.leaving, self._cut = None, None
         self._job, self._accepted = None, False
-
-
-# --- What the prompt line says on the SEARCHTO page.
-
-
-def prompt(stage: Stage, snapshot: Snapshot, trouble: str, start: str, *, out: bool = False) -> str:
-    """``start`` names what starts a cycle here; ``trouble`` keeps the plan from being started; ``out``: it is
-    the way out of the part alone."""
-    if out and stage is Stage.SHOWN and not trouble:
-        return tr("LOOK AT THE WAY OUT OF THE PART; F10 CONFIRMS IT")
-    if out and stage is Stage.READY:
-        return tr("TO TAKE THE TOOL OUT OF THE PART {start}; ESC TAKES IT BACK").format(start=start)
-    words = {
-        Stage.SEARCHING: tr("GOING THROUGH THE PROGRAM; ESC GIVES UP"),
-        Stage.PROVING: tr("PROVING THE RESTART; ESC GIVES UP"),
-        Stage.SHOWN: trouble or tr("COMPARE; LOOK AT THE WAY AND AT WHAT WILL START; F10 CONFIRMS"),
-        Stage.REFUSED: tr("NO START FROM THIS LINE: F8 OR F9 GOES TO THE NEAREST GOOD ONE"),
-        Stage.READY: tr("TO START THE RESTART {start}; ESC TAKES IT BACK").format(start=start),
-    }
-    return words.get(stage) or _choose(snapshot)
-
-
-def _choose(snapshot: Snapshot) -> str:
-    if not snapshot.interrupted_line:
-        return tr("TYPE A LINE NUMBER OR A TEXT, OR CHOOSE BY THE ARROWS; ENTER REBUILDS THE STATE")
-    words = tr(
-        "LINE {line} WAS RUNNING WHEN THE PROGRAM BROKE OFF; ENTER REBUILDS ITS STATE, F4 ONLY LEADS OUT"
-    )
-    return words.format(line=snapshot.interrupted_line)
-
-
-WAY_OUT = "(WAY OUT OF THE PART)"
-
-
-class SearchtoModel(SearchOpening):
-    """The model behind the SEARCHTO page."""
-
-    __slots__ = ()
 
     # --- choosing ------------------------------------------------------------------------------------
 
@@ -314,9 +274,7 @@ class SearchtoModel(SearchOpening):
             self._forget()
         if self.stage is Stage.READY:
             self._see_start(snapshot)
-        future = self.finder.poll()
-        if future is not None:
-            self._take_up(future)
+        self.finder.worker.poll()
 
     def prompt(self, snapshot: Snapshot, start: str) -> str:
         """What can be done now; ``start`` names what starts a cycle here."""
@@ -325,7 +283,7 @@ class SearchtoModel(SearchOpening):
         return "" if snapshot.state in CYCLE else self._prompt(snapshot, trouble, start)
 
     def _prompt(self, snapshot: Snapshot, trouble: str, start: str) -> str:
-        return prompt(self.stage, snapshot, trouble, start, out=self.leaving is not None)
+        return searchto_prompt(self.stage, snapshot, trouble, start, out=self.leaving is not None)
 
     def barred(self) -> str:
         """Why the palms start nothing now; empty when they may."""
@@ -335,7 +293,7 @@ class SearchtoModel(SearchOpening):
 
     def settle(self, timeout: float) -> None:
         """Wait for the worker; for scripts and tests, never for the screen."""
-        self.finder.settle(timeout)
+        self.finder.worker.settle(timeout)
         self.look(self.snapshot(), self.session.now)
 
     def _see_start(self, snapshot: Snapshot) -> None:
@@ -350,13 +308,11 @@ class SearchtoModel(SearchOpening):
             self._withdraw()
         self._accepted = waits
 
-    def _take_up(self, future: Future[Answer]) -> None:
-        error = future.exception()
-        if error is not None:
-            self.stage = Stage.CHOOSE
-            self.say(tr("THE LINE CANNOT BE SEARCHED: {why}").format(why=error))
-            return
-        answer = future.result()
+    def _not_searched(self, why: str) -> None:
+        self.stage = Stage.CHOOSE
+        self.say(tr("THE LINE CANNOT BE SEARCHED: {why}").format(why=why))
+
+    def _found(self, answer: Answer) -> None:
         if isinstance(answer, RestartPoint):
             self.number, self.count = answer.visit.number, answer.visit.of
             self._show(answer)
@@ -386,3 +342,29 @@ class SearchtoModel(SearchOpening):
         self.stage, self._job, self._accepted = Stage.READY, job, False
         starts = Starts.RESTART if self.leaving is None else Starts.LINE
         self.post(Prepare(starts, job, proved.proof))
+
+
+def searchto_prompt(stage: Stage, snapshot: Snapshot, trouble: str, start: str, *, out: bool = False) -> str:
+    """``start`` names what starts a cycle here; ``trouble`` keeps the plan from being started; ``out``: it is
+    the way out of the part alone."""
+    if out and stage is Stage.SHOWN and not trouble:
+        return tr("LOOK AT THE WAY OUT OF THE PART; F10 CONFIRMS IT")
+    if out and stage is Stage.READY:
+        return tr("TO TAKE THE TOOL OUT OF THE PART {start}; ESC TAKES IT BACK").format(start=start)
+    words = {
+        Stage.SEARCHING: tr("GOING THROUGH THE PROGRAM; ESC GIVES UP"),
+        Stage.PROVING: tr("PROVING THE RESTART; ESC GIVES UP"),
+        Stage.SHOWN: trouble or tr("COMPARE; LOOK AT THE WAY AND AT WHAT WILL START; F10 CONFIRMS"),
+        Stage.REFUSED: tr("NO START FROM THIS LINE: F8 OR F9 GOES TO THE NEAREST GOOD ONE"),
+        Stage.READY: tr("TO START THE RESTART {start}; ESC TAKES IT BACK").format(start=start),
+    }
+    return words.get(stage) or _choose(snapshot)
+
+
+def _choose(snapshot: Snapshot) -> str:
+    if not snapshot.interrupted_line:
+        return tr("TYPE A LINE NUMBER OR A TEXT, OR CHOOSE BY THE ARROWS; ENTER REBUILDS THE STATE")
+    words = tr(
+        "LINE {line} WAS RUNNING WHEN THE PROGRAM BROKE OFF; ENTER REBUILDS ITS STATE, F4 ONLY LEADS OUT"
+    )
+    return words.format(line=snapshot.interrupted_line)

@@ -236,7 +236,7 @@ class SearchtoPage(Page):
             return StateShown(tr("THE WAY OUT OF THE PART"), (), model.leaving.trouble)
         if model.stage is Stage.SEARCHING:
             words = tr("GOING THROUGH THE PROGRAM TO LINE {line}").format(line=line)
-            return StateShown(f"{words}  ·  {model.finder.reached}")
+            return StateShown(f"{words}  ·  {model.finder.worker.reached}")
         return StateShown(tr("ENTER REBUILDS THE STATE OF LINE {line}").format(line=line))
 
     def _state(self, plan: Plan) -> StateShown:

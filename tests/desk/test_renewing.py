@@ -28,6 +28,7 @@ class Shop(Bench):
         self.session.load(Path("part.nc"))
         self.settled()
         self.posted.clear()
+        self.proving.clear()
 
     def renewed(self, job: Job) -> Job:
         if self.broken:

@@ -72,16 +72,20 @@ def job(text: str) -> Job:
     return make_job(Source("PART", text), setup())
 
 
+ANSWERS: list[object] = []
+
+
 @pytest.fixture
 def finder() -> Finder:
-    return Finder(rebuilt, lambda job, _watch: Proved(Proof(job.digest, ())))
+    ANSWERS.clear()
+    return Finder(rebuilt, lambda job, _watch: Proved(Proof(job.digest, ())), ANSWERS.append, ANSWERS.append)
 
 
 def answer(finder: Finder) -> object:
-    finder.settle(LIMIT)
-    future = finder.poll()
-    assert future is not None
-    return future.result()
+    finder.worker.settle(LIMIT)
+    (found,) = ANSWERS
+    ANSWERS.clear()
+    return found
 
 
 def test_lines_are_found_one_after_the_other(finder: Finder) -> None:
@@ -94,18 +98,18 @@ def test_lines_are_found_one_after_the_other(finder: Finder) -> None:
     found = answer(finder)
     assert isinstance(found, RestartPoint)
     assert found.line == 5
-    finder.close()
+    finder.worker.close()
 
 
 def test_what_was_given_up_never_answers_and_the_next_line_is_found(finder: Finder) -> None:
     long = job("G90G94F300\nX1Z1\nLS90000\nX1\nX2\nLF\nX1\nM30\n")
     finder.find(long, 7)
-    finder.give_up()
+    finder.worker.give_up()
     finder.find(long, 3)
     found = answer(finder)
     assert isinstance(found, RestartPoint)
     assert found.line == 3
-    finder.close()
+    finder.worker.close()
 
 
 def test_a_restart_is_proved_on_the_worker(finder: Finder) -> None:
@@ -122,4 +126,4 @@ def test_a_restart_is_proved_on_the_worker(finder: Finder) -> None:
     assert isinstance(result, tuple)
     assert result[1].proof.digest == restart.digest
     assert asked[0].startswith("loading-search")
-    finder.close()
+    finder.worker.close()
