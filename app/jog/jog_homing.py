@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Protocol
 
+from app.desk.desk import Desk
 from app.desk.translation import tr
-from core.executor.commands import Command, Home
+from core.executor.commands import Home
 from core.executor.snapshot import Snapshot, State
 from core.machine.machine_model import Axis, Machine
 
@@ -33,31 +32,12 @@ class Known(StrEnum):
         return words[self]
 
 
-class HomeHost(Protocol):
-    """What the question needs of the desk."""
-
-    @property
-    def post(self) -> Callable[[Command], None]: ...
-
-    @property
-    def asked(self) -> str: ...
-
-    @property
-    def read(self) -> bool: ...
-
-    def say(self, text: str) -> None: ...
-
-    def ask(self, question: str, yes: Callable[[], None], key: str) -> None: ...
-
-    def clear(self) -> None: ...
-
-
 @dataclass(slots=True)
 class HomeAsk:
     """The home key asks: Return homes all axes in their order, a letter one of them."""
 
     machine: Machine
-    desk: HomeHost
+    desk: Desk
     _asked: bool = False
 
     @property

@@ -19,86 +19,6 @@ from core.executor.commands import JogStop
 from core.executor.snapshot import Snapshot, State
 from core.machine.machine_model import Machine
 
-# --- Which step and which speed a hand move has: any change ends what is held.
-
-
-@dataclass(slots=True)
-class Choices:
-    """Of the Jog page; ``armed``: the next finger that holds goes rapid."""
-
-    speeds: Speeds = field(init=False)
-    hold: JogHold = field(init=False)
-    armed: bool = field(init=False, default=False)
-
-    def next_step(self) -> None:
-        """F2: another increment ends what is held."""
-        self._another_step()
-        self.speeds.next_step()
-
-    def choose_step(self, step: int) -> None:
-        """A finger on one of the steps."""
-        self._another_step()
-        self.speeds.step, self.armed = step, False
-
-    def next_speed(self) -> None:
-        """F3: another speed ends what is held."""
-        self._another_speed()
-        self.speeds.next_speed()
-
-    def choose_speed(self, speed: int) -> None:
-        """A finger on one of the speeds."""
-        self._another_speed()
-        self.speeds.speed, self.armed = speed, False
-
-    def arm(self) -> None:
-        """A finger on RAPID: the next hold goes rapid, and only that one."""
-        self._another_speed()
-        self.armed = not self.armed
-
-    def finger(self, source: str, axis: str, sign: int) -> None:
-        """A finger or the mouse goes down on a direction."""
-        rapid, self.armed = self.armed, False
-        self.hold.press(source, axis, sign, rapid=rapid)
-
-    def _another_step(self) -> None:
-        self.hold.let_go(tr("ANOTHER STEP WAS CHOSEN: THE JOG HAS ENDED"))
-
-    def _another_speed(self) -> None:
-        self.hold.let_go(tr("ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED"))
-
-
-# --- What the Jog page tells on the prompt line.
-
-
-def why_no_jog(state: State) -> str:
-    """Why nothing is moved by hand in this state; empty when it may be."""
-    words = {
-        State.DISABLED: tr("THE DRIVES ARE OFF: PRESS D FOR DRIVES ON"),
-        State.ESTOP: tr("THE E-STOP IS PRESSED: NOTHING MOVES"),
-        State.FAULT: tr("AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R"),
-        State.HOME: tr("THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM"),
-    }
-    if state in prompt_line.INTERRUPTED | {State.RUN, State.WAIT, State.HOLDING}:
-        return tr("A PROGRAM IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R, BEFORE JOGGING")
-    return words.get(state, "")
-
-
-def jog_prompt(state: State, lost: list[str], wheel: str, step: int) -> str:
-    """What may be done now. ``lost`` axes are not homed, ``wheel`` is the axis of the handwheel."""
-    why = why_no_jog(state)
-    if why:
-        return why
-    if lost:
-        return tr("{axes} NOT HOMED: JOG SLOWLY, THERE ARE NO SOFT LIMITS; PRESS HOME").format(
-            axes=tr(" AND ").join(sorted(lost))
-        )
-    if wheel:
-        return tr("THE HANDWHEEL MOVES {axis}: ONE CLICK IS ONE STEP; V FOR THE NEXT AXIS").format(axis=wheel)
-    if step != CONTINUOUS:
-        return tr("EACH PRESS OF AN ARROW IS ONE STEP; F2 CHANGES ITS LENGTH")
-    return tr("HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF")
-
-
 LEASE = 0.25  # s: no jog is held longer without renewal, whatever the machine file says
 
 # Letters that ask something of the chosen tool, while nothing is asked.
@@ -114,15 +34,21 @@ LETTERS = {
 
 
 @dataclass(slots=True)
-class JogModel(Choices):
-    """Hold, steps and speeds, homing, tool setting. The page draws it and hands the keys on."""
+class JogModel:
+    """Hold, steps and speeds, homing, tool setting. The page draws it and hands the keys on.
+
+    ``armed``: the next finger that holds goes rapid.
+    """
 
     desk: Desk
     machine: Machine
+    speeds: Speeds = field(init=False)
+    hold: JogHold = field(init=False)
     wheel: WheelHold = field(init=False)
     home: HomeAsk = field(init=False)
     tool: ToolSetting = field(init=False)
     directions: tuple[Direction, ...] = ()
+    armed: bool = False
 
     def __post_init__(self) -> None:
         desk = self.desk
@@ -175,6 +101,44 @@ class JogModel(Choices):
             return tr("TYPE A VALUE OR A SUM SUCH AS .5-.002, THEN RETURN; ESC LEAVES IT AS IT WAS")
         wheel = self.wheel.choice[0] if self.wheel.choice else ""
         return jog_prompt(snapshot.state, self.home.lost(snapshot), wheel, self.speeds.step)
+
+    # --- step and speed: any change ends what is held ------------------------------------------------
+
+    def next_step(self) -> None:
+        """F2: another increment ends what is held."""
+        self._another_step()
+        self.speeds.next_step()
+
+    def choose_step(self, step: int) -> None:
+        """A finger on one of the steps."""
+        self._another_step()
+        self.speeds.step, self.armed = step, False
+
+    def next_speed(self) -> None:
+        """F3: another speed ends what is held."""
+        self._another_speed()
+        self.speeds.next_speed()
+
+    def choose_speed(self, speed: int) -> None:
+        """A finger on one of the speeds."""
+        self._another_speed()
+        self.speeds.speed, self.armed = speed, False
+
+    def arm(self) -> None:
+        """A finger on RAPID: the next hold goes rapid, and only that one."""
+        self._another_speed()
+        self.armed = not self.armed
+
+    def finger(self, source: str, axis: str, sign: int) -> None:
+        """A finger or the mouse goes down on a direction."""
+        rapid, self.armed = self.armed, False
+        self.hold.press(source, axis, sign, rapid=rapid)
+
+    def _another_step(self) -> None:
+        self.hold.let_go(tr("ANOTHER STEP WAS CHOSEN: THE JOG HAS ENDED"))
+
+    def _another_speed(self) -> None:
+        self.hold.let_go(tr("ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED"))
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -275,6 +239,35 @@ class JogModel(Choices):
         self.armed = False
         self.tool.forget()
         self.desk.clear()
+
+
+def why_no_jog(state: State) -> str:
+    """Why nothing is moved by hand in this state; empty when it may be."""
+    words = {
+        State.DISABLED: tr("THE DRIVES ARE OFF: PRESS D FOR DRIVES ON"),
+        State.ESTOP: tr("THE E-STOP IS PRESSED: NOTHING MOVES"),
+        State.FAULT: tr("AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R"),
+        State.HOME: tr("THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM"),
+    }
+    if state in prompt_line.INTERRUPTED | {State.RUN, State.WAIT, State.HOLDING}:
+        return tr("A PROGRAM IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R, BEFORE JOGGING")
+    return words.get(state, "")
+
+
+def jog_prompt(state: State, lost: list[str], wheel: str, step: int) -> str:
+    """What may be done now. ``lost`` axes are not homed, ``wheel`` is the axis of the handwheel."""
+    why = why_no_jog(state)
+    if why:
+        return why
+    if lost:
+        return tr("{axes} NOT HOMED: JOG SLOWLY, THERE ARE NO SOFT LIMITS; PRESS HOME").format(
+            axes=tr(" AND ").join(sorted(lost))
+        )
+    if wheel:
+        return tr("THE HANDWHEEL MOVES {axis}: ONE CLICK IS ONE STEP; V FOR THE NEXT AXIS").format(axis=wheel)
+    if step != CONTINUOUS:
+        return tr("EACH PRESS OF AN ARROW IS ONE STEP; F2 CHANGES ITS LENGTH")
+    return tr("HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF")
 
 
 def _order(machine: Machine) -> Callable[[str], int]:

@@ -9,7 +9,6 @@ from PySide6.QtWidgets import QApplication, QWidget
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.translation import tr
-from app.jog import tool_setting
 from app.jog.jog_model import JogModel
 from app.jog.jog_pad_view import JogPad
 from app.jog.tool_setting_view import ToolPanel
@@ -171,14 +170,12 @@ class JogPage(Page):
         self.numbers.setVisible(entering)
         self.pad.show_jog(snapshot)
         self.tool.show_tool(snapshot)
-        foot = tool_setting.note(tool) or (
+        foot = tool.note() or (
             tr("Return enters it, Esc leaves it as it was")
             if entering
             else tr("T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo")
         )
-        self.asked.show_asked(
-            Asked("", tool_setting.question(tool), tool.text, tool_setting.old_to_new(tool), foot)
-        )
+        self.asked.show_asked(Asked("", tool.question(), tool.text, tool.old_to_new(), foot))
 
     def _has_keyboard(self) -> bool:
         """Whether keys still come here: no dialog, no menu, no other window in front.

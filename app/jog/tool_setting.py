@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Protocol
 
 from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError, value_of
 from app.desk.desk import Desk
@@ -18,108 +17,8 @@ from core.executor.snapshot import Snapshot
 from core.store.offset_fields import Sort
 from core.store.store_rows import OFFSETS, REMARK_LONGEST, Kind, ToolRow
 
-# --- Tool setting in words: what is asked, what the answer would make of the tool, where its tip stands.
-
-
 TOOL = "tool"  # asked: its number
 Pair = tuple[float, float]
-
-
-class Setting(Protocol):
-    """What these words need of the tool setting."""
-
-    number: int
-    asked: str
-    text: str
-
-    @property
-    def history(self) -> OffsetHistory: ...
-
-    @property
-    def fields(self) -> ToolFields: ...
-
-    @property
-    def touching(self) -> TouchOff: ...
-
-    @property
-    def book(self) -> OffsetBook: ...
-
-    @property
-    def row(self) -> ToolRow | None: ...
-
-    @property
-    def masters(self) -> bool: ...
-
-
-def question(setting: Setting) -> str:
-    """What is asked now; empty when nothing is."""
-    name = f"T{setting.number}"
-    if setting.asked == TOOL:
-        return tr("TOOL NUMBER?")
-    if setting.asked == TOUCH_X:
-        return tr("{tool} MEASURED DIAMETER?").format(tool=name)
-    if setting.asked == TOUCH_Z:
-        return tr("{tool} Z POSITION OF THE FACE?").format(tool=name)
-    return f"{name}  {word(setting.asked)}?" if setting.asked else ""
-
-
-def note(setting: Setting) -> str:
-    """What has to be known before the answer is entered."""
-    number, new = setting.number, setting.fields.new
-    if setting.masters and setting.touching.alone:
-        return tr("T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)").format(number=number)
-    if setting.masters:
-        return tr("T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)").format(number=number)
-    if new.number and new.number == number:
-        text = tr("T{number} IS SET WHEN {axis} IS TOUCHED TOO")
-        return text.format(number=number, axis=new.missing.upper())
-    return ""
-
-
-def old_to_new(setting: Setting) -> str:
-    """What the answer would make of the tool, or else the last change."""
-    if not setting.asked or setting.asked == TOOL:
-        return setting.history.last_in_words
-    mode, name, row = setting.history.mode, TOUCHES.get(setting.asked, setting.asked), setting.row
-    touched, mark = setting.asked in TOUCHES, marked(name, mode)
-    title = f"{word(name)} {mark}" if mark else word(name)
-    was = shown_value(name, getattr(row, name), mode) if row else not_set()
-    try:
-        value = (
-            setting.touching.place(setting.text, mode) if touched else value_typed(name, setting.text, mode)
-        )
-        ends = _wear_that_ends(row, f"wear_{name}", mode) if touched else ""
-        return f"{title}  {was}  →  {shown_value(name, value, mode)}{ends}"
-    except EntryError:
-        return f"{title}  {was}  →  …"  # half a sum is no mistake yet
-
-
-def _wear_that_ends(row: ToolRow | None, name: str, mode: Mode) -> str:
-    """The wear of the touched axis is in the new geometry and begins again at nought."""
-    if row is None or not getattr(row, name):
-        return ""
-    return (
-        f"   {word(name)}  {shown_value(name, getattr(row, name), mode)}  →  {shown_value(name, 0.0, mode)}"
-    )
-
-
-def tip(setting: Setting, snapshot: Snapshot) -> Pair | None:
-    """Where the tip of the chosen tool stands from part zero, mm; None when it was never set."""
-    if setting.row is None:
-        return None
-    x, z = setting.row.offset
-    return snapshot.tip[0] - x, snapshot.tip[1] - z
-
-
-def from_master(setting: Setting) -> Pair | None:
-    """How far this tip stands from that of the master, mm; None without two such tools."""
-    master = setting.book.tools.get(setting.book.master)
-    if setting.row is None or master is None:
-        return None
-    (x, z), (mx, mz) = setting.row.offset, master.offset
-    return x - mx, z - mz
-
-
 _AFTER = {"wear_x": "wear_z"}  # what is asked after an answer
 
 
@@ -152,6 +51,59 @@ class ToolSetting:
     def masters(self) -> bool:
         """Whether the master is being touched."""
         return self.asked in TOUCHES and self.row is not None and self.row.master
+
+    def question(self) -> str:
+        """What is asked now; empty when nothing is."""
+        name = f"T{self.number}"
+        if self.asked == TOOL:
+            return tr("TOOL NUMBER?")
+        if self.asked == TOUCH_X:
+            return tr("{tool} MEASURED DIAMETER?").format(tool=name)
+        if self.asked == TOUCH_Z:
+            return tr("{tool} Z POSITION OF THE FACE?").format(tool=name)
+        return f"{name}  {word(self.asked)}?" if self.asked else ""
+
+    def note(self) -> str:
+        """What has to be known before the answer is entered."""
+        number, new = self.number, self.fields.new
+        if self.masters and self.touching.alone:
+            return tr("T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)").format(number=number)
+        if self.masters:
+            return tr("T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)").format(number=number)
+        if new.number and new.number == number:
+            text = tr("T{number} IS SET WHEN {axis} IS TOUCHED TOO")
+            return text.format(number=number, axis=new.missing.upper())
+        return ""
+
+    def old_to_new(self) -> str:
+        """What the answer would make of the tool, or else the last change."""
+        if not self.asked or self.asked == TOOL:
+            return self.history.last_in_words
+        mode, name, row = self.history.mode, TOUCHES.get(self.asked, self.asked), self.row
+        touched, mark = self.asked in TOUCHES, marked(name, mode)
+        title = f"{word(name)} {mark}" if mark else word(name)
+        was = shown_value(name, getattr(row, name), mode) if row else not_set()
+        try:
+            value = self.touching.place(self.text, mode) if touched else value_typed(name, self.text, mode)
+            ends = _wear_that_ends(row, f"wear_{name}", mode) if touched else ""
+            return f"{title}  {was}  →  {shown_value(name, value, mode)}{ends}"
+        except EntryError:
+            return f"{title}  {was}  →  …"  # half a sum is no mistake yet
+
+    def tip(self, snapshot: Snapshot) -> Pair | None:
+        """Where the tip of the chosen tool stands from part zero, mm; None when it was never set."""
+        if self.row is None:
+            return None
+        x, z = self.row.offset
+        return snapshot.tip[0] - x, snapshot.tip[1] - z
+
+    def from_master(self) -> Pair | None:
+        """How far this tip stands from that of the master, mm; None without two such tools."""
+        master = self.book.tools.get(self.book.master)
+        if self.row is None or master is None:
+            return None
+        (x, z), (mx, mz) = self.row.offset, master.offset
+        return x - mx, z - mz
 
     # --- every frame ---------------------------------------------------------------------------------
 
@@ -262,7 +214,7 @@ class ToolSetting:
         why = self.touching.save(self.number, self.text, self.history, self.fields.new)
         if not why:
             self.close()
-        return why or note(self)
+        return why or self.note()
 
     def _field(self) -> str:
         name, text = self.asked, self.text
@@ -290,3 +242,12 @@ class ToolSetting:
             self.desk.say(tr("T{number} IS AS IT WAS").format(number=self.number))
         self.forget()
         return was
+
+
+def _wear_that_ends(row: ToolRow | None, name: str, mode: Mode) -> str:
+    """The wear of the touched axis is in the new geometry and begins again at nought."""
+    if row is None or not getattr(row, name):
+        return ""
+    return (
+        f"   {word(name)}  {shown_value(name, getattr(row, name), mode)}  →  {shown_value(name, 0.0, mode)}"
+    )

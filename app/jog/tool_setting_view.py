@@ -11,7 +11,6 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.formats import length
 from app.desk.translation import tr
-from app.jog import tool_setting
 from app.jog.jog_model import JogModel
 from app.jog.tool_setting import TOOL
 from app.jog.touch_off import TOUCH_X, TOUCH_Z
@@ -49,13 +48,13 @@ class ToolPanel(Panel):
         """The tool of now, and where its tip stands."""
         tool = self._model.tool
         self._mode = tool.history.mode
-        self._tip = tool_setting.tip(tool, snapshot)
+        self._tip = tool.tip(snapshot)
         shown = (
             tool.number,
             tool.row,
             tool.asked,
             self._tip,
-            tool_setting.from_master(tool),
+            tool.from_master(),
             self._mode,
             tool.book.master,
         )
@@ -162,7 +161,7 @@ class ToolPanel(Panel):
             return tr("none")
         if master == tool.number:
             return tr("THIS ONE")
-        apart = tool_setting.from_master(tool)
+        apart = tool.from_master()
         if apart is None:
             return f"T{master}"
         x = signed(2 * apart[0] if mode.diameter else apart[0], mode.metric)

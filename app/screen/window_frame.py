@@ -35,15 +35,16 @@ from app.screen.window_bars import FunctionKeys, LampStrip, NoticeRow, NoticeRow
 from app.screen.window_layout import Places, Rect, low_places, places, unit, work_of
 from core.executor.snapshot import Snapshot, State
 
-# --- What is always visible of the main window, in its place: title, readouts, lamps, station, prompt, keys.
-
-
 _KEYS = (("F6", "SEARCHTO"), ("Y", "FROM LINE 1"))
 GAP = 4  # pixels under the rows that stand
+_SETTLED = 3.0  # s after a move by hand before the room of a page may change
 
 
-class FrameParts(QWidget):
-    """Readouts are large, or the same figures in one low row; alarms lie over the room of the page."""
+class Frame(QWidget):
+    """Polls nothing itself: ``refresh`` is called once a frame.
+
+    The Automatic page has large readouts above it, every other page the same figures in one low row.
+    """
 
     def __init__(self, look: Look, desk: Desk, press: Callable[[str], None], parent: QWidget) -> None:
         super().__init__(parent)
@@ -64,117 +65,6 @@ class FrameParts(QWidget):
         self.notice = Notice(look, self)
         self.log = AlarmList(look, self)
         self._docked = True
-
-    def lay_parts(self, *, large: bool) -> Rect:
-        """Everything in its place for the size of now; the answer is the room of the page."""
-        width, height = self.width(), self.height()
-        self.look.resize(unit(width, height))
-        with_dock = self.dock is not None and self.desk.settings.now.dock
-        at, low = places(width, height, with_dock), low_places(width, height, with_dock)
-        self._docked = with_dock
-        work = work_of(at) if large else low.work
-        rows = Rect(work.x, work.y, work.w, min(self.standing.take_room(), work.h // 3))
-        work, over = _below(work, rows), _below(at.path if large else low.work, rows)
-        stand(self.standing, rows)
-        self.standing.setVisible(bool(rows.h))
-        self._stand_readouts(at, large)
-        for part, rect in ((self.head, low.head), (self.run, low.run)):
-            stand(part, rect)
-            part.setVisible(not large)
-        if self.dock is not None:
-            self.dock.let_go()
-            self.dock.setVisible(with_dock)
-            stand(self.dock, at.dock)
-        stand(self.title, at.title)
-        stand(self.strip, at.strip if large else low.strip)
-        stand(self.prompt, at.prompt)
-        stand(self.keys, at.keys)
-        stand(self.notice, over)
-        stand(self.log, over)
-        return work
-
-    @property
-    def moved_dock(self) -> bool:
-        """Whether the operator wants the station elsewhere than it stands."""
-        return self.dock is not None and self._docked is not self.desk.settings.now.dock
-
-    def _stand_readouts(self, at: Places, large: bool) -> None:
-        parts: tuple[tuple[QWidget, Rect], ...] = (
-            (self.position, at.position),
-            (self.feed, at.feed),
-            (self.spindle, at.spindle),
-            (self.tool, at.tool),
-            (self.times, at.times),
-        )
-        for part, rect in parts:
-            stand(part, rect)
-            part.setVisible(large)
-
-    def show_readouts(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
-        """The figures of this instant, large."""
-        self.position.show_position(view.position)
-        self.feed.show_value(view.feed)
-        self.spindle.show_value(view.spindle)
-        self.tool.show_value((view.tool, view.secondary))
-        self.times.show_value(self.times_of(snapshot, view, loaded))
-
-    def times_of(
-        self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded
-    ) -> tuple[tuple[str, str], ...]:
-        """Parts and times, as the run's row has them too."""
-        left = formats.duration(self.desk.time_left(snapshot, loaded))
-        return (
-            ("PARTS", self.desk.counter.words),
-            ("CYCLE", view.cycle),
-            ("LEFT", left),
-            ("LAST", view.last_cycle),
-        )
-
-    def lamps_of(self, snapshot: Snapshot, view: MachineStatus) -> tuple[Lamp, ...]:
-        """The lit words, from left to right."""
-        on = snapshot.state not in {State.ESTOP, State.DISABLED}
-        kept = (Lamp("NOT KEPT", lit=True, warn=True),) if self.desk.unkept() else ()
-        return (*view.modes, *view.lamps, *kept, Lamp("DRIVES ON", on, "D"), Lamp("RESET", False, "R"))
-
-    def rows_of(self, snapshot: Snapshot, loaded: Loaded, *, here: bool) -> tuple[NoticeRow, ...]:
-        """What stands until somebody does something; its keys where they mean that (``here``)."""
-        desk, rows = self.desk, []
-        found = notice_of(snapshot, loaded, desk.settings.units)
-        if found is not None:
-            offered = here and snapshot.state is State.IDLE and bool(snapshot.interrupted_line)
-            rows.append(
-                NoticeRow(found.text, found.figures, _KEYS[not may_go_on(loaded) :] if offered else ())
-            )
-        if desk.unkept():
-            held = desk.waiting()
-            waits = tr("HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: {what}").format(what=held) if held else ""
-            rows.append(NoticeRow(tr("NOT KEPT: {why}").format(why=desk.unkept()), waits))
-        return tuple(rows)
-
-
-def _below(room: Rect, rows: Rect) -> Rect:
-    """What of a room is left under the rows."""
-    taken = rows.h + GAP if rows.h else 0
-    return Rect(room.x, room.y + taken, room.w, room.h - taken)
-
-
-def stand(part: QWidget, rect: Rect) -> None:
-    """Put it there and draw it anew."""
-    part.setGeometry(*rect)
-    part.update()
-
-
-_SETTLED = 3.0  # s after a move by hand before the room of a page may change
-
-
-class Frame(FrameParts):
-    """Polls nothing itself: ``refresh`` is called once a frame.
-
-    The Automatic page has large readouts above it, every other page the same figures in one low row.
-    """
-
-    def __init__(self, look: Look, desk: Desk, press: Callable[[str], None], parent: QWidget) -> None:
-        super().__init__(look, desk, press, parent)
         host = Host(look, desk, press, self.go, self._close_log)
         self._host = host
         self._moved_at: float | None = None  # when slides were last moved by hand
@@ -262,7 +152,52 @@ class Frame(FrameParts):
         self._lay_out()
 
     def _lay_out(self) -> None:
-        stand(self.page, self.lay_parts(large=self.page is self.automatic))
+        stand(self.page, self._lay_parts(large=self.page is self.automatic))
+
+    def _lay_parts(self, *, large: bool) -> Rect:
+        """Everything in its place for the size of now; the answer is the room of the page."""
+        width, height = self.width(), self.height()
+        self.look.resize(unit(width, height))
+        with_dock = self.dock is not None and self.desk.settings.now.dock
+        at, low = places(width, height, with_dock), low_places(width, height, with_dock)
+        self._docked = with_dock
+        work = work_of(at) if large else low.work
+        rows = Rect(work.x, work.y, work.w, min(self.standing.take_room(), work.h // 3))
+        work, over = _below(work, rows), _below(at.path if large else low.work, rows)
+        stand(self.standing, rows)
+        self.standing.setVisible(bool(rows.h))
+        self._stand_readouts(at, large)
+        for part, rect in ((self.head, low.head), (self.run, low.run)):
+            stand(part, rect)
+            part.setVisible(not large)
+        if self.dock is not None:
+            self.dock.let_go()
+            self.dock.setVisible(with_dock)
+            stand(self.dock, at.dock)
+        stand(self.title, at.title)
+        stand(self.strip, at.strip if large else low.strip)
+        stand(self.prompt, at.prompt)
+        stand(self.keys, at.keys)
+        stand(self.notice, over)
+        stand(self.log, over)
+        return work
+
+    @property
+    def _dock_moved(self) -> bool:
+        """Whether the operator wants the station elsewhere than it stands."""
+        return self.dock is not None and self._docked is not self.desk.settings.now.dock
+
+    def _stand_readouts(self, at: Places, large: bool) -> None:
+        parts: tuple[tuple[QWidget, Rect], ...] = (
+            (self.position, at.position),
+            (self.feed, at.feed),
+            (self.spindle, at.spindle),
+            (self.tool, at.tool),
+            (self.times, at.times),
+        )
+        for part, rect in parts:
+            stand(part, rect)
+            part.setVisible(large)
 
     def _by_hand(self, snapshot: Snapshot) -> bool:
         """Whether slides were moved by hand a moment ago: no target may slip away under a finger then."""
@@ -276,21 +211,21 @@ class Frame(FrameParts):
     def refresh(self) -> None:
         """Take one snapshot and show it everywhere."""
         snapshot, view, loaded = self.desk.look()
-        self.standing.show_rows(self.rows_of(snapshot, loaded, here=self.page is self.automatic))
+        self.standing.show_rows(self._notices_of(snapshot, loaded, here=self.page is self.automatic))
         by_hand = self._by_hand(snapshot)
-        if self.moved_dock or (self.standing.other_room and not by_hand):
+        if self._dock_moved or (self.standing.other_room and not by_hand):
             self._lay_out()
         self._show_bars(snapshot, view, loaded)
-        lamps = self.lamps_of(snapshot, view)
+        lamps = self._lamps_of(snapshot, view)
         self.strip.show_lamps(
             lamps, frozenset(lamp.key for lamp in lamps if self.has_field() or self.is_text(lamp.key))
         )
         if self.page is self.automatic:
-            self.show_readouts(snapshot, view, loaded)
+            self._show_readouts(snapshot, view, loaded)
             self.notice.show_notice(view.message, self.desk.start_words + " TO GO ON", view.alarms)
         else:
             self.head.show_view(view)
-            self.run.show_run(view, self.times_of(snapshot, view, loaded))
+            self.run.show_run(view, self._times_of(snapshot, view, loaded))
             self.notice.show_notice("", "")  # the prompt line tells it: nothing covers an entry
         self.log.show_entries(self.desk.log.entries)
         if self.dock is not None:
@@ -318,3 +253,56 @@ class Frame(FrameParts):
         text = self.page.asks() or desk.prompt(snapshot, loaded, self.page.prompt())
         reason = prompt_line.reason(view) or prompt_line.remedy(loaded, text)
         self.prompt.show_text(text, answer=bool(desk.notice), asked=desk.asked, reason=reason)
+
+    def _show_readouts(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
+        """The figures of this instant, large."""
+        self.position.show_position(view.position)
+        self.feed.show_value(view.feed)
+        self.spindle.show_value(view.spindle)
+        self.tool.show_value((view.tool, view.secondary))
+        self.times.show_value(self._times_of(snapshot, view, loaded))
+
+    def _times_of(
+        self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded
+    ) -> tuple[tuple[str, str], ...]:
+        """Parts and times, as the run's row has them too."""
+        left = formats.duration(self.desk.time_left(snapshot, loaded))
+        return (
+            ("PARTS", self.desk.counter.words),
+            ("CYCLE", view.cycle),
+            ("LEFT", left),
+            ("LAST", view.last_cycle),
+        )
+
+    def _lamps_of(self, snapshot: Snapshot, view: MachineStatus) -> tuple[Lamp, ...]:
+        """The lit words, from left to right."""
+        on = snapshot.state not in {State.ESTOP, State.DISABLED}
+        kept = (Lamp("NOT KEPT", lit=True, warn=True),) if self.desk.unkept() else ()
+        return (*view.modes, *view.lamps, *kept, Lamp("DRIVES ON", on, "D"), Lamp("RESET", False, "R"))
+
+    def _notices_of(self, snapshot: Snapshot, loaded: Loaded, *, here: bool) -> tuple[NoticeRow, ...]:
+        """What stands until somebody does something; its keys where they mean that (``here``)."""
+        desk, rows = self.desk, []
+        found = notice_of(snapshot, loaded, desk.settings.units)
+        if found is not None:
+            offered = here and snapshot.state is State.IDLE and bool(snapshot.interrupted_line)
+            rows.append(
+                NoticeRow(found.text, found.figures, _KEYS[not may_go_on(loaded) :] if offered else ())
+            )
+        if desk.unkept():
+            held = desk.waiting()
+            waits = tr("HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: {what}").format(what=held) if held else ""
+            rows.append(NoticeRow(tr("NOT KEPT: {why}").format(why=desk.unkept()), waits))
+        return tuple(rows)
+
+
+def _below(room: Rect, rows: Rect) -> Rect:
+    """What of a room is left under the rows."""
+    taken = rows.h + GAP if rows.h else 0
+    return Rect(room.x, room.y + taken, room.w, room.h - taken)
+
+
+def stand(part: QWidget, rect: Rect) -> None:
+    """Put it there and draw it anew."""
+    part.setGeometry(*rect)
+    part.update()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from app.jog.tool_setting import tip
 from core.executor.snapshot import State
 from core.store.store_rows import ToolRow
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
@@ -82,7 +81,7 @@ def test_two_tools_are_set_by_touching(jog: JogBench) -> None:
     second = jog.store.tools()[2]
     assert second.x == pytest.approx((-1.0 - 0.375) * INCH, abs=0.0013)
     assert second.z == pytest.approx((0.5 - 0.1) * INCH, abs=0.0013)
-    assert tip(jog.page.model.tool, jog.shot) == pytest.approx((0.375 * INCH, 0.1 * INCH), abs=1e-9)
+    assert jog.page.model.tool.tip(jog.shot) == pytest.approx((0.375 * INCH, 0.1 * INCH), abs=1e-9)
     assert [change.why for change in jog.store.history()] == ["touched off, new tool"] * 2
 
 
