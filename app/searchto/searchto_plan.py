@@ -46,7 +46,7 @@ def leaving_of(cut: CutRecord, snapshot: Snapshot, job: Job, choices: Choices) -
     now = now_of(snapshot, job)
     found, tool = retract_from_work(cut, now)
     steps = way_out(cut, now, choices) if found.known else ()
-    begin = Begin(Checkpoint(snapshot.modal), single=True, way=steps)
+    begin = Begin(Checkpoint(snapshot.modal), single=True, approach=steps)
     metric = snapshot.modal.metric
     feed = f"{formats.feed(choices.modest, metric, False)} {formats.feed_unit(metric, False)}"
     trouble = jog_words(found, tool)
@@ -86,11 +86,11 @@ def jog_words(found: Retract, tool: int) -> str:
     """What the operator has to do by hand where no way out is sure; empty where one is."""
     if found.known:
         return ""
-    if found.lies is ToolPlace.TAP:
+    if found.tool_place is ToolPlace.TAP:
         words = tr("T{tool} IS A TAP IN ITS THREAD: TURN IT OUT BY HAND WITH THE SPINDLE, Z FOLLOWING")
-    elif found.lies is ToolPlace.THREAD:
+    elif found.tool_place is ToolPlace.THREAD:
         words = tr("T{tool} STANDS IN A THREAD: JOG X OFF THE THREAD FIRST, NOT Z")
-    elif found.lies is ToolPlace.TURNED:
+    elif found.tool_place is ToolPlace.TURNED:
         words = tr("C HAS TURNED SINCE T{tool} WENT IN: TURN THE SPINDLE FREE BY HAND AND JOG T{tool} OUT")
     else:
         words = _towards(*found.away)
@@ -145,7 +145,7 @@ def plan_of(found: RestartPoint, snapshot: Snapshot, job: Job, choices: Choices)
         begin=begin,
         rows=(*_passes(found), *_rows(begin.checkpoint, snapshot)),
         starts=tuple(_words(step, found.checkpoint) for step in starting(found, now, choices)),
-        legs=() if out else drawn(begin.way, snapshot, (modal.tool_x, modal.tool_z)),
+        legs=() if out else drawn(begin.approach, snapshot, (modal.tool_x, modal.tool_z)),
         warning=_left_out(found),
         trouble=_collet(found.checkpoint, snapshot) or out,
     )

@@ -147,7 +147,7 @@ def _changed(context: MachineContext, status: ControlStatus, job: Job | None) ->
 def _again(begin: Begin) -> str:
     """How the operator has it proved anew."""
     if begin.single:
-        return "ask for the way out again" if begin.way else "press Enter again"
+        return "ask for the way out again" if begin.approach else "press Enter again"
     return "search for the line again"
 
 

@@ -12,7 +12,7 @@ from core.interpreter.actions import SpindleRun
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
 
-# --- Generated moves as lines of the program would say them, in the mode and unit in force.
+# --- as lines of the program would say them, in the mode and unit in force
 
 
 _WORD = re.compile(r"([A-Z])([-+0-9.]*)")

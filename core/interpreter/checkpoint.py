@@ -81,13 +81,13 @@ ApproachStep = Leg | CTurn | FunctionStep
 class Begin(NamedTuple):
     """Where and with what a pass begins. ``single``: the text is one line of MDI, not a program.
 
-    ``way`` comes before the line; it must end where the checkpoint stands.
+    ``approach`` comes before the line; it must end where the checkpoint stands.
     """
 
     checkpoint: Checkpoint
     line: int = 1
     single: bool = False
-    way: tuple[ApproachStep, ...] = ()
+    approach: tuple[ApproachStep, ...] = ()
 
     @property
     def key(self) -> str:

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from core.interpreter.omniturn.conditional_calls import Branching, Guide
     from core.interpreter.omniturn.omniturn_program import Program
 
-# --- A program that this machine cannot run at all: one finding, and no block.
-
 
 class RefusedPass:
     """``core.interpreter.dialects.Interpretation`` of nothing."""

@@ -146,9 +146,6 @@ class Block:
         return self.action is None
 
 
-# --- Straight moves one after the other under one state: columns, a block only where one is asked for.
-
-
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 

@@ -11,8 +11,6 @@ from pathlib import Path, PurePath
 
 from core.language.diagnostics import Diagnostic, Severity
 
-# --- Which language a program is written in.
-
 
 class Dialect(StrEnum):
     """The words are those of the command line and of the JSON."""

@@ -199,8 +199,8 @@ def test_a_way_beyond_the_travel_is_found_by_the_proof() -> None:
     job = restart_job(rig, 8)
     begin = job.setup.begin
     assert begin is not None
-    far = tuple(step._replace(z=500.0) if getattr(step, "z", None) else step for step in begin.way)
-    setup = replace(job.setup, begin=begin._replace(way=far))
+    far = tuple(step._replace(z=500.0) if getattr(step, "z", None) else step for step in begin.approach)
+    setup = replace(job.setup, begin=begin._replace(approach=far))
     report = prove(job.source, setup, rig.machine)
     assert any("beyond the travel limit" in each.message for each in report.errors)
 
@@ -413,7 +413,7 @@ def test_in_a_program_that_was_changed_since_no_block_tells_where_the_tool_stand
     cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
     out = leaving_of(cut, rig.shot, whole, Choices())
     assert out.trouble.startswith("HOW T1 CAME TO STAND HERE IS NOT KNOWN")
-    assert not out.begin.way
+    assert not out.begin.approach
 
 
 def test_a_way_out_does_not_start_from_another_place_than_was_proved() -> None:

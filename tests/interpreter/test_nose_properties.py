@@ -168,6 +168,6 @@ def test_blocks_follow_each_other_whatever_stands_in_the_program(parts: list[lis
             radii = [dist(end, (block.cx, block.cz)) for end in ((block.x0, block.z0), (block.x, block.z))]
             assert radii[0] == pytest.approx(radii[1], abs=0.013)  # what the language allows
     if not result.errors:
-        assert not result.interpreter._state.shape.active
+        assert not result.interpreter._state.contour.active
         lost = {number for number, line in enumerate(text.splitlines(), 1) if line[0] in "XZ"}
         assert lost <= {block.line for block in result.blocks}

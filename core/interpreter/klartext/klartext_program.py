@@ -178,9 +178,6 @@ def _calls(program: Program) -> list[Diagnostic]:
     return found
 
 
-# --- Where a Klartext program goes next: calls of subprograms, repeats of sections.
-
-
 DEEPEST_CALL = 19
 
 

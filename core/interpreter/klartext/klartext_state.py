@@ -68,7 +68,7 @@ class State:
         self.m128 = False
         self.table_known = False  # the program has positioned it, so it no longer matters where it stood
         self.blank: Corners | None = None
-        self.told: set[object] = set()  # warnings that would otherwise repeat
+        self.reported: set[object] = set()  # warnings that would otherwise repeat
         self.modal = Modal(absolute=True, metric=not inch, rapid_rate=setup.last_rapid)
         self._c = self.names.index("C") if "C" in self.at else -1
         self._shared: PlaneSystem | None = None

@@ -97,12 +97,12 @@ def _warn(state: State, line: int, node: Move) -> None:
     """A cut with the table elsewhere than the plane asks, or with the spindle at rest: told once."""
     if all(word.axis not in SLIDES for word in node.axes):
         return
-    if not state.modal.spindle and "spindle" not in state.told:
-        state.told.add("spindle")
+    if not state.modal.spindle and "spindle" not in state.reported:
+        state.reported.add("spindle")
         text, hint = "This feed move runs with the spindle at rest.", "Start it with M3 or M4."
         state.log.warn(line, 0, "spindle-stopped", text, hint)
     plane = state.plane
-    if plane is None or ("table", plane.line) in state.told:
+    if plane is None or ("table", plane.line) in state.reported:
         return
     off = [
         axis.name
@@ -110,7 +110,7 @@ def _warn(state: State, line: int, node: Move) -> None:
         if abs(axis.way(plane.targets[axis.name], state.at[axis.name])) > AT_TARGET
     ]
     if off:
-        state.told.add(("table", plane.line))
+        state.reported.add(("table", plane.line))
         text = f"{' and '.join(off)} stand elsewhere than the plane of line {plane.line} asks."
         hint = "Position them before the cut: L A+Q120 C+Q122 R0 FMAX, or TURN in the PLANE block."
         state.log.warn(line, 0, "table-elsewhere", text, hint)

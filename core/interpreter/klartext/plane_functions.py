@@ -37,7 +37,7 @@ from core.language.diagnostics import Diagnostic, Severity
 from core.language.klartext import klartext_faults
 from core.language.klartext.klartext_nodes import AxisWord, Plane, Positioning, Retract
 
-# --- From the words of a PLANE block to its frame and the angles of the rotary axes; nothing moves here.
+# --- from the words of a PLANE block to its frame and angles; nothing moves here
 
 
 _ABOUT = {"SPA": X_AXIS, "SPB": Y_AXIS, "SPC": Z_AXIS}

@@ -32,9 +32,6 @@ def _words(line: str) -> str:
     return _COMMENT.sub("", line).replace(" ", "").upper()
 
 
-# --- What the end of a program leaves of the modal state, for the program that comes next and for MDI.
-
-
 def after_end(old: Modal, rpm: float, *, reset: bool) -> Modal:
     """The state of power-up, but for units, the tool's frame and, without ``reset``, the M functions.
 

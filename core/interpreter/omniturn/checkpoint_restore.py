@@ -54,12 +54,12 @@ def restore(state: State, begin: Begin) -> None:
     state.c = point.c if point.modal.c_locked else start_c - point.modal.offset_c
 
 
-def way_blocks(state: State, begin: Begin) -> Iterator[Block]:
+def approach_blocks(state: State, begin: Begin) -> Iterator[Block]:
     """The blocks of the way, numbered so that the first block of the line keeps its number of a full run."""
     modal, point = state.modal, begin.checkpoint
     at = [value - offset for value, offset in zip(state.setup.start, _offsets(state), strict=False)]
     turning = 0.0
-    for number, step in enumerate(begin.way, start=point.blocks - len(begin.way) + 1):
+    for number, step in enumerate(begin.approach, start=point.blocks - len(begin.approach) + 1):
         x0, z0, c0 = at
         kind, feed, action = Kind.ACTION, 0.0, None
         match step:

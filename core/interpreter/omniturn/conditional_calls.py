@@ -40,7 +40,7 @@ class Branching(Interpreter):
     def __init__(self, program: Program, setup: Setup, guide: Guide) -> None:
         super().__init__(program, setup)
         self._guide = guide
-        self._way_gone = False  # a copy begins in the middle
+        self._approached = False  # a copy begins in the middle
         self._fresh = False  # a copy whose first line is to be gone the other way
         self._choice: bool | None = None
         self._held: dict[str, bool] = {}  # answers since which nothing has been done
@@ -67,7 +67,7 @@ class Branching(Interpreter):
             state.modal._replace(comment=""),
             (state.x, state.z, state.c, state.px, state.pz),
             (state.first_feed, state.tool_line, state.title_rapid, state.coarse_at, state.turning),
-            frozenset(state.told),
+            frozenset(state.reported),
             tuple(sorted(self._held.items())) if self._held_to == state.blocks else (),
             self._stopped,
         )
@@ -77,14 +77,14 @@ class Branching(Interpreter):
         twin = copy(self)
         twin._log = Log()
         twin._state = state = copy(self._state)
-        state.log, state.shape = twin._log, ContourState()
-        state.told, state.pending_shift = set(state.told), dict(state.pending_shift)
-        twin._shaper, twin._tools = ContourModifier(state), ToolUse()
+        state.log, state.contour = twin._log, ContourState()
+        state.reported, state.pending_shift = set(state.reported), dict(state.pending_shift)
+        twin._modifier, twin._tools = ContourModifier(state), ToolUse()
         twin._flow = self._flow.twin()
         twin._flow.at = made.line - 1
         twin._held = dict(self._held)
         twin._ahead = None
-        twin._way_gone, twin._fresh, twin._choice = True, True, not takes
+        twin._approached, twin._fresh, twin._choice = True, True, not takes
         twin.unlikely = self.unlikely or self._answer(made) is not None
         return twin
 
@@ -95,7 +95,7 @@ class Branching(Interpreter):
         return self._held.get(terminal(made))
 
     def _statement(self, made: Statement) -> Iterator[Block]:
-        if not self._state.shape.active:
+        if not self._state.contour.active:
             self._flow.at = made.line - 1
             if self._fresh:
                 self._fresh = False
@@ -125,13 +125,13 @@ class Branching(Interpreter):
         self._held_to = self._state.blocks
         return takes
 
-    def _way(self) -> Iterator[Block]:
-        return iter(()) if self._way_gone else super()._way()
+    def _approach(self) -> Iterator[Block]:
+        return iter(()) if self._approached else super()._approach()
 
     def _pass(self) -> Iterator[Block | Series]:
         if self._refused:
             return
         yield from self._lines()
         if not self.merged:
-            yield from self._held_back(self._shaper.end())
+            yield from self._released(self._modifier.end())
             warn_of_idle_shifts(self._state)

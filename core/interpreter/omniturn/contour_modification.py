@@ -33,16 +33,16 @@ class ContourModifier:
     def take(self, block: Block) -> Iterator[Block]:
         """Takes a block as its line made it; yields those that are sure. Raises ProgramError."""
         state = self._state
-        corner, state.shape.corner = state.shape.corner, None
+        corner, state.contour.corner = state.contour.corner, None
         self._begin(block.n - 1)
-        if block.moves and state.shape.approach:
+        if block.moves and state.contour.approach:
             check_approach(state, block)
             self._nose.radius = nose_radius(state)
         yield from self._put(block, corner)
 
     def check(self, made: Statement) -> None:
         """Whether a line may follow what is held. Raises ProgramError."""
-        if self._state.shape.active:
+        if self._state.contour.active:
             self._corners.check(made)
             check_under_nose(self._state, made)
 
@@ -61,9 +61,9 @@ class ContourModifier:
         self._corners.drop()
         self._nose.drop()
         self._count = None
-        self._state.shape.active = False
-        self._state.shape.corner = None
-        self._state.shape.approach = 0
+        self._state.contour.active = False
+        self._state.contour.corner = None
+        self._state.contour.approach = 0
 
     def _begin(self, count: int) -> None:
         if self._count is None:
@@ -72,14 +72,14 @@ class ContourModifier:
     def _put(self, item: Item, corner: Corner | None) -> Iterator[Block]:
         state = self._state
         count = self._count or 0
-        for shaped in self._corners.take(item, corner):
-            for block in self._nose.take(shaped):
+        for item_cut in self._corners.take(item, corner):
+            for block in self._nose.take(item_cut):
                 count += 1
                 block.n = count
                 self._count = count
                 yield block
-        state.shape.active = self._corners.active or self._nose.active
-        if not state.shape.active:
+        state.contour.active = self._corners.active or self._nose.active
+        if not state.contour.active:
             state.blocks = count
-            state.shape.approach = 0  # a T may have ended what had not begun
+            state.contour.approach = 0  # a T may have ended what had not begun
             self._count = None

@@ -48,8 +48,8 @@ def read_corner(state: State, made: Statement) -> None:
     if size is None or size <= 0:
         text = f"{word.text}: a corner's size must be a number over 0."
         raise made.refuse(word, "corner-size", text, "Write the size in full.")
-    state.shape.corner = Corner(word.letter, size, word.column)
-    state.shape.active, state.fast = True, False
+    state.contour.corner = Corner(word.letter, size, word.column)
+    state.contour.active, state.fast = True, False
 
 
 def refuse_radius(made: Statement) -> None:

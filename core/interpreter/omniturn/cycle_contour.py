@@ -48,10 +48,10 @@ class _Reader:
         self._own = copy.copy(state)
         # A rapid needs no feed and no spindle, which do not count here.
         self._own.adopt(state.modal._replace(rapid=True))
-        self._own.told = set()
+        self._own.reported = set()
         self._own.title_rapid = self._own.tool_line = 0
         self._begun = False
-        self._told = False
+        self._reported = False
         self._pieces: list[ContourPiece] = []
 
     def take(self, line: Statement) -> None:
@@ -87,8 +87,8 @@ class _Reader:
         words = [line.words[letter] for letter in "TDSF" if letter in line.words and line.one_shot != 4]
         words += [line.m_word] if line.m_word else []
         words += [line.code] if line.code and line.one_shot in {4, 10} else []
-        if words and not self._told:
-            self._told = True
+        if words and not self._reported:
+            self._reported = True
             text = f"{words[0].text} and its like do not count in the contour of G{self._made.one_shot}."
             found = Diagnostic(line.line, words[0].column, Severity.NOTE, "cycle-ignored", text)
             self._state.log.add(found)

@@ -51,7 +51,7 @@ def _modes(state: State, made: Statement, modes: set[int], *, has_feed: bool) ->
         feed = modal.cut_feed if 1 in modes and modal.cut_per_rev == per_rev else None
     if modes - {0}:
         state.title_rapid = 0
-        state.told.discard("feed-missing")
+        state.reported.discard("feed-missing")
     if modes - {0} and (modal.rapid, modal.per_rev, modal.feed) != (False, per_rev, feed):
         state.adopt(state.modal._replace(rapid=False, per_rev=per_rev, feed=feed))
 
@@ -72,19 +72,26 @@ def _feed(state: State, made: Statement, word: Word, *, first: bool) -> None:
     feed = state.feed_word(word.value or 0.0)
     most = MOST_PER_REV[modal.coarse] if modal.per_rev else state.setup.limits.max_feed
     state.title_rapid = 0
-    state.told.discard("feed-missing")
+    state.reported.discard("feed-missing")
     least = _LEAST if modal.per_rev else _LEAST / 60
-    kept = min(max(feed, least), most)  # after an error too, so that the rest can be judged
+    within = min(max(feed, least), most)  # after an error too, so that the rest can be judged
     if first and not modal.per_rev:
-        state.first_feed = kept
-        state.adopt(state.modal._replace(feed=kept, rapid=False, rapid_rate=kept))
+        state.first_feed = within
+        state.adopt(state.modal._replace(feed=within, rapid=False, rapid_rate=within))
         state.derive()
-    elif (modal.feed, modal.cut_feed, modal.cut_per_rev, modal.rapid) == (kept, kept, modal.per_rev, False):
+    elif (modal.feed, modal.cut_feed, modal.cut_per_rev, modal.rapid) == (
+        within,
+        within,
+        modal.per_rev,
+        False,
+    ):
         pass
     elif first:
-        state.adopt(state.modal._replace(feed=kept, rapid=False))
+        state.adopt(state.modal._replace(feed=within, rapid=False))
     else:
-        state.adopt(state.modal._replace(feed=kept, rapid=False, cut_feed=kept, cut_per_rev=modal.per_rev))
+        state.adopt(
+            state.modal._replace(feed=within, rapid=False, cut_feed=within, cut_per_rev=modal.per_rev)
+        )
     if not least / _ROUNDING <= feed <= most * _ROUNDING:
         low = units.feed(least, per_rev=modal.per_rev, metric=modal.metric)
         high = units.feed(most, per_rev=modal.per_rev, metric=modal.metric)
@@ -159,8 +166,8 @@ def check_move(state: State, line: int, x0: float, x: float, length: float) -> N
 
 def _once(state: State, line: int, code: str, message: str, hint: str) -> None:
     """Refuse a move; the moves after it that lack the same thing say nothing new."""
-    if code not in state.told:
-        state.told.add(code)
+    if code not in state.reported:
+        state.reported.add(code)
         raise program_error(line, 0, code, message, hint)
 
 

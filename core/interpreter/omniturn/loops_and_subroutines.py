@@ -210,9 +210,6 @@ def call_target(made: Statement) -> int:
     return 1 if made.flow == "M95" else int(made.value("P") or 0)
 
 
-# --- Where a program goes next: loops, subroutine calls, the end.
-
-
 class Flow:
     """The place in a program: ``at`` is the index of the line to execute next, ``end`` where it stops."""
 

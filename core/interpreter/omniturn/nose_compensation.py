@@ -22,7 +22,7 @@ from core.interpreter.omniturn.omniturn_state import CompensationSwitch, Item, S
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.language.diagnostics import ProgramError
 
-# --- The way to a compensated contour and off it again: far enough from the part, and clear of it.
+# --- approach and departure: far enough from the part, and clear of it
 
 
 # An approach of one nose radius along the first move itself passes its start at .71 of the radius.
@@ -270,7 +270,7 @@ def _refused(block: Block, code: str, text: str, hint: str) -> ProgramError:
     return program_error(block.line, 0, code, text, hint)
 
 
-# --- G41, G42 and G40 as words: where they may stand, and what may not stand under them.
+# --- words: where they may stand, and what may not stand under them
 
 
 NOSE = frozenset({40, 41, 42})
@@ -300,8 +300,8 @@ def switch(state: State, made: Statement, code: int, *, called: bool) -> Compens
         text = f"G{code} stands in a subroutine."
         raise made.refuse(1, "comp-subroutine", text, "Write the compensated contour in the main program.")
     state.adopt(state.modal._replace(nose_comp=code))
-    state.shape.approach = 0 if code == 40 else made.line
-    state.shape.active, state.fast = True, False
+    state.contour.approach = 0 if code == 40 else made.line
+    state.contour.active, state.fast = True, False
     return CompensationSwitch(code, made.line, state.x - state.px, state.z - state.pz)
 
 
@@ -326,7 +326,7 @@ def check_under_nose(state: State, made: Statement) -> None:
         what = word.text if word is not None else "C"
         raise made.refuse(1, "comp-with", f"{what} stands while G{on} is on.", "Write G40 before it.")
     other = made.value("D") not in {None, state.modal.secondary}
-    if other and "T" not in made.words and not state.shape.approach:
+    if other and "T" not in made.words and not state.contour.approach:
         text = f"D changes while G{on} is on."
         hint = "D belongs on the first move after G41 or G42 alone."
         raise made.refuse("D", "comp-d", text, hint)
@@ -334,14 +334,14 @@ def check_under_nose(state: State, made: Statement) -> None:
 
 def check_approach(state: State, block: Block) -> None:
     """The first move after G41 or G42: a straight line with D. Raises ProgramError."""
-    line, state.shape.approach = state.shape.approach, 0
+    line, state.contour.approach = state.contour.approach, 0
     if not line:
         return
     on = state.modal.nose_comp
     if block.kind not in STRAIGHT:
         text = f"The first move after G{on} on line {line} is no straight line."
         raise _refused(block, "comp-approach", text, "Approach on a straight line with D.")
-    if state.shape.d_line != block.line or not state.modal.secondary:
+    if state.contour.d_line != block.line or not state.modal.secondary:
         text = f"The first move after G{on} on line {line} names no D."
         raise _refused(block, "comp-approach", text, "Write Dn: its R is the nose radius.")
     radius = state.setup.secondary[state.modal.secondary].r if _known(state) else 0.0

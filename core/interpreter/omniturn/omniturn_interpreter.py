@@ -12,7 +12,7 @@ from core.interpreter.diagnostic_log import MOST_BLOCKS, MOST_LINES, Log, PassRe
 from core.interpreter.elementary_blocks import Block, Series
 from core.interpreter.job_setup import Setup
 from core.interpreter.omniturn.block_execution import execute
-from core.interpreter.omniturn.checkpoint_restore import checkpoint_of, restore, way_blocks
+from core.interpreter.omniturn.checkpoint_restore import approach_blocks, checkpoint_of, restore
 from core.interpreter.omniturn.coarse_feeds import looks_ahead
 from core.interpreter.omniturn.contour_modification import ContourModifier
 from core.interpreter.omniturn.loops_and_subroutines import Flow
@@ -31,7 +31,7 @@ from core.language.omniturn import lex_line
 if TYPE_CHECKING:
     from core.interpreter.omniturn.move_series import SeriesLookAhead
 
-# --- What can be said about a program and its circumstances before the first block.
+# --- what can be said before the first block
 
 
 def check_opening(state: State, program: Program) -> tuple[int, bool]:
@@ -95,7 +95,7 @@ class Interpreter(PassReport):
         super().__init__(Log(program.diagnostics))
         self._program = program
         self._state = State(setup, self._log)
-        self._shaper = ContourModifier(self._state)
+        self._modifier = ContourModifier(self._state)
         self._flow = Flow(program.structure)
         self._ahead: SeriesLookAhead | None = None
         self._first, self._refused = check_opening(self._state, program)
@@ -114,7 +114,7 @@ class Interpreter(PassReport):
         At the first error the blocks end. What is left of the program is then still gone through for its
         errors before the iterator ends, unless ``to_first_error`` (what runs a program wants no delay).
         """
-        for each in chain(self._way(), self._pass()):
+        for each in chain(self._approach(), self._pass()):
             if self._stopped:
                 if to_first_error:
                     return
@@ -129,22 +129,22 @@ class Interpreter(PassReport):
             from core.interpreter.omniturn.move_series import SeriesLookAhead
 
             self._ahead = SeriesLookAhead(self._state, self._program, self._flow)
-        return (each for each in chain(self._way(), self._pass()) if not self._stopped)
+        return (each for each in chain(self._approach(), self._pass()) if not self._stopped)
 
     @property
     def checkpoint(self) -> Checkpoint:
         """What the line inherits that would be executed next."""
         return checkpoint_of(self._state)._replace(flow=self._flow.place)
 
-    def _way(self) -> Iterator[Block]:
+    def _approach(self) -> Iterator[Block]:
         begin = self._state.setup.begin
-        return iter(()) if begin is None or self._refused else way_blocks(self._state, begin)
+        return iter(()) if begin is None or self._refused else approach_blocks(self._state, begin)
 
     def _pass(self) -> Iterator[Block | Series]:
         if self._refused:
             return
         yield from self._lines()
-        yield from self._held_back(self._shaper.end())
+        yield from self._released(self._modifier.end())
         warn_of_idle_shifts(self._state)
 
     def _lines(self) -> Iterator[Block | Series]:
@@ -170,8 +170,8 @@ class Interpreter(PassReport):
                     block = plain_move(state, at + 1, texts[at], line)
                     if block is None:
                         line = ready[at] = statement(lex_line(at + 1, texts[at]))
-                    elif state.shape.active:
-                        yield from self._shaped(block)
+                    elif state.contour.active:
+                        yield from self._modified(block)
                     else:
                         yield block
                 if isinstance(line, Statement):
@@ -185,27 +185,27 @@ class Interpreter(PassReport):
             return
         if made.flow == UNREADABLE:
             self._stopped = True
-            self._shaper.drop()  # what is held back lacks this line
+            self._modifier.drop()  # what is held back lacks this line
             self._arrive(made)
         elif made.calls:
-            self._shaper.check(made)
+            self._modifier.check(made)
             yield from self._call(made)
         elif made.flow == PLANE:
-            self._shaper.check(made)
+            self._modifier.check(made)
             from core.interpreter.omniturn.plane_switching import plane_line  # as rare as it is large
 
             for block in plane_line(self._state, made):
-                yield from self._shaped(block)
+                yield from self._modified(block)
         elif made.flow:
             self._flow.steer(made)
         else:
-            self._shaper.check(made)
+            self._modifier.check(made)
             if nose_code(made):
                 yield from self._nose(made)
             first = made.line == self._first
             ahead = self._program.ready[made.line : made.line + _AHEAD] if looks_ahead(made) else ()
             for block in execute(self._state, made, self._tools, ahead, first=first, contour=contour):
-                yield from self._shaped(block)
+                yield from self._modified(block)
                 if isinstance(block.action, ProgramEnd):
                     self._flow.stop()
 
@@ -222,16 +222,16 @@ class Interpreter(PassReport):
         """G41, G42 or G40."""
         mark = switch(self._state, made, nose_code(made), called=self._flow.called)
         if mark is not None:
-            yield from self._held_back(self._shaper.mark(mark))
+            yield from self._released(self._modifier.mark(mark))
 
-    def _shaped(self, block: Block) -> Iterator[Block]:
+    def _modified(self, block: Block) -> Iterator[Block]:
         """The block itself, or, where corners or nose compensation are at work, what is sure by now."""
-        if self._state.shape.active:
-            yield from self._held_back(self._shaper.take(block))
+        if self._state.contour.active:
+            yield from self._released(self._modifier.take(block))
         else:
             yield block
 
-    def _held_back(self, blocks: Iterator[Block]) -> Iterator[Block]:
+    def _released(self, blocks: Iterator[Block]) -> Iterator[Block]:
         try:
             yield from blocks
         except ProgramError as problem:
@@ -241,14 +241,14 @@ class Interpreter(PassReport):
         """Keep the error; no block that is held back may come any more."""
         self._log.add(problem.diagnostic)
         self._stopped = True
-        self._shaper.drop()
+        self._modifier.drop()
         self._state.fast = False
 
     def _call(self, made: Statement) -> Iterator[Block]:
         state = self._state
         if made.asks:
             asked = AskInput(terminal(made))
-            yield from self._shaped(state.action(made.line, made.text, asked, rpm_at(state, state.x)))
+            yield from self._modified(state.action(made.line, made.text, asked, rpm_at(state, state.x)))
             if not self._takes(made):
                 return
         self._flow.call(made)
@@ -280,14 +280,14 @@ class PassToLine(Interpreter):
     """A pass that stops before any line, in each pass of a loop and each call, and goes on from there."""
 
     def before(self, line: int) -> Iterator[Block]:
-        """The blocks until this line is about to be executed, counted from 1; ``there`` tells whether it is.
+        """The blocks until this line, counted from 1, comes next; ``at_line`` tells whether it does.
 
         May be called again with a later line. At the first error they end; ``failed`` tells.
         """
         self._flow.until(line)
         return self._until_stop()
 
-    def again(self, line: int) -> Iterator[Block]:
+    def once_more(self, line: int) -> Iterator[Block]:
         """The same line executed, and on until it is about to be executed once more."""
         self._flow.until(line)
         self._flow.pass_stop()
@@ -301,7 +301,7 @@ class PassToLine(Interpreter):
             yield each
 
     @property
-    def there(self) -> bool:
+    def at_line(self) -> bool:
         """Whether the line that was asked for comes next."""
         return self._flow.stopped and not self._stopped
 
@@ -321,6 +321,6 @@ class PassToLine(Interpreter):
         return self._flow.called
 
     @property
-    def shaping(self) -> bool:
+    def holds_moves(self) -> bool:
         """Whether moves are held back, because a corner or nose compensation looks at the lines to come."""
-        return self._state.shape.active or self._state.modal.nose_comp != 40
+        return self._state.contour.active or self._state.modal.nose_comp != 40

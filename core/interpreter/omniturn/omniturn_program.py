@@ -29,7 +29,7 @@ from core.language.omniturn.plane_switching_lines import (
 )
 from core.language.source import Source
 
-# --- Where shops' files differ from the book: one note a kind for the file, or an error each when strict.
+# --- habits of shops: one note a kind for the file, or an error each when strict
 
 
 _ODD_IN_COMMENT = frozenset("!@#$%^&*\"'?><,/\\|=-.")
@@ -51,15 +51,15 @@ class Style:
     def __init__(self, *, strict: bool) -> None:
         self.found: list[Diagnostic] = []
         self._strict = strict
-        self._told: dict[str, int] = {}  # kind → place in what was found
+        self._places: dict[str, int] = {}  # kind → place in what was found
 
     def tell(self, kind: str, line: int, column: int = 0, count: int = 1) -> None:
         """Say that ``kind`` occurs at this place, there and behind it so often."""
-        at = self._told.get(kind)
+        at = self._places.get(kind)
         if at is not None and not self._strict:
             self.found[at] = replace(self.found[at], count=self.found[at].count + count)
             return
-        self._told[kind] = len(self.found)
+        self._places[kind] = len(self.found)
         message, hint = _KINDS[kind]
         severity = Severity.ERROR if self._strict else Severity.NOTE
         self.found.append(Diagnostic(line, column, severity, kind, message, hint, count=count))

@@ -12,8 +12,6 @@ from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal
 from core.interpreter.units import MM_PER_INCH
 
-# --- What lies between lines and the blocks handed out: corners still to cut, nose compensation in force.
-
 
 class Corner(NamedTuple):
     """C or R of a straight move: what is made where it meets the next one. ``size`` in mm."""
@@ -37,9 +35,9 @@ Item = Block | CompensationSwitch
 
 @dataclass(slots=True)
 class ContourState:
-    """Where a program stands between its lines and the blocks that are made of them."""
+    """Corners still to cut and nose compensation in force, between the lines and the blocks handed out."""
 
-    active: bool = False  # blocks are held back, so each has to pass through the shaper
+    active: bool = False  # blocks are held back, so each has to pass through the contour modifier
     corner: Corner | None = None  # of the move just made
     approach: int = 0  # line of a G41 or G42 whose approach is still to come
     d_line: int = 0  # last line that held a D
@@ -58,6 +56,7 @@ class State:
         "blocks",
         "c",
         "coarse_at",
+        "contour",
         "cut",
         "dx",
         "dz",
@@ -73,15 +72,14 @@ class State:
         "per_rev",
         "px",
         "pz",
+        "reported",
         "rpm",
         "scale_x",
         "scale_z",
         "setup",
-        "shape",
         "slow_length",
         "steady_feed",
         "title_rapid",
-        "told",
         "tool_line",
         "turning",
         "x",
@@ -100,8 +98,8 @@ class State:
         self.pending_shift: dict[int, bool] = {}  # line of a G10 → whether a T has come
         self.coarse_at: tuple[float, float] | None = None  # machine point of the G35 in force
         self.turning: tuple[int, int, float] | None = None  # line, column, s that C still needs to arrive
-        self.shape = ContourState()
-        self.told: set[str] = set()  # errors that would otherwise repeat on every move
+        self.contour = ContourState()
+        self.reported: set[str] = set()  # errors that would otherwise repeat on every move
         self.modal = Modal(metric=setup.metric, rapid_rate=setup.last_rapid)
         self.derive()
 

@@ -122,7 +122,7 @@ class Statement:
 ReadyLine = PlainMove | Statement | None
 """A line to run: a move of plain numbers, anything else, or nothing at all."""
 
-# --- Words of a line → a statement; what may not stand together on a line is refused here.
+# --- reading: words of a line sorted, and what may not stand together refused
 
 
 _SIMPLE = frozenset({"X", "Z", "I", "K", "R", "F"})

@@ -19,7 +19,7 @@ from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import mill_step
 from core.language.diagnostics import ProgramError
 
-# --- Moves of the virtual mill: where they lead, through the axis too, and their blocks.
+# --- moves of the virtual mill, through the axis too
 
 
 _TOLERANCE = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)
@@ -37,8 +37,8 @@ def plane_move(state: State, made: Statement, mill: Mill) -> Iterator[Block]:
     if made.plane.arc:
         whole = _arc(state, made, whole)
     if state.modal.feed is None:
-        if "feed-missing" not in state.told:
-            state.told.add("feed-missing")
+        if "feed-missing" not in state.reported:
+            state.reported.add("feed-missing")
             raise plane_refusal(
                 made, "feed-missing", "The move has no feed.", "Write F on this line or before it."
             )
@@ -232,11 +232,13 @@ def _feed(state: State, made: Statement) -> None:
         return
     feed, most = state.feed_word(word.value), state.setup.limits.max_feed
     modal, mill = state.modal, state.modal.mill
-    kept = min(max(feed, _LEAST_FEED), most)
+    within = min(max(feed, _LEAST_FEED), most)
     state.adopt(
-        modal._replace(feed=kept, cut_feed=kept, cut_per_rev=False, mill=mill and mill._replace(fresh=False))
+        modal._replace(
+            feed=within, cut_feed=within, cut_per_rev=False, mill=mill and mill._replace(fresh=False)
+        )
     )
-    state.told.discard("feed-missing")
+    state.reported.discard("feed-missing")
     if not _LEAST_FEED * (1 - 1e-9) <= feed <= most * (1 + 1e-9):
         low = units.feed(_LEAST_FEED, per_rev=False, metric=modal.metric)
         high = units.feed(most, per_rev=False, metric=modal.metric)

@@ -24,7 +24,7 @@ from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import on_step
 
-# --- The motions that take an area off down to a contour; in depth and way as seen from the start point.
+# --- passes and the run along the contour, in depth and length as seen from the start point
 
 
 _SAME = 1e-6  # mm
@@ -54,15 +54,15 @@ class Rougher:
 
     def cut(self, depth: float) -> None:
         """One pass at a depth greater than those before it, through all its stretches."""
-        stretches = self._area.spans(depth)
+        spans = self._area.spans(depth)
         before = self._done[-1][0] if self._done else 0.0
-        for start, end in stretches:
+        for start, end in spans:
             self._over(start)
             self._sink(before)
             self.plunged = self.plunged or start > 0
             self._feed(depth, self._at[1])
             self._feed(depth, end)
-        self._done.append((depth, stretches))
+        self._done.append((depth, spans))
 
     def finish(self, *, backwards: bool) -> None:
         """Along the contour, then back to the start. Raises StartNearError."""
@@ -82,7 +82,7 @@ class Rougher:
         """To the start of the path: its front end is reached from ahead of the area, its back from above."""
         way = min(to[1], 0.0) if front else to[1]
         self._over(way)
-        done = [depth for depth, stretches in self._done if _covering(stretches, way, to[1])]
+        done = [depth for depth, spans in self._done if _covering(spans, way, to[1])]
         if self._done:
             self._sink(min(max(done, default=0.0), to[0]))
         elif front:  # at its back end the tool would run into what may still be there
@@ -122,8 +122,8 @@ class Rougher:
     def _clear(self, a: float, b: float) -> float:
         """The depth at which the tool may run between two places: the lift above the last pass that did."""
         low, high = min(a, b), max(a, b)
-        for depth, stretches in reversed(self._done):
-            if _covering(stretches, low, high):
+        for depth, spans in reversed(self._done):
+            if _covering(spans, low, high):
                 return depth - self._lift
         return 0.0 if _covering(self._free, low, high) else min(0.0, self._area.top - self._lift)
 
@@ -156,13 +156,13 @@ class Rougher:
         return any(intersections(inner, element) for element in self._area.contour)
 
 
-def _covering(stretches: list[Span], low: float, high: float) -> bool:
+def _covering(spans: list[Span], low: float, high: float) -> bool:
     """Whether one of the stretches holds the way from ``low`` to ``high``."""
-    at = bisect_left(stretches, low + _SAME, key=lambda stretch: stretch[0]) - 1
-    return at >= 0 and stretches[at][1] >= high - _SAME
+    at = bisect_left(spans, low + _SAME, key=lambda span: span[0]) - 1
+    return at >= 0 and spans[at][1] >= high - _SAME
 
 
-# --- A contour as the start point of a cycle sees it: depth along X and way along Z, both growing towards it.
+# --- the contour as the start point sees it
 
 
 class ContourView(NamedTuple):
@@ -281,7 +281,7 @@ def _view(state: State, made: Statement, contour: list[Element]) -> ContourView:
     return view_from(start, first, last)
 
 
-# --- G74: a rectangle taken off in passes parallel to Z.
+# --- G74
 
 
 _WHOLE_BOX_CYCLE = 1e-6  # of a pass: what a decimal fraction lacks in binary

@@ -80,11 +80,11 @@ def run_block(state: State, made: Statement) -> Iterator[Block]:
     direction = {3: 1, 4: -1}.get(made.m or 0, 0)
     if direction:
         _check_start(state, made)
-        state.told.discard("spindle-stopped")
+        state.reported.discard("spindle-stopped")
         state.adopt(state.modal._replace(spindle=direction))
     elif "S" not in made.words or made.m == 5 or not state.modal.spindle or made.s_is_limit:
         return
-    state.told.discard("spindle-stopped")
+    state.reported.discard("spindle-stopped")
     rpm = rpm_at(state, state.x)
     surface = state.modal.surface_speed if state.modal.css else None
     yield state.action(made.line, made.part("spindle"), SpindleRun(rpm, surface), rpm)

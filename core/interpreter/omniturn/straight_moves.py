@@ -1,4 +1,4 @@
-"""Straight moves, and what every move shares: where it ends and what it needs."""
+"""Straight moves, and what every move shares: what X and Z mean, where it ends, and what it needs."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def line_to(state: State, line: int, text: str, x: float | None, z: float | None
         modal = state.modal
         rpm, surface_speed = rpm_at(state, x1), modal.surface_speed if modal.css else None
         # G95's limit depends on a speed that only constant surface speed changes from move to move.
-        state.fast = not modal.css and not modal.coarse and not state.told and not state.shape.active
+        state.fast = not modal.css and not modal.coarse and not state.reported and not state.contour.active
     state.blocks = n = state.blocks + 1
     c = state.c
     return Block(
@@ -172,9 +172,6 @@ def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
     step = f"{step_of(state, word.letter):.5f}".rstrip("0")
     text = f"{word.text} is finer than the step of {step} {name}; {value:.5f} is used."
     state.log.warn(line, word.column, "finer-than-step", text, "Round the number.")
-
-
-# --- The modes that say what X and Z mean.
 
 
 def geometry_modes(state: State, made: Statement) -> None:

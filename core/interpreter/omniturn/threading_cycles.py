@@ -18,7 +18,7 @@ from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.spindle_speed import rpm_at
 from core.interpreter.omniturn.straight_moves import check_tool, on_step
 
-# --- The words of G33 and G34, and everything that has to be right before a thread may be cut.
+# --- words, and what has to be right before a thread may be cut
 
 
 MOST_ANGLE = G_CODES[33].bounds["C"][1]  # degrees

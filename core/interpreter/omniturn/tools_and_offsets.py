@@ -77,7 +77,7 @@ def secondary(state: State, made: Statement) -> None:
     number = made.value("D")
     if number is None:
         return
-    state.shape.d_line = made.line
+    state.contour.d_line = made.line
     offset = state.setup.secondary.get(int(number), SecondaryOffset()) if number else SecondaryOffset()
     state.adopt(state.modal._replace(secondary=int(number), secondary_x=offset.x, secondary_z=offset.z))
 

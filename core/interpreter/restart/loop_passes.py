@@ -66,12 +66,12 @@ def visits_of(program: Program, setup: Setup, line: int, watch: Callable[[float]
             if count % _WATCHED == 0:
                 watch(count)
             ended = ended or isinstance(block.action, ProgramEnd)
-        if ended or not walk.there or len(found.blocks) > MOST:
+        if ended or not walk.at_line or len(found.blocks) > MOST:
             return found
         point = walk.checkpoint
         found.blocks.append(point.blocks)
         found.places.append(point.flow)
-        blocks = walk.again(line)
+        blocks = walk.once_more(line)
 
 
 def _anchor(place: FlowPlace) -> int:

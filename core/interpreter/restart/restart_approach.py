@@ -64,7 +64,7 @@ def retract_from_work(cut: CutRecord, now: MachineNow) -> tuple[Retract, int]:
         return _held(retract(cut, place, max(broken.done, place.block)), now), tool
     if hypot(now.at[0] - broken.at[0], now.at[1] - broken.at[1]) <= NEAR:
         found = _held(retract(cut, Place(broken.block, tool, x, z), broken.done), now)
-        return (found if found.lies is not ToolPlace.UNKNOWN else _off_the_row(cut, broken, x, z)), tool
+        return (found if found.tool_place is not ToolPlace.UNKNOWN else _off_the_row(cut, broken, x, z)), tool
     if cut.outside(x, z, tool):
         return Retract(ToolPlace.CLEAR), tool
     was = retract(cut, Place(broken.block, tool, *_tip(cut, broken.at, tool)), broken.done)
@@ -108,18 +108,18 @@ def _off_the_row(cut: CutRecord, broken: Interruption, x: float, z: float) -> Re
 def _held(way: Retract, now: MachineNow) -> Retract:
     """A mill in its hole leaves only while C stands as it stood."""
     broken = now.broken
-    if way.lies is not ToolPlace.MILL or broken is None or len(now.at) < 3 or len(broken.at) < 3:
+    if way.tool_place is not ToolPlace.MILL or broken is None or len(now.at) < 3 or len(broken.at) < 3:
         return way
     turned = abs(now.at[2] - broken.at[2]) % _TURN
-    return way if min(turned, _TURN - turned) <= _HELD else replace(way, lies=ToolPlace.TURNED, hops=())
+    return way if min(turned, _TURN - turned) <= _HELD else replace(way, tool_place=ToolPlace.TURNED, legs=())
 
 
 def _on_the_way(was: Retract, start: tuple[float, float], x: float, z: float) -> Retract:
     """The rest of the way out of a tool that has been moved along it already."""
     at = RetractLeg(*start)
-    for number, hop in enumerate(was.hops):
+    for number, hop in enumerate(was.legs):
         if off_line(at.x, at.z, hop.x, hop.z, x, z) <= NEAR:
-            return replace(was, hops=was.hops[number:])
+            return replace(was, legs=was.legs[number:])
         at = hop
     return Retract(ToolPlace.UNKNOWN, away=was.away)
 
@@ -130,10 +130,10 @@ def begin_at(found: RestartPoint, now: MachineNow, choices: Choices) -> Begin:
     if modal.c_locked:
         modal = modal._replace(offset_c=_near(point.c + modal.offset_c, now.at[2]) - point.c)
     modal = modal._replace(coolant=modal.coolant and choices.coolant)
-    return Begin(point._replace(modal=modal), found.line, way=way(found, now, choices))
+    return Begin(point._replace(modal=modal), found.line, approach=approach_steps(found, now, choices))
 
 
-def way(found: RestartPoint, now: MachineNow, choices: Choices) -> tuple[ApproachStep, ...]:
+def approach_steps(found: RestartPoint, now: MachineNow, choices: Choices) -> tuple[ApproachStep, ...]:
     """Everything between the standstill of now and the first block of the line."""
     out = way_out(found.cut, now, choices) if found.cut is not None else ()
     at = _end(out, now.at)
@@ -148,9 +148,9 @@ def way_out(cut: CutRecord, now: MachineNow, choices: Choices) -> tuple[Leg, ...
         return ()
     x, z = now.at[0], now.at[1]
     legs: list[Leg] = []
-    if found.hops:
+    if found.legs:
         off_x, off_z = cut.offsets[tool]
-        for hop in found.hops:
+        for hop in found.legs:
             to_x, to_z = hop.x + off_x, hop.z + off_z
             free = cut.outside(x - off_x, z - off_z, tool) and cut.outside(hop.x, hop.z, tool)
             legs += _leg(
@@ -235,7 +235,7 @@ def _before(found: RestartPoint) -> list[tuple[float, float]]:
     """Machine points from the one before the work to that of the line."""
     goal = found.checkpoint.machine
     modal = found.checkpoint.modal
-    hops = [(hop.x + modal.tool_x, hop.z + modal.tool_z) for hop in found.back.hops]
+    hops = [(hop.x + modal.tool_x, hop.z + modal.tool_z) for hop in found.back.legs]
     return [*reversed(hops), goal]
 
 

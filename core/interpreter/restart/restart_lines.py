@@ -32,17 +32,17 @@ class RestartLines:
         self._steps = program.ready
         self.count = len(program.ready)
         order = attrgetter("first")
-        self.stretches = sorted((*_structured(program), *_open(program.ready)), key=order)
+        self.ranges = sorted((*_structured(program), *_open(program.ready)), key=order)
         self.repeated = sorted(_repeated(program), key=order)
-        self._apart = sorted((*self.stretches, *self.repeated), key=order)
+        self._apart = sorted((*self.ranges, *self.repeated), key=order)
 
     def why_not(self, line: int) -> str:
         """Why no program can go on from this line; empty when its text has nothing against it."""
         if not 1 <= line <= self.count:
             return f"There is no line {line}; the program has {self.count}."
-        for stretch in self.stretches:
-            if stretch.first <= line <= stretch.last:
-                return f"Line {line} {stretch.why}"
+        for lines in self.ranges:
+            if lines.first <= line <= lines.last:
+                return f"Line {line} {lines.why}"
         return "" if self._steps[line - 1] is not None else f"Line {line} is empty."
 
     def repeats(self, line: int) -> bool:
@@ -60,9 +60,9 @@ class RestartLines:
     def _nearest(self, line: int, way: int) -> int:
         at = min(line + way, self.count) if way < 0 else line + way
         while 1 <= at <= self.count:
-            stretch = next((each for each in self._apart if each.first <= at <= each.last), None)
-            if stretch is not None:
-                at = stretch.last + 1 if way > 0 else stretch.first - 1
+            lines = next((each for each in self._apart if each.first <= at <= each.last), None)
+            if lines is not None:
+                at = lines.last + 1 if way > 0 else lines.first - 1
             elif self._steps[at - 1] is None:
                 at += way
             else:
@@ -136,7 +136,7 @@ def _corner(begun: int, ends: int) -> LineRange:
     return LineRange(begun + 1, ends, f"is in the corner of line {begun}.")
 
 
-# --- What the search for a line answers: a good line with what it inherits, or why it is none.
+# --- what the search for a line answers
 
 
 class LoopPass(NamedTuple):

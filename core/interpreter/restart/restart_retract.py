@@ -62,19 +62,19 @@ class RetractLeg(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Retract:
-    """``hops`` lead from where the tool stands to where no metal can be; without, but for ``CLEAR``, none do.
+    """``legs`` lead from where the tool stands to where no metal can be; without, but for ``CLEAR``, none do.
 
     ``away`` is how the tool leaves in any case: the signs of (x, z) of the first leg; (0, 0): nobody knows.
     """
 
-    lies: ToolPlace
-    hops: tuple[RetractLeg, ...] = ()
+    tool_place: ToolPlace
+    legs: tuple[RetractLeg, ...] = ()
     away: tuple[int, int] = (0, 0)
 
     @property
     def known(self) -> bool:
         """Whether a way is known."""
-        return self.lies is ToolPlace.CLEAR or bool(self.hops)
+        return self.tool_place is ToolPlace.CLEAR or bool(self.legs)
 
 
 class Place(NamedTuple):
@@ -87,7 +87,7 @@ class Place(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class _Seg:
+class _Segment:
     x0: float
     z0: float
     x: float
@@ -187,20 +187,20 @@ class _Search:
 
     # --- as the program takes it off ----------------------------------------------------------------------
 
-    def _ahead(self) -> Iterator[_Seg]:
+    def _ahead(self) -> Iterator[_Segment]:
         """What comes next with this tool and this bar, the rest of the row first."""
         cut, row = self.cut, self.row
         if self.within:
-            yield _Seg(self.x, self.z, float(cut.x[row]), float(cut.z[row]), self.how, row)
+            yield _Segment(self.x, self.z, float(cut.x[row]), float(cut.z[row]), self.how, row)
         tool, bar = int(cut.tool[row]), int(cut.bar[row])
         for each in range(row + 1, min(row + 1 + _AHEAD, len(cut))):
             if int(cut.tool[each]) != tool or int(cut.bar[each]) != bar:
                 return
-            yield self._seg(each)
+            yield self._segment(each)
 
-    def _seg(self, row: int) -> _Seg:
+    def _segment(self, row: int) -> _Segment:
         cut = self.cut
-        return _Seg(
+        return _Segment(
             float(cut.x0[row]),
             float(cut.z0[row]),
             float(cut.x[row]),
@@ -211,13 +211,13 @@ class _Search:
 
     def _going_on(self) -> Retract | None:
         """The rapids that the program would make next from here, where they lead out of the work."""
-        hops: list[RetractLeg] = []
-        for seg in self._ahead():
-            if seg.how & FEED or len(hops) >= _LEGS:
+        legs: list[RetractLeg] = []
+        for segment in self._ahead():
+            if segment.how & FEED or len(legs) >= _LEGS:
                 return None
-            hops.append(RetractLeg(seg.x, seg.z))
-            if self._out(hops[-1]) or self._brings_it(seg.row):
-                return self._made(hops)
+            legs.append(RetractLeg(segment.x, segment.z))
+            if self._out(legs[-1]) or self._brings_it(segment.row):
+                return self._made(legs)
         return None
 
     def _as_the_program_does(self) -> Retract | None:
@@ -244,8 +244,8 @@ class _Search:
             return None
         out = self._sideways(cuts)
         grew, shrank = grew or bool((out > _ASIDE).any()), shrank or bool((out < -_ASIDE).any())
-        steps = (self._seg(row) for row in range(crossing + 1, min(crossing + _AHEAD, rows.stop)))
-        return self._out_with(self._seg(crossing), steps, grew=grew, shrank=shrank)
+        steps = (self._segment(row) for row in range(crossing + 1, min(crossing + _AHEAD, rows.stop)))
+        return self._out_with(self._segment(crossing), steps, grew=grew, shrank=shrank)
 
     def _rest_of_the_cut(self, level: float) -> float | None:
         """How far outwards the rest of this row goes, mm, 0 in a thread; None: it is in the way itself."""
@@ -280,9 +280,11 @@ class _Search:
         out = np.abs(cut.x[rows]) - np.abs(cut.x0[rows])
         return np.where((cut.how[rows] & (FEED | THREAD)) == FEED, out, 0.0)
 
-    def _out_with(self, seg: _Seg, steps: Iterator[_Seg], *, grew: bool, shrank: bool) -> Retract | None:
-        share = (max(self.z, seg.z0) - seg.z0) / (seg.z - seg.z0)
-        to_x = seg.x0 + share * (seg.x - seg.x0)
+    def _out_with(
+        self, segment: _Segment, steps: Iterator[_Segment], *, grew: bool, shrank: bool
+    ) -> Retract | None:
+        share = (max(self.z, segment.z0) - segment.z0) / (segment.z - segment.z0)
+        to_x = segment.x0 + share * (segment.x - segment.x0)
         out = abs(to_x) - abs(self.x)
         if (to_x < -SAME) != (self.x < -SAME) and max(abs(to_x), abs(self.x)) > _ON_CENTRE:
             return None
@@ -290,17 +292,17 @@ class _Search:
             return None
         if out > _ASIDE and grew and abs(to_x) < self.cut.over - SAME and not self._swept(abs(to_x)):
             return None
-        hops = [RetractLeg(to_x, self.z), RetractLeg(seg.x, seg.z)]
-        while not self._out(hops[-1]):
+        legs = [RetractLeg(to_x, self.z), RetractLeg(segment.x, segment.z)]
+        while not self._out(legs[-1]):
             after = next(steps, None)
-            if after is None or after.how & FEED or len(hops) >= _LEGS:
+            if after is None or after.how & FEED or len(legs) >= _LEGS:
                 return None
-            hops.append(RetractLeg(after.x, after.z))
-        return self._made(hops)
+            legs.append(RetractLeg(after.x, after.z))
+        return self._made(legs)
 
-    def _out(self, hop: RetractLeg) -> bool:
+    def _out(self, leg: RetractLeg) -> bool:
         """Whether a rapid of the program that ends here has left the work."""
-        return hop.z >= self.cut.begins - SAME or self.cut.outside(hop.x, hop.z, self.place.tool)
+        return leg.z >= self.cut.begins - SAME or self.cut.outside(leg.x, leg.z, self.place.tool)
 
     def _swept(self, end: float) -> bool:
         """Whether passes of this tool that are done have left nothing between here and this radius.
@@ -341,43 +343,48 @@ class _Search:
         None through a thread, nor past an opened collet or another tool.
         """
         points = [RetractLeg(self.x, self.z)]
-        for seg in self._back():
+        for segment in self._back():
             if not self.within and len(points) == 1:
-                points[0] = RetractLeg(seg.x, seg.z)
-            ahead = self._from(seg, points[-1]) if len(points) <= _TRIED else None
+                points[0] = RetractLeg(segment.x, segment.z)
+            ahead = self._from(segment, points[-1]) if len(points) <= _TRIED else None
             if ahead is not None:
                 return self._made([*_shortest([*points, ahead[0]])[1:], *ahead[1]])
-            points.append(RetractLeg(seg.x0, seg.z0))
-            if self.cut.outside(seg.x0, seg.z0, self.place.tool) or self._brings_it(seg.row - 1):
-                hops = _shortest(points)[1:]
-                return self._made(hops) if len(hops) <= _LEGS else self._lost()
+            points.append(RetractLeg(segment.x0, segment.z0))
+            if self.cut.outside(segment.x0, segment.z0, self.place.tool) or self._brings_it(segment.row - 1):
+                legs = _shortest(points)[1:]
+                return self._made(legs) if len(legs) <= _LEGS else self._lost()
         return self._lost()
 
-    def _back(self) -> Iterator[_Seg]:
+    def _back(self) -> Iterator[_Segment]:
         """What led here with this tool and this bar, the last row first."""
         cut, row = self.cut, self.row
         tool, bar = int(cut.tool[row]), int(cut.bar[row])
-        before: _Seg | None = None
+        before: _Segment | None = None
         for each in range(row, max(-1, row - _BACK), -1):
-            seg = self._seg(each)
+            segment = self._segment(each)
             other = int(cut.tool[each]) != tool or int(cut.bar[each]) != bar or int(cut.n[each]) > self.done
-            if other or seg.how & (THREAD | STILL | FACE | SIDE) or isnan(seg.x0) or isnan(seg.z0):
+            if (
+                other
+                or segment.how & (THREAD | STILL | FACE | SIDE)
+                or isnan(segment.x0)
+                or isnan(segment.z0)
+            ):
                 return
-            if before is not None and hypot(seg.x - before.x0, seg.z - before.z0) > NEAR:
+            if before is not None and hypot(segment.x - before.x0, segment.z - before.z0) > NEAR:
                 return
-            yield seg
-            before = seg
+            yield segment
+            before = segment
 
-    def _from(self, seg: _Seg, at: RetractLeg) -> tuple[RetractLeg, tuple[RetractLeg, ...]] | None:
+    def _from(self, segment: _Segment, at: RetractLeg) -> tuple[RetractLeg, tuple[RetractLeg, ...]] | None:
         """A little way back along a cut towards Z-, and from there as the program does; None: not sure."""
-        length = hypot(seg.x0 - at.x, seg.z0 - at.z)
-        if not seg.how & FEED or at.z >= seg.z0 - _ASIDE or length <= _ASIDE:
+        length = hypot(segment.x0 - at.x, segment.z0 - at.z)
+        if not segment.how & FEED or at.z >= segment.z0 - _ASIDE or length <= _ASIDE:
             return None
         share = min(_BACK_A_LITTLE, length / 2) / length
-        hop = RetractLeg(at.x + share * (seg.x0 - at.x), at.z + share * (seg.z0 - at.z))
-        place = Place(int(self.cut.n[seg.row]), self.place.tool, hop.x, hop.z)
-        found = _Search(self.cut, place, seg.row, self.done)._as_the_program_does()
-        return None if found is None or not found.hops else (hop, found.hops)
+        leg = RetractLeg(at.x + share * (segment.x0 - at.x), at.z + share * (segment.z0 - at.z))
+        place = Place(int(self.cut.n[segment.row]), self.place.tool, leg.x, leg.z)
+        found = _Search(self.cut, place, segment.row, self.done)._as_the_program_does()
+        return None if found is None or not found.legs else (leg, found.legs)
 
     def _brings_it(self, row: int) -> bool:
         """Whether the row is the rapid with which the tool comes to its work after its T, from beyond it."""
@@ -393,7 +400,11 @@ class _Search:
     def _lost(self) -> Retract:
         """Only where it would leave to is known: as its next rapid does, or back as it came."""
         cut, row = self.cut, self.row
-        ways = [(seg.x - seg.x0, seg.z - seg.z0) for seg in self._ahead() if not seg.how & FEED]
+        ways = [
+            (segment.x - segment.x0, segment.z - segment.z0)
+            for segment in self._ahead()
+            if not segment.how & FEED
+        ]
         ways.append((float(cut.x0[row]) - self.x, float(cut.z0[row]) - self.z))
         away = next(((_sign(dx), _sign(dz)) for dx, dz in ways if _sign(dx) or _sign(dz)), (0, 0))
         return Retract(ToolPlace.UNKNOWN, away=away if away[1] >= 0 else (0, 0))
@@ -406,18 +417,18 @@ class _Search:
             return False
         turns = self.how & REVERSE
         cut, row = self.cut, self.row
-        near = [self._seg(each) for each in range(max(0, row - 3), row + 1)] + list(self._ahead())[:4]
+        near = [self._segment(each) for each in range(max(0, row - 3), row + 1)] + list(self._ahead())[:4]
         return any(
-            seg.how & FEED and seg.how & PER_REV and abs(seg.x) <= _ON_CENTRE and seg.how & REVERSE != turns
-            and int(cut.tool[seg.row]) == self.place.tool
-            for seg in near
+            segment.how & FEED and segment.how & PER_REV and abs(segment.x) <= _ON_CENTRE
+            and segment.how & REVERSE != turns and int(cut.tool[segment.row]) == self.place.tool
+            for segment in near
         )  # fmt: skip
 
     def _thread_away(self) -> tuple[int, int]:
         """Away from the thread: to where the next rapid takes it along X."""
-        for seg in self._ahead():
-            if abs(seg.x - self.x) > _ASIDE and not seg.how & FEED:
-                return _sign(seg.x - self.x), 0
+        for segment in self._ahead():
+            if abs(segment.x - self.x) > _ASIDE and not segment.how & FEED:
+                return _sign(segment.x - self.x), 0
         return 0, 0
 
     def _off_the_mill(self, axis: int) -> Retract:
@@ -442,22 +453,24 @@ class _Search:
         for axis in (FACE, SIDE):
             if (own & axis).any():
                 return axis
-        off = next((seg for seg in self._ahead() if not seg.how & FEED and seg.length > _ASIDE), None)
-        seg = off or self._seg(row)
-        return SIDE if abs(seg.x - seg.x0) > abs(seg.z - seg.z0) else FACE
+        off = next(
+            (segment for segment in self._ahead() if not segment.how & FEED and segment.length > _ASIDE), None
+        )
+        segment = off or self._segment(row)
+        return SIDE if abs(segment.x - segment.x0) > abs(segment.z - segment.z0) else FACE
 
-    def _made(self, hops: list[RetractLeg]) -> Retract:
+    def _made(self, legs: list[RetractLeg]) -> Retract:
         kept: list[RetractLeg] = []
         at = RetractLeg(self.x, self.z)
-        for hop in hops:
-            if hypot(hop.x - at.x, hop.z - at.z) > SAME:
-                kept.append(hop)
-                at = hop
+        for leg in legs:
+            if hypot(leg.x - at.x, leg.z - at.z) > SAME:
+                kept.append(leg)
+                at = leg
         if not kept:
             return Retract(ToolPlace.CLEAR)
-        lies = ToolPlace.THREAD if self.how & THREAD and self.within else ToolPlace.WORK
+        tool_place = ToolPlace.THREAD if self.how & THREAD and self.within else ToolPlace.WORK
         away = _sign(kept[0].x - self.x), _sign(kept[0].z - self.z)
-        return Retract(lies, tuple(kept), away)
+        return Retract(tool_place, tuple(kept), away)
 
 
 def _sign(value: float) -> int:

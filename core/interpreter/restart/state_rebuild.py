@@ -67,22 +67,24 @@ class StateRebuild:
 
         0: the pass that was interrupted, or the first. ``broken`` is where the program was interrupted.
         """
-        found = self._look(line, visit, broken)
+        found = self._search(line, visit, broken)
         if isinstance(found, RestartPoint):
             return found
-        return NoRestart(line, found, self._good(line, -1, broken), self._good(line, 1, broken))
+        return NoRestart(
+            line, found, self._nearest_good(line, -1, broken), self._nearest_good(line, 1, broken)
+        )
 
-    def _look(self, line: int, visit: int, broken: Interruption | None) -> RestartPoint | str:
+    def _search(self, line: int, visit: int, broken: Interruption | None) -> RestartPoint | str:
         why = self.lines.why_not(line)
         if why:
             return why
         if not self.lines.repeats(line):
-            return self._goes_to(line) or self._found(line, self._walk, LineVisit(), broken)
+            return self._pass_to_line(line) or self._found(line, self._walk, LineVisit(), broken)
         visits = self._visits_of(line)
         number = visit or visits.at(broken.block if broken is not None else 0)
         why = visits.why_not(line, number)
         anchor, nth = visits.anchor(number) if not why else (0, 0)
-        why = why or self._goes_to(anchor)
+        why = why or self._pass_to_line(anchor)
         if why:
             return why.replace(f"line {anchor}", f"line {line}").replace(f"Line {anchor}", f"Line {line}")
         found = self._within(line, anchor, nth, visits.told(number), broken)
@@ -99,30 +101,30 @@ class StateRebuild:
         self, line: int, anchor: int, nth: int, visit: LineVisit, broken: Interruption | None
     ) -> RestartPoint | str:
         """From the line of the main program on, which is reached, to the pass that is wanted."""
-        walks = [self._from(self._walk, anchor)]
+        walks = [self._walk_from(self._walk, anchor)]
         if self._other is not None:
-            walks.append(self._from(self._other, anchor))
+            walks.append(self._walk_from(self._other, anchor))
         for walk in walks:
             lost = self._to_visit(walk, line, nth)
             if lost:
                 return f"Line {line} is no place to go on: {lost}"
-        walk, known = walks[0], self._other is None or _alike(*walks)
+        walk, known = walks[0], self._other is None or _same_state(*walks)
         why = self._why_not_here(line, walk, known=known)
         return why or self._found(line, walk, visit, broken)
 
-    def _from(self, walk: PassToLine, anchor: int) -> PassToLine:
+    def _walk_from(self, walk: PassToLine, anchor: int) -> PassToLine:
         setup = replace(walk.setup, begin=Begin(walk.checkpoint, anchor))
         return PassToLine(self._program, setup)
 
     def _to_visit(self, walk: PassToLine, line: int, nth: int) -> str:
         for number in range(nth):
-            for block in walk.again(line) if number else walk.before(line):
-                self._mind()
+            for block in walk.once_more(line) if number else walk.before(line):
+                self._count_block()
                 if isinstance(block.action, AskInput):
                     return f"what input {block.action.terminal} answered on line {block.line} is not known."
         return ""
 
-    def _mind(self) -> None:
+    def _count_block(self) -> None:
         self._count += 1
         if self._count % _WATCHED == 0:
             self.watch(self._count)
@@ -132,22 +134,21 @@ class StateRebuild:
     ) -> RestartPoint | str:
         point, cut = walk.checkpoint, self.cut
         done = broken.done if broken is not None else point.blocks
-        back = _back(cut, point)
-        if back.lies is ToolPlace.CLEAR or (back.known and point.blocks <= done):
+        back = _retract_from(cut, point)
+        if back.tool_place is ToolPlace.CLEAR or (back.known and point.blocks <= done):
             return RestartPoint(line, point, back, cut, visit, left_out=_left_out(cut, done, point.blocks))
         if point.blocks > done:
             first, last = _left_out(cut, done, point.blocks)
             which = f"line {first}" if first == last else f"lines {first} to {last}"
             return f"Line {line} begins in metal that {which} would have had to cut."
-        return (
-            f"Line {line} begins in the work, and no sure way leads there. {_HOW.get(back.lies, '')}".strip()
-        )
+        how = _HOW.get(back.tool_place, "")
+        return f"Line {line} begins in the work, and no sure way leads there. {how}".strip()
 
-    def _good(self, line: int, way: int, broken: Interruption | None) -> int:
+    def _nearest_good(self, line: int, way: int, broken: Interruption | None) -> int:
         """The nearest line that the pass itself confirms; few upwards, where each costs a pass of its own."""
         for _ in range(_DOWN if way > 0 else _UP):
             line = self.lines.after(line) if way > 0 else self.lines.before(line)
-            if not line or isinstance(self._look(line, 0, broken), RestartPoint):
+            if not line or isinstance(self._search(line, 0, broken), RestartPoint):
                 return line
         return 0
 
@@ -160,7 +161,7 @@ class StateRebuild:
         self._walk = PassToLine(self._program, self._setup)
         self._other: PassToLine | None = PassToLine(self._program, replace(self._setup, start=_ELSEWHERE))
 
-    def _goes_to(self, line: int) -> str:
+    def _pass_to_line(self, line: int) -> str:
         """Go to the line; why it is not good, empty when it is."""
         if line < self._at:
             self._begin_anew()
@@ -169,7 +170,7 @@ class StateRebuild:
                 self._ask()
             self._pass_to(self._stop(line))
             other = self._other
-            if other is not None and not other.failed and _alike(self._walk, other):
+            if other is not None and not other.failed and _same_state(self._walk, other):
                 self._other = None
         return self._why_not(line)
 
@@ -186,7 +187,7 @@ class StateRebuild:
         """Both passes to the line; the first one tells what is asked and how far out it goes."""
         asked, self._at = self._at, line
         for block in self._walk.before(line):
-            self._mind()
+            self._count_block()
             if block.action is None:
                 self._moved = True
             elif isinstance(block.action, ProgramEnd):
@@ -216,7 +217,7 @@ class StateRebuild:
             (walk.failed, f"The program has errors before line {line}."),
             (self._ended, f"The program ends on line {self._ended}, before line {line}."),
             (self._lost, f"Line {line} is no place to go on: {self._lost}"),
-            (walk.shaping, f"Line {line} is under nose compensation or in a corner."),
+            (walk.holds_moves, f"Line {line} is under nose compensation or in a corner."),
             (walk.checkpoint.modal.mill, f"Line {line} is in plane switching."),
             (not known and self._asked, f"Line {line} depends on the input that line {self._asked} asks."),
             (
@@ -234,7 +235,7 @@ _HOW = {
 }
 
 
-def _back(cut: CutRecord, point: Checkpoint) -> Retract:
+def _retract_from(cut: CutRecord, point: Checkpoint) -> Retract:
     """From the place of the line out of the work; a tool just called stands where the last one was taken."""
     row = cut.row_behind(point.blocks)
     if row < 0:
@@ -261,10 +262,10 @@ def _asks(program: Program, lines: RestartLines) -> list[int]:
     return [number for number in asking if not lines.why_not(number)]
 
 
-def _alike(one: PassToLine, other: PassToLine) -> bool:
+def _same_state(one: PassToLine, other: PassToLine) -> bool:
     """Whether both passes stand at one point in one state, so that what follows is the same."""
     a, b = one.checkpoint, other.checkpoint
-    if one.next_line != other.next_line or one.shaping or other.shaping or a.modal != b.modal:
+    if one.next_line != other.next_line or one.holds_moves or other.holds_moves or a.modal != b.modal:
         return False
     near = all(abs(p - q) < _SAME for p, q in zip(a.machine, b.machine, strict=True))
     near = near and abs(a.px - b.px) < _SAME and abs(a.pz - b.pz) < _SAME

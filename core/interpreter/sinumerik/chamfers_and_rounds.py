@@ -18,7 +18,7 @@ from core.interpreter.actions import ProgramEnd
 from core.interpreter.adjusted_moves import element_of, standstill_at
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.sinumerik.linear_moves import Way
+from core.interpreter.sinumerik.linear_moves import AxisTravel
 from core.interpreter.sinumerik.sinumerik_state import State, positive
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
@@ -131,9 +131,9 @@ class Corners:
     def _along(self, block: Block, element: Element) -> Block:
         """The block's own move on a part of its way; a rapid takes the time of its slowest axis."""
         (x0, z0), (x, z) = element.start, element.end
-        way = Way(x0, z0, block.c0, x, z, block.c, block.modal, block.offset_x, block.offset_z)
+        travel = AxisTravel(x0, z0, block.c0, x, z, block.c, block.modal, block.offset_x, block.offset_z)
         rapid = block.kind is Kind.RAPID
-        feed = way.rapid_rate(self._state.setup.limits.speeds) if rapid else block.feed
+        feed = travel.rapid_rate(self._state.setup.limits.speeds) if rapid else block.feed
         made = replace(block, x0=x0, z0=z0, x=x, z=z, feed=feed, rpm=self._rpm(block, x))
         if isinstance(element, Line):
             return made

@@ -13,14 +13,14 @@ from core.interpreter.sinumerik.sinumerik_state import State, positive
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.sinumerik.sinumerik_words import ARC, Form, Word
 
-# --- Where the words X, Z and C of a block lead, in machine coordinates, and how long a rapid to there takes.
+# --- where the words lead, in machine coordinates
 
 
 NO_WAY = 1e-6
 """mm of X and Z together below which a block has no path, and F belongs to C."""
 
 
-class Way(NamedTuple):
+class AxisTravel(NamedTuple):
     """From where to where, machine coordinates: mm, X a radius, C in degrees over its turns.
 
     ``offset_x offset_z`` and ``modal`` hold the frame of the block: none under G53.
@@ -58,16 +58,16 @@ class Way(NamedTuple):
         return (self.length or abs(self.turn)) / time if time else min(speeds)
 
 
-def way_of(state: State, made: Statement) -> Way:
-    """The way of a block. Raises ProgramError for a word that names no place."""
+def travel_of(state: State, made: Statement) -> AxisTravel:
+    """Where a block leads. Raises ProgramError for a word that names no place."""
     check_c(state, made)
     modal = state.modal
     dx, dz = modal.offset_x, modal.offset_z
     if "suppression of offsets" in made.g:
         modal, dx, dz = modal._replace(offset_c=0.0), 0.0, 0.0
     x, z = _slide(state, made, "X", state.x, dx), _slide(state, made, "Z", state.z, dz)
-    way = Way(state.x, state.z, state.c, x, z, state.c + _turn(state, made, modal), modal, dx, dz)
-    return way._replace(x=state.x, z=state.z) if way.length < NO_WAY else way
+    travel = AxisTravel(state.x, state.z, state.c, x, z, state.c + _turn(state, made, modal), modal, dx, dz)
+    return travel._replace(x=state.x, z=state.z) if travel.length < NO_WAY else travel
 
 
 def _slide(state: State, made: Statement, name: str, at: float, offset: float) -> float:
@@ -91,11 +91,11 @@ def _turn(state: State, made: Statement, modal: Modal) -> float:
     try:
         if state.setup.limits.c_modulo:
             return third_axis.modulo_travel(form, value, at)
-        way = third_axis.linear_travel(form, value, at)
-        third_axis.check_reach(state.c + way)
+        travel = third_axis.linear_travel(form, value, at)
+        third_axis.check_reach(state.c + travel)
     except third_axis.TargetError as problem:
         raise made.alarm(word, problem.number, f"{word.text}: {problem}.", _HINTS[problem.number]) from None
-    return way
+    return travel
 
 
 def _form(state: State, word: Word) -> Form:
@@ -113,7 +113,7 @@ _HINTS = {
     **dict.fromkeys(third_axis.NO_ROTARY.values(), _NOT_MODULO),
 }
 
-# --- F, G94 and G95: one feed word, read by the kind of block; and what a block needs before it may run.
+# --- feed: one word, read by the kind of block
 
 
 NO_FEED = 10860
@@ -162,24 +162,25 @@ def straight(state: State, made: Statement) -> Block:
     for name in sorted(ARC & made.words.keys()):
         text = f"{made.words[name].text} belongs to an arc, and G{state.motion} is in force."
         raise made.refuse(made.words[name], "word-unused", text, "Write G2 or G3, or take it out.")
-    way = way_of(state, made)
-    offset = way.offset_x
+    travel = travel_of(state, made)
+    offset = travel.offset_x
     if state.motion == 0:
         speeds = state.setup.limits.speeds
-        return block_of(state, made, way, Kind.RAPID, way.rapid_rate(speeds))
-    feed = check_feed(state, made, way.x0 - offset, way.x - offset)
-    kind = Kind.ROTATE if way.turn and not way.length else Kind.FEED
-    return block_of(state, made, way, kind, feed)
+        return block_of(state, made, travel, Kind.RAPID, travel.rapid_rate(speeds))
+    feed = check_feed(state, made, travel.x0 - offset, travel.x - offset)
+    kind = Kind.ROTATE if travel.turn and not travel.length else Kind.FEED
+    return block_of(state, made, travel, kind, feed)
 
 
-def block_of(state: State, made: Statement, way: Way, kind: Kind, feed: float) -> Block:
-    """The block of a way; the state then stands at its end."""
-    state.x, state.z, state.c = way.x, way.z, way.c
-    modal = way.modal
-    dx, dz, dc = way.offset_x, way.offset_z, modal.offset_c
+def block_of(state: State, made: Statement, travel: AxisTravel, kind: Kind, feed: float) -> Block:
+    """The block of a move; the state then stands at its end."""
+    state.x, state.z, state.c = travel.x, travel.z, travel.c
+    modal = travel.modal
+    dx, dz, dc = travel.offset_x, travel.offset_z, modal.offset_c
     return Block(
         n=0, line=made.line.number, kind=kind, text=made.line.text,
-        x0=way.x0 - dx, z0=way.z0 - dz, c0=way.c0 - dc, x=way.x - dx, z=way.z - dz, c=way.c - dc,
+        x0=travel.x0 - dx, z0=travel.z0 - dz, c0=travel.c0 - dc,
+        x=travel.x - dx, z=travel.z - dz, c=travel.c - dc,
         offset_x=dx, offset_z=dz, modal=modal, feed=feed, per_rev=modal.per_rev and kind is not Kind.RAPID,
-        rpm=state.rpm_at(way.x - dx), css=state.css,
+        rpm=state.rpm_at(travel.x - dx), css=state.css,
     )  # fmt: skip

@@ -63,9 +63,6 @@ def _check_form(made: Statement, word: Word) -> None:
         raise made.refuse(word, "offset-form", text, f"Write {word.name} with its number.")
 
 
-# --- The codes that stay in force: motion, plane, units, absolute or incremental, diameter, settable offset.
-
-
 def modes(state: State, made: Statement) -> None:
     """The codes that stay in force."""
     modal = state.modal

@@ -7,7 +7,7 @@ from math import atan2, cos, dist, hypot, radians, sin, tan
 
 from core.geometry.lines_and_arcs import Point, centre_from_radius
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.sinumerik.linear_moves import NO_WAY, Way, block_of, check_feed, way_of
+from core.interpreter.sinumerik.linear_moves import NO_WAY, AxisTravel, block_of, check_feed, travel_of
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
@@ -22,40 +22,42 @@ def arc(state: State, made: Statement) -> Block:
         raise made.refuse(
             made.g.get("motion"), "arc-plane", "arcs of X and Z need G18.", "Write G18 before it."
         )
-    way = way_of(state, made)
+    travel = travel_of(state, made)
     # G2 is clockwise as seen with X up and Z to the right: with X down, as blocks count, it is the other way.
     clockwise = state.motion == 3
-    centre, way = _centre(state, made, way, clockwise)
-    offset = way.offset_x
-    feed = check_feed(state, made, way.x0 - offset, way.x - offset)
-    made_block = block_of(state, made, way, Kind.ARC, feed)
-    return replace(made_block, cx=centre[0] - way.offset_x, cz=centre[1] - way.offset_z, clockwise=clockwise)
+    centre, travel = _centre(state, made, travel, clockwise)
+    offset = travel.offset_x
+    feed = check_feed(state, made, travel.x0 - offset, travel.x - offset)
+    made_block = block_of(state, made, travel, Kind.ARC, feed)
+    return replace(
+        made_block, cx=centre[0] - travel.offset_x, cz=centre[1] - travel.offset_z, clockwise=clockwise
+    )
 
 
-def _centre(state: State, made: Statement, way: Way, clockwise: bool) -> tuple[Point, Way]:
-    """Machine coordinates of the centre, and the way with its end where the words did not give one."""
+def _centre(state: State, made: Statement, travel: AxisTravel, clockwise: bool) -> tuple[Point, AxisTravel]:
+    """Machine coordinates of the centre, and the travel with its end where the words did not give one."""
     words, by_centre = made.words, {"I", "K"} & made.words.keys()
     if "CR" in words and ("AR" in words or by_centre):
         text = "the arc has CR and another way to say where its centre is."
         raise made.refuse(words["CR"], "arc-both", text, "Keep one of them.")
     if "CR" in words:
-        return _by_radius(state, made, way, clockwise), way
+        return _by_radius(state, made, travel, clockwise), travel
     if "AR" in words:
         if {"X", "Z"} & words.keys():
-            return _by_angle(state, made, way, clockwise), way
-        return _turned(state, made, way, clockwise)
+            return _by_angle(state, made, travel, clockwise), travel
+        return _turned(state, made, travel, clockwise)
     if not by_centre:
         text = "the arc has neither CR, AR nor I and K."
         raise made.refuse(made.g.get("motion"), "arc-centre-missing", text, "Add one of them.")
-    centre = _by_words(state, made, way)
-    _check_radii(made, way, centre)
-    return centre, way
+    centre = _by_words(state, made, travel)
+    _check_radii(made, travel, centre)
+    return centre, travel
 
 
-def _by_words(state: State, made: Statement, way: Way) -> Point:
+def _by_words(state: State, made: Statement, travel: AxisTravel) -> Point:
     """I and K: distances from the start, or coordinates with AC( )."""
-    x = way.x0 + _component(state, made, "I", way.x0, way.offset_x)
-    return x, way.z0 + _component(state, made, "K", way.z0, way.offset_z)
+    x = travel.x0 + _component(state, made, "I", travel.x0, travel.offset_x)
+    return x, travel.z0 + _component(state, made, "K", travel.z0, travel.offset_z)
 
 
 def _component(state: State, made: Statement, name: str, start: float, offset: float) -> float:
@@ -68,10 +70,10 @@ def _component(state: State, made: Statement, name: str, start: float, offset: f
     return value / (2.0 if name == "I" and state.modal.diameter else 1.0) + offset - start
 
 
-def _by_radius(state: State, made: Statement, way: Way, clockwise: bool) -> Point:
+def _by_radius(state: State, made: Statement, travel: AxisTravel, clockwise: bool) -> Point:
     """CR: over 0 for arcs of up to half a turn, under 0 for larger ones."""
     word = made.words["CR"]
-    radius, chord = state.length(made, word), way.length
+    radius, chord = state.length(made, word), travel.length
     _demand_ends(made, word, chord)
     if chord > 2 * abs(radius) + _TOLERANCE:
         text = (
@@ -79,37 +81,37 @@ def _by_radius(state: State, made: Statement, way: Way, clockwise: bool) -> Poin
         )
         raise made.refuse(word, "arc-radius", text, "Correct CR or the end point.")
     side = clockwise if radius > 0 else not clockwise
-    return centre_from_radius((way.x0, way.z0), (way.x, way.z), abs(radius), clockwise=side)
+    return centre_from_radius((travel.x0, travel.z0), (travel.x, travel.z), abs(radius), clockwise=side)
 
 
-def _by_angle(state: State, made: Statement, way: Way, clockwise: bool) -> Point:
+def _by_angle(state: State, made: Statement, travel: AxisTravel, clockwise: bool) -> Point:
     """AR and the end point: the centre lies on the bisector of the chord, r = chord / (2 sin(angle / 2))."""
-    word, chord = made.words["AR"], way.length
+    word, chord = made.words["AR"], travel.length
     _demand_ends(made, word, chord)
     half = radians(_angle(state, made, word)) / 2
     if {"I", "K"} & made.words.keys():
         raise made.refuse(word, "arc-both", "the arc has AR, an end point and a centre.", "Keep two of them.")
-    # To the right of the way for a clockwise arc; for more than half a turn the cotangent changes side.
+    # To the right of the chord for a clockwise arc; for more than half a turn the cotangent changes side.
     aside = (0.5 if clockwise else -0.5) / tan(half)
-    dx, dz = way.x - way.x0, way.z - way.z0
-    return (way.x0 + way.x) / 2 + aside * dz, (way.z0 + way.z) / 2 - aside * dx
+    dx, dz = travel.x - travel.x0, travel.z - travel.z0
+    return (travel.x0 + travel.x) / 2 + aside * dz, (travel.z0 + travel.z) / 2 - aside * dx
 
 
-def _turned(state: State, made: Statement, way: Way, clockwise: bool) -> tuple[Point, Way]:
+def _turned(state: State, made: Statement, travel: AxisTravel, clockwise: bool) -> tuple[Point, AxisTravel]:
     """AR and the centre: the end is the start turned about it."""
     word = made.words["AR"]
     if not {"I", "K"} & made.words.keys():
         text = "AR stands without an end point and without I and K."
         raise made.refuse(word, "arc-centre-missing", text, "Add one of them.")
-    centre = _by_words(state, made, way)
-    x, z = way.x0 - centre[0], way.z0 - centre[1]
+    centre = _by_words(state, made, travel)
+    x, z = travel.x0 - centre[0], travel.z0 - centre[1]
     if hypot(x, z) < NO_WAY:
         raise made.refuse(word, "arc-radius", "the centre of the arc is its start point.", "Correct I and K.")
     angle = radians(_angle(state, made, word))
     turned = atan2(x, z) + (angle if clockwise else -angle)  # from Z+ towards X+ is clockwise with X down
     radius = hypot(x, z)
     end = centre[0] + radius * sin(turned), centre[1] + radius * cos(turned)
-    return centre, way._replace(x=end[0], z=end[1])
+    return centre, travel._replace(x=end[0], z=end[1])
 
 
 def _angle(state: State, made: Statement, word: Word) -> float:
@@ -126,9 +128,9 @@ def _demand_ends(made: Statement, word: Word, chord: float) -> None:
         raise made.refuse(word, "arc-no-chord", text, "A full circle takes I and K.")
 
 
-def _check_radii(made: Statement, way: Way, centre: Point) -> None:
+def _check_radii(made: Statement, travel: AxisTravel, centre: Point) -> None:
     word = made.words.get("I") or made.words.get("K")
-    first, last = dist((way.x0, way.z0), centre), dist((way.x, way.z), centre)
+    first, last = dist((travel.x0, travel.z0), centre), dist((travel.x, travel.z), centre)
     if first < NO_WAY:
         raise made.refuse(word, "arc-radius", "the centre of the arc is its start point.", "Correct I and K.")
     if abs(first - last) > _TOLERANCE:

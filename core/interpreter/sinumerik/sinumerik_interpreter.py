@@ -94,7 +94,7 @@ class Interpreter(PassReport):
                 return
             made = statement(line)
             ends = ends_main(made, called=self._flow.called)
-            yield from self._shaped(made)
+            yield from self._with_corners(made)
         except ProgramError as problem:
             self._refuse(problem.diagnostic)
             ends = False
@@ -109,7 +109,7 @@ class Interpreter(PassReport):
         elif self._flow.called and any(word.name == "M" and word.value == 17 for word in line.words):
             self._flow.back()
 
-    def _shaped(self, made: Statement) -> Iterator[Block]:
+    def _with_corners(self, made: Statement) -> Iterator[Block]:
         """The blocks of a statement, with the corners cut that are known by now."""
         number = made.line.number
         place = self._flow.shown_line(number)

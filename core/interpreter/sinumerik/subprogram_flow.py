@@ -21,12 +21,12 @@ class Routine:
     source: Source
     lines: range
     shown: str = ""
-    kept: dict[int, Line] = field(default_factory=dict)  # of subprograms: they may run many times
+    lines_read: dict[int, Line] = field(default_factory=dict)  # of subprograms: they may run many times
 
     def line(self, at: int) -> Line:
         """The line with this index."""
-        if at in self.kept:
-            return self.kept[at]
+        if at in self.lines_read:
+            return self.lines_read[at]
         return lex_line(at + 1, self.source.lines[at])
 
 
@@ -68,7 +68,7 @@ class Flow:
                 at, call.at = call.at, call.at + 1
                 line = call.routine.line(at)
                 if self.called:
-                    call.routine.kept[at] = line
+                    call.routine.lines_read[at] = line
                 return line
             self.back()
         return None

@@ -44,14 +44,14 @@ def modulo_travel(form: Form, value: float, position: float) -> float:
     at = wrapped(position)
     if form is Form.AC:
         return _unless_noise(value - at)
-    way = wrapped(value - at)
-    if way <= ROUNDING:
+    travel = wrapped(value - at)
+    if travel <= ROUNDING:
         return 0.0
     if form is Form.ACP:
-        return way
+        return travel
     if form is Form.ACN:
-        return way - TURN
-    return way if way <= TURN / 2 + ROUNDING else way - TURN
+        return travel - TURN
+    return travel if travel <= TURN / 2 + ROUNDING else travel - TURN
 
 
 def linear_travel(form: Form, value: float, position: float) -> float:
@@ -70,5 +70,5 @@ def check_reach(end: float) -> None:
         raise TargetError(WRONG_RANGE, f"the end point {end:g} lies beyond -360 to +360 of the machine")
 
 
-def _unless_noise(way: float) -> float:
-    return 0.0 if abs(way) <= ROUNDING else way
+def _unless_noise(travel: float) -> float:
+    return 0.0 if abs(travel) <= ROUNDING else travel

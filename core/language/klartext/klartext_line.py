@@ -19,7 +19,7 @@ from core.language.klartext.klartext_nodes import (
 )
 from core.language.klartext.line_cursor import Cursor
 
-# --- L moves of plain numbers, which nearly all lines of a long program are: read by two patterns.
+# --- L moves of plain numbers: nearly all lines of a long program, read by two patterns
 
 
 _NUMBER = r"[+-]?[0-9]{1,6}(?:\.[0-9]{1,9})?"

@@ -155,7 +155,7 @@ def _number(sign: str, digits: str) -> float:
     return -number if sign == "-" and number else number
 
 
-# --- Words that several blocks share: feeds, retracts, axis words.
+# --- words that several blocks share: feeds, retracts, axis words
 
 
 _FEED = re.compile(r"F\s*(MAX|AUTO)(?![A-Z0-9])")

@@ -96,7 +96,7 @@ def _strange_word(cursor: Cursor) -> ProgramError:
     return cursor.expected("No word of TOOL CALL", "It takes a tool, its axis, S, F, DL and DR.")
 
 
-# --- Datum shifts, labels, calls and Q parameters.
+# --- datum shifts, labels, calls and Q parameters
 
 
 MOST_LABEL = 65535

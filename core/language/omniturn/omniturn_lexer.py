@@ -71,7 +71,7 @@ def _without_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
         kept = "".join(" " if sign == bare[at] else sign for at, sign in enumerate(text))
         return kept, [word_faults.error(number, column, *habit)]
     told: list[Diagnostic] = []
-    for found in _stretches(bare):
+    for found in _prose_in(bare):
         start, end = found.span()
         if bare[start - 1 : start] == ";":  # a comment as others write it
             start -= 1
@@ -82,7 +82,7 @@ def _without_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
     return text, told
 
 
-def _stretches(bare: str) -> Iterator[re.Match[str]]:
+def _prose_in(bare: str) -> Iterator[re.Match[str]]:
     """Words that somebody reads, with what stands between them."""
     thread = _THREAD.search(bare.upper().replace(" ", "")) is not None
     for found in _PROSE.finditer(bare):

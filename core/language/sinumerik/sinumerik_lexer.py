@@ -11,7 +11,7 @@ from core.language.sinumerik.sinumerik_alarms import SYNTAX, alarm, refused
 from core.language.sinumerik.sinumerik_words import LONGEST_LINE, Form, Line, Word
 from core.language.typography import ascii_upper, typed
 
-# --- What stands behind a letter, behind = or in brackets: a number or an R parameter, and what it may be.
+# --- values: a number, or an R parameter that gives it
 
 
 NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")

@@ -62,7 +62,7 @@ class Line(NamedTuple):
         return bool(self.words or self.call or self.errors)
 
 
-# --- Which words this control knows, and which it knows of but does not execute.
+# --- vocabulary: what this control knows, and what it knows of but does not execute
 
 
 AXES = ("X", "Z", "C")

@@ -13,10 +13,10 @@ from core.interpreter.modal_state import Modal
 from core.interpreter.restart.restart_approach import (
     Choices,
     MachineNow,
+    approach_steps,
     begin_at,
     retract_from_work,
     starting,
-    way,
     way_out,
 )
 from core.interpreter.restart.restart_lines import Interruption, RestartPoint
@@ -41,7 +41,7 @@ def order(steps: tuple[ApproachStep, ...]) -> list[str]:
 
 
 def test_the_way_in_is_the_way_back_the_other_way_round() -> None:
-    steps = way(FOUND, STANDS, Choices())
+    steps = approach_steps(FOUND, STANDS, Choices())
     assert legs(steps) == [(5.0, None, True), (None, -62.0, False), (-2.0, None, False)]
     assert order(steps) == ["X", "M03", "M08", "Z", "X"]
     last = steps[-1]
@@ -51,13 +51,13 @@ def test_the_way_in_is_the_way_back_the_other_way_round() -> None:
 
 def test_a_line_that_begins_clear_of_the_work_is_gone_to_by_rapid() -> None:
     found = replace(FOUND, back=Retract(ToolPlace.CLEAR))
-    assert legs(way(found, STANDS, Choices())) == [(-2.0, None, True), (None, -62.0, True)]
+    assert legs(approach_steps(found, STANDS, Choices())) == [(-2.0, None, True), (None, -62.0, True)]
 
 
 def test_what_must_not_run_is_stopped_before_anything_moves() -> None:
     now = MachineNow(STANDS.at, MODAL._replace(spindle=-1, coolant=True, outputs=frozenset({"live1"})))
     found = replace(FOUND, checkpoint=AT._replace(modal=AT.modal._replace(coolant=False)))
-    steps = way(found, now, Choices())
+    steps = approach_steps(found, now, Choices())
     assert order(steps)[:3] == ["M05", "M09", "LIVE1 OFF"]
     actions = [step.action for step in steps if isinstance(step, FunctionStep)]
     assert actions[:3] == [SpindleStop(), Coolant(False), Output("live1", False)]
@@ -68,17 +68,17 @@ def test_what_starts_is_told_and_coolant_only_as_chosen() -> None:
     assert told == [SpindleRun(800.0, None), Coolant(True)]
     without = begin_at(FOUND, STANDS, Choices(coolant=False))
     assert not without.checkpoint.modal.coolant
-    assert "M08" not in order(without.way)
+    assert "M08" not in order(without.approach)
 
 
 def test_c_is_locked_and_turned_to_its_angle_by_the_short_way_clear_of_the_part() -> None:
     modal = AT.modal._replace(spindle=0, c_locked=True, coolant=False, offset_c=720.0)
     found = replace(FOUND, checkpoint=AT._replace(modal=modal, c=90.0))
     begin = begin_at(found, MachineNow((30.0, -48.0, 1000.0), MODAL), Choices())
-    turn = next(step for step in begin.way if isinstance(step, CTurn))
+    turn = next(step for step in begin.approach if isinstance(step, CTurn))
     assert turn.c == pytest.approx(1170.0)  # 90 degrees and three turns: the nearest to 1000
     assert begin.checkpoint.modal.offset_c == pytest.approx(1080.0)
-    assert order(begin.way) == ["X", "M89", "C", "Z", "X"]
+    assert order(begin.approach) == ["X", "M89", "C", "Z", "X"]
 
 
 TWO = (
@@ -117,10 +117,10 @@ def in_the_groove(x: float = 0.42) -> tuple[MachineNow, Interruption]:
 
 def test_the_way_out_is_that_of_the_tool_that_was_interrupted_whatever_the_line_works_with() -> None:
     now, broken = in_the_groove()
-    back = way(two(6, broken), now, Choices())
+    back = approach_steps(two(6, broken), now, Choices())
     # X out of the groove at a feed; Z to the Z2 of T2, at machine -20 + 50.8; down again over the bar.
     assert spots(back, 1) == [(0.5, None, False), (None, 3.1811, True), (None, -0.3, True)]
-    other = way(two(11, broken._replace(block=99, begun=99)), now, Choices())
+    other = approach_steps(two(11, broken._replace(block=99, begun=99)), now, Choices())
     assert spots(other, 1)[:2] == [(0.5, None, False), (None, 3.1811, True)]
 
 
@@ -156,7 +156,7 @@ def test_a_tool_jogged_clear_needs_no_way_out_but_z() -> None:
     cut = two(6).cut
     assert cut is not None
     clear = replace(now, at=(-10.0 + 0.8 * INCH, now.at[1], 0.0))
-    assert retract_from_work(cut, clear)[0].lies is ToolPlace.CLEAR
+    assert retract_from_work(cut, clear)[0].tool_place is ToolPlace.CLEAR
     assert all(rapid for _, _, rapid in legs(way_out(cut, clear, Choices())))
 
 
@@ -181,7 +181,7 @@ def test_a_control_that_was_cut_off_may_stand_a_little_farther_on() -> None:
 def test_a_tool_that_the_program_has_not_named_yet_is_brought_in_clear_of_the_whole_program() -> None:
     now, broken = in_the_groove()
     found = two(10, broken._replace(block=99, begun=99))
-    steps = way(found, replace(now, broken=None, at=(40.0, 90.0, 0.0)), Choices())
+    steps = approach_steps(found, replace(now, broken=None, at=(40.0, 90.0, 0.0)), Choices())
     assert all(rapid for _, _, rapid in legs(steps))
 
 

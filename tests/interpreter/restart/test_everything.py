@@ -42,7 +42,7 @@ def check(source: Source, given: Setup) -> int:
     for found in good:
         begin = begun(given, found)
         assert begin.begin is not None
-        again = all_of(source, begin)[len(begin.begin.way) :]
+        again = all_of(source, begin)[len(begin.begin.approach) :]
         rest = [block for block in full if block.n > found.checkpoint.blocks]
         if any(isinstance(block.action, AskInput) for block in full):  # the count depends on the answers
             rest = full[len(full) - len(again) :]

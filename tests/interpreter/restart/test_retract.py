@@ -28,7 +28,7 @@ def standing(text: str, line: int, x: float, z: float, nth: int = 1) -> Retract:
 
 
 def hops(found: Retract) -> list[tuple[float, float]]:
-    return [(round(hop.x / INCH, 3), round(hop.z / INCH, 3)) for hop in found.hops]
+    return [(round(hop.x / INCH, 3), round(hop.z / INCH, 3)) for hop in found.legs]
 
 
 GROOVE = "X.5Z.1\nZ-.3\nG95F.002X.3\nG94F300X.5\nZ1\n"
@@ -75,35 +75,35 @@ ON_THE_FACE = "X-.8Z1\nM27\nM19\nG94F10Z-.1\n(~PLXC)\n(X.4Y.3)\n(END)\nF300Z1\nM
 )  # fmt: skip
 def test_the_way_out_of(text: str, line: int, x: float, z: float, way: list[tuple[float, float]]) -> None:
     found = standing(text, line, x, z)
-    assert found.lies is ToolPlace.WORK
+    assert found.tool_place is ToolPlace.WORK
     assert hops(found) == way
 
 
 def test_out_of_a_thread_it_is_x_alone_first_and_never_back_along_z() -> None:
     # S is X.5, I .02 a side: it is drawn back to S + 3 I.
     found = standing(THREAD, 5, 0.5, -0.2)
-    assert found.lies is ToolPlace.THREAD
+    assert found.tool_place is ToolPlace.THREAD
     assert hops(found)[0] == (0.56, -0.2)
 
 
 def test_a_tap_has_no_way_out_by_the_slides() -> None:
     found = standing(TAP, 5, 0.0, -0.3)
-    assert found.lies is ToolPlace.TAP
+    assert found.tool_place is ToolPlace.TAP
     assert not found.known
-    assert standing(TAP, 7, 0.0, -0.3).lies is ToolPlace.TAP  # on its way back too
+    assert standing(TAP, 7, 0.0, -0.3).tool_place is ToolPlace.TAP  # on its way back too
 
 
 def test_a_live_drill_in_a_cross_hole_leaves_along_x() -> None:
     found = standing(CROSS, 8, 0.6, -0.3)
-    assert (found.lies, hops(found)) == (ToolPlace.MILL, [(0.75, -0.3)])
+    assert (found.tool_place, hops(found)) == (ToolPlace.MILL, [(0.75, -0.3)])
 
 
 def test_a_mill_leaves_along_its_own_axis() -> None:
     side = standing(ON_THE_SIDE, 11, -0.4, -0.2)
-    assert side.lies is ToolPlace.MILL
+    assert side.tool_place is ToolPlace.MILL
     assert hops(side)[0][0] == -1.0  # X, away from the centre, as far as it has been
     face = standing(ON_THE_FACE, 9, -0.6, -0.1)
-    assert (face.lies, hops(face)) == (ToolPlace.MILL, [(-0.6, 1.0)])
+    assert (face.tool_place, hops(face)) == (ToolPlace.MILL, [(-0.6, 1.0)])
 
 
 @pytest.mark.parametrize(
@@ -114,7 +114,7 @@ def test_a_tool_that_the_program_did_not_bring_there_has_no_way_known(
     text: str, line: int, x: float, z: float
 ) -> None:
     found = standing(text, line, x, z)
-    assert (found.lies, found.known) == (ToolPlace.UNKNOWN, False)
+    assert (found.tool_place, found.known) == (ToolPlace.UNKNOWN, False)
 
 
 def test_where_the_collet_was_opened_since_nothing_of_before_counts() -> None:

@@ -16,7 +16,7 @@ from core.interpreter.checkpoint import ApproachStep, Leg
 from core.interpreter.job_setup import ControlLimits, Setup
 from core.interpreter.modal_state import Modal
 from core.interpreter.restart.cut_record import FACE, FEED, SIDE, CutRecord
-from core.interpreter.restart.restart_approach import Choices, MachineNow, way, way_out
+from core.interpreter.restart.restart_approach import Choices, MachineNow, approach_steps, way_out
 from core.interpreter.restart.restart_lines import Interruption, RestartPoint
 from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source, load_source
@@ -153,7 +153,7 @@ def ways_in(source: Source, given: Setup) -> tuple[int, int]:
             continue
         tool = int(cut.tool[row])
         clear = (found.checkpoint.machine[0], cut.clear_z + 1.0, 0.0)
-        steps = way(found, MachineNow(clear, Modal()), Choices())
+        steps = approach_steps(found, MachineNow(clear, Modal()), Choices())
         wrong = spoiled(Metal(cut, tool, row), steps, clear[:2], cut.offsets[tool])
         assert not wrong, (found.line, found.visit, wrong)
         assert modal.tool in cut.offsets or not cut.offsets
