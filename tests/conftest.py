@@ -7,12 +7,14 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
 
 from tests.named import SAFETY, not_run
 
+HERE = Path(__file__).parent
 settings.register_profile("steady", derandomize=True, deadline=None)
 settings.register_profile("search", deadline=None)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
@@ -42,6 +44,25 @@ class SafetyRan:
         """Names them."""
         for name in self._missing:
             terminalreporter.write_line(f"NOT RUN, but named in docs/safety.md: {name}")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Marks what takes long, and tells a story among other tests: it mostly waits, and they reckon."""
+    slow = {HERE / line for line in (HERE / "long.txt").read_text(encoding="utf-8").split("\n")[1:] if line}
+    for item in items:
+        if item.path in slow:
+            item.add_marker(pytest.mark.long)
+    items[:] = _spread(items, HERE / "stories")
+
+
+def _spread(items: list[pytest.Item], folder: Path) -> list[pytest.Item]:
+    """The same items, those of a folder at even distances among the others; each kind in its order."""
+    few = [item for item in items if folder in item.path.parents]
+    many = [item for item in items if folder not in item.path.parents]
+    if not few or not many:
+        return items
+    place = {item: (k + 0.5) / len(kind) for kind in (few, many) for k, item in enumerate(kind)}
+    return sorted(items, key=lambda item: place[item])
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -1,0 +1,139 @@
+"""A stranger finds his way: what he would ask, in the manual's words, leads to the file in one step.
+
+One step is: the words in a file's name, or in the first line of its docstring, or in a row of
+``docs/architecture.md``, and no more than four files that answer.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+HOUSE = Path(__file__).parents[1]
+MAP = HOUSE / "docs" / "architecture.md"
+ROOMS = ("app", "core", "drivers")
+FEW = 4  # files that one looks into
+SENTENCES = (
+    # what somebody wants to know; the words that he searches for; the file
+    ("Wear counts from the next part", "wear", "core/executor/changed_offsets.py"),
+    ("Block delete is proved with the switch on and off", "block delete", "core/proving/block_delete.py"),
+    ("The retract of a tapered thread", "threading", "core/interpreter/omniturn/threading_cycles.py"),
+    ("A pass follows the spindle's measured angle", "thread pass", "core/executor/thread_pass.py"),
+    ("The slides follow the spindle by themselves", "gear", "drivers/spindle_gear.py"),
+    ("Feed hold stops on the path", "feed hold", "core/executor/machine_control.py"),
+    ("Single block stops behind each block", "single block", "core/executor/cycle.py"),
+    ("Cycle repeat begins the next part", "cycle repeat", "core/executor/program_run.py"),
+    ("Why Cycle Start is refused", "cycle start", "core/executor/start_conditions.py"),
+    ("The optional stop M01", "optional stop", "core/executor/standstill.py"),
+    ("An E-stop takes everything off", "safe stop", "core/executor/safe_stop.py"),
+    ("How far an axis may lag behind", "following error", "core/executor/following_error.py"),
+    ("In which order the axes are homed", "homing", "core/executor/homing_order.py"),
+    ("A jog lasts as long as its lease", "jog lease", "core/executor/jogging.py"),
+    ("Clicks of the handwheel", "handwheel", "core/executor/handwheel.py"),
+    ("A program that did not come to its end", "interrupted job", "core/executor/interrupted_job.py"),
+    ("Read-ahead stops at a standstill", "read ahead", "core/executor/read_ahead.py"),
+    ("The queue always ends at rest", "setpoint queue", "drivers/setpoint_queue.py"),
+    ("A dead thread stops the machine", "watchdog", "core/executor/watchdog.py"),
+    ("Whether a part is counted", "part count", "core/executor/part_count.py"),
+    ("Speed by the radius", "constant surface speed", "core/interpreter/omniturn/spindle_speed.py"),
+    (
+        "The nose's path beside the contour",
+        "nose compensation",
+        "core/interpreter/omniturn/nose_compensation.py",
+    ),
+    ("A box is taken off in passes", "roughing", "core/interpreter/omniturn/roughing_cycles.py"),
+    ("A hole in pecks", "drilling", "core/interpreter/omniturn/drilling_cycles.py"),
+    ("A chamfer where two lines meet", "chamfer", "core/interpreter/omniturn/corners.py"),
+    ("Coarse feeds of G35", "coarse feeds", "core/interpreter/omniturn/coarse_feeds.py"),
+    ("Milling with XC and ZC", "plane switching", "core/interpreter/omniturn/plane_switching.py"),
+    ("The spindle as a rotary axis", "c axis", "core/interpreter/omniturn/c_axis.py"),
+    ("A loop of blocks", "loops", "core/interpreter/omniturn/loops_and_subroutines.py"),
+    (
+        "The bar feeder's input branches",
+        "conditional calls",
+        "core/interpreter/omniturn/conditional_calls.py",
+    ),
+    ("What F means on a line", "code table", "core/interpreter/omniturn/code_table.py"),
+    ("Work shift by G10", "work shift", "core/interpreter/omniturn/tools_and_offsets.py"),
+    ("The table of secondary offsets", "secondary offsets", "app/offsets/secondary_offsets.py"),
+    ("Tools are touched off", "touch off", "app/jog/touch_off.py"),
+    ("Back into the part after a stop", "restart", "core/interpreter/restart/restart_approach.py"),
+    ("What a G54 is set to", "zero offsets", "app/offsets/zero_offsets.py"),
+    ("No move beyond the travel is proved", "soft limits", "core/proving/machine_checks.py"),
+    ("How long a part takes", "cycle time", "core/proving/program_timeline.py"),
+    ("PLANE POINTS on a table", "plane", "core/interpreter/klartext/plane_functions.py"),
+    ("C with the third axis", "third axis", "core/interpreter/sinumerik/third_axis.py"),
+)
+MOST_MISSED = 4
+
+
+@cache
+def _first_lines() -> dict[str, str]:
+    lines = {}
+    for room in ROOMS:
+        for path in sorted((HOUSE / room).rglob("*.py")):
+            if path.name != "__init__.py":
+                doc = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
+                lines[str(path.relative_to(HOUSE))] = doc.partition("\n")[0].lower()
+    return lines
+
+
+def _has(text: str, words: str) -> bool:
+    return all(re.search(rf"\b{word}", text) for word in words.split())
+
+
+def by_name(words: str) -> list[str]:
+    """Files with these words in their names."""
+    return [path for path in _first_lines() if _has(Path(path).stem.replace("_", " "), words)]
+
+
+def by_first_line(words: str) -> list[str]:
+    """Files whose first docstring line has these words."""
+    return [path for path, line in _first_lines().items() if _has(line.replace("-", " "), words)]
+
+
+def by_map(words: str) -> list[str]:
+    """Files to which a row of the map with these words leads."""
+    rows = [row for row in MAP.read_text(encoding="utf-8").splitlines() if row.startswith("| ")]
+    found = [re.findall(r"`([\w/]+\.py)`", row) for row in rows if _has(row.lower(), words)]
+    return [path for paths in found for path in paths]
+
+
+def found(words: str, path: str) -> bool:
+    """Whether one of the three searches is answered by this file, among few."""
+    return any(
+        path in hits and len(hits) <= FEW for hits in (by_name(words), by_first_line(words), by_map(words))
+    )
+
+
+def test_forty_questions_are_answered_in_one_step() -> None:
+    assert len(SENTENCES) == 40
+    missed = [(asked, words) for asked, words, path in SENTENCES if not found(words, path)]
+    assert len(missed) <= MOST_MISSED, missed
+
+
+@pytest.mark.parametrize("path", sorted({path for _, _, path in SENTENCES}))
+def test_the_file_is_there(path: str) -> None:
+    assert (HOUSE / path).is_file()
+
+
+def test_the_map_names_only_what_is_there() -> None:
+    text = MAP.read_text(encoding="utf-8")
+    named = set(re.findall(r"`((?:app|core|drivers|tests|resources)/[\w/]*(?:\.py)?)`", text))
+    assert len(named) > 60
+    assert sorted(path for path in named if not (HOUSE / path).exists()) == []
+
+
+def test_every_room_is_on_the_map() -> None:
+    text = MAP.read_text(encoding="utf-8")
+    rooms = {path.parent.relative_to(HOUSE) for room in ROOMS for path in (HOUSE / room).rglob("*.py")}
+    assert [str(room) for room in sorted(rooms) if room.name not in text] == []
+
+
+def test_a_word_that_nothing_has_leads_nowhere() -> None:
+    assert not found("flux capacitor", "core/executor/cycle.py")
+    assert not found("spindle", "core/executor/homing_order.py")
