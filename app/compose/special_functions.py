@@ -35,14 +35,14 @@ MakeFunction = Callable[[Desk, Machine, Persistence, Latest], SpecialFunction]
 
 
 def _keeping(desk: Desk, _machine: Machine, keep: Persistence, worker: Latest) -> SpecialFunction:
-    section = BackupAndRestore(desk, keep, worker, data_folder() / "backups")
+    backup = BackupAndRestore(desk, keep, worker, data_folder() / "backups")
 
     def restored() -> None:
         desk.settings.reload()
         desk.counter.reload()
 
-    section.restored = restored
-    return section
+    backup.restored = restored
+    return backup
 
 
 def _transfer(
@@ -79,9 +79,9 @@ def furnish(
     desk.record = RunRecord(keep)
     worker = Latest("editing-special")
     own = own or data_folder() / "programs"
-    sections = [make(desk, machine, keep, worker) for make in ITEMS]
-    sections.append(_transfer(desk, machine, keep, workshop, own))
-    desk.attach(SpecialFunctions(sections, worker))
+    functions = [make(desk, machine, keep, worker) for make in ITEMS]
+    functions.append(_transfer(desk, machine, keep, workshop, own))
+    desk.attach(SpecialFunctions(functions, worker))
     desk.attach(_files(desk, keep, workshop, own))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from datetime import datetime
 
 MM_PER_INCH = 25.4
 MM_PER_FOOT = 304.8
@@ -78,3 +79,8 @@ def file_size(size: int) -> str:
         if size < most:
             return f"{size / (most / 1e3):.{0 if unit == 'B' else 1}f} {unit}"
     return f"{size / 1e9:.1f} GB"
+
+
+def local_time(at: str, *, seconds: bool = True) -> str:
+    """A UTC time of the store (ISO 8601) as a clock on the wall shows it, with its day."""
+    return datetime.fromisoformat(at).astimezone().strftime(f"%Y-%m-%d %H:%M{':%S' if seconds else ''}")

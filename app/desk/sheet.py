@@ -9,6 +9,8 @@ from typing import NamedTuple
 from app.desk.arithmetic import CHARACTERS, LONGEST
 from app.desk.machine_status import Tone
 
+STEPS = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}  # of the mark, by keys
+
 
 @dataclass(frozen=True, slots=True)
 class Row:

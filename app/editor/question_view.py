@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QLineEdit, QWidget
 from app.desk.sheet import Key
 from app.editor.find_replace import Search, following, preceding
 from app.editor.text_view import TextField
+from app.screen.entry_panel import dress_line
 from app.screen.look import LEFT, RIGHT, Look, put
 from app.screen.panel import Panel
 
@@ -60,15 +61,8 @@ class AskLine(Panel):
 
     def dress(self) -> None:
         """Font and colours of the fields."""
-        look, u, colours = self.look, self.look.u, self.look.palette
-        border = max(1, round(0.2 * u))
         for edit in (self.first, self.second):
-            edit.setFont(look.font(2.3, bold=True))
-            edit.setStyleSheet(
-                f"QLineEdit {{ background: {colours.ground}; color: {colours.text};"
-                f" border: {border}px solid {colours.accent}; padding-left: {round(0.6 * u)}px;"
-                f" selection-background-color: {colours.lit}; selection-color: {colours.on_lit}; }}"
-            )
+            dress_line(edit, self.look, 2.3, 0.6)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """The fields share what the labels leave."""

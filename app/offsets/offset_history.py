@@ -6,9 +6,9 @@ And when an offset may change: corrections at any time at which no hand moves th
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from datetime import datetime
 
 from app.desk.desk import Desk
+from app.desk.formats import local_time
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
@@ -98,7 +98,7 @@ class OffsetHistory:
 
     def in_words(self, change: Change) -> tuple[str, str, str, str]:
         """Of one change: when (local time), which, from → to in the control's unit, why and by whom."""
-        at = datetime.fromisoformat(change.at).astimezone().strftime("%Y-%m-%d %H:%M:%S")
+        at = local_time(change.at)
         who = "" if change.who == "operator" else f" ({change.who})"
         which = f"{LETTERS[self.kind]}{change.number}"
         return at, which, from_to(change.old, change.new, self.mode), f"{change.why}{who}"

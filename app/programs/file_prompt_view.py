@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.desk.program_folder import ListedProgram, ProgramFolders
 from app.desk.prompt_line import ASK_FILE, NOT_FOUND
+from app.screen.entry_panel import dress_line
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put, put_raw
 from app.screen.panel import Panel
 
@@ -141,14 +142,7 @@ class FilePrompt(Panel):
 
     def dress(self) -> None:
         """Font and colours of the line to type in."""
-        look, u = self.look, self.look.u
-        colours = look.palette
-        self.edit.setFont(look.font(2.6, bold=True))
-        self.edit.setStyleSheet(
-            f"QLineEdit {{ background: {colours.ground}; color: {colours.text};"
-            f" border: {max(1, round(0.2 * u))}px solid {colours.accent}; padding-left: {round(u)}px;"
-            f" selection-background-color: {colours.lit}; selection-color: {colours.on_lit}; }}"
-        )
+        dress_line(self.edit, self.look, 2.6, 1.0)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Move the mark."""

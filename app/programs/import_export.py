@@ -14,7 +14,7 @@ from pathlib import Path
 from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.persistence import Persistence
-from app.desk.sheet import Key, Sheet
+from app.desk.sheet import STEPS, Key, Sheet
 from app.desk.translation import tr
 from app.programs.copy_rename_delete import BUSY, good_name, taken
 from app.programs.folder_chooser import Chooser, chooser_sheet
@@ -172,9 +172,8 @@ class ImportExport:
 
     def typed(self, key: str) -> bool:
         """Arrows mark, Return opens a folder or takes a program."""
-        steps = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}
-        if key in steps:
-            self.choose(self.chooser.marked + steps[key])
+        if key in STEPS:
+            self.choose(self.chooser.marked + STEPS[key])
         elif key == "Enter":
             self._enter()
         else:

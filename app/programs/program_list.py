@@ -11,7 +11,7 @@ from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
-from app.desk.sheet import Entry, Key, Row, Sheet
+from app.desk.sheet import STEPS, Entry, Key, Row, Sheet
 from app.programs.copy_rename_delete import COPY, NONE, RENAME, CopyRenameDelete
 from app.programs.import_export import ImportExport
 from app.programs.preview import Preview
@@ -120,9 +120,8 @@ class ProgramList:
         """Arrows mark, Return loads or answers, letters find."""
         if self.transfer.open:
             return self.transfer.typed(key)
-        steps = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}
-        if key in steps and not self.question:
-            self.choose(self.marked + steps[key])
+        if key in STEPS and not self.question:
+            self.choose(self.marked + STEPS[key])
         elif key == "Enter":
             self.changer.answer() if self.question else self.load()
         elif self.may_type and (self.entry if self.question else self.find).type(key):

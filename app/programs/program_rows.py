@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
+from app.desk import formats
 from app.desk.persistence import Persistence
 from app.desk.program_folder import ProgramFolders
 from core.store.store_rows import RunRow
@@ -71,7 +72,7 @@ def sorted_by(order: str, found: Sequence[Program]) -> tuple[Program, ...]:
 
 def local(at: str | None) -> str:
     """A time of the store as a clock on the wall shows it; a dash where there is none."""
-    return datetime.fromisoformat(at).astimezone().strftime("%Y-%m-%d %H:%M") if at else "—"
+    return formats.local_time(at, seconds=False) if at else formats.NOTHING
 
 
 def day(seconds: float) -> str:

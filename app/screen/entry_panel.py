@@ -8,7 +8,7 @@ from functools import partial
 
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QFontMetricsF, QPainter
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.screen.look import CENTRE, LEFT, Look, put, put_raw
 from app.screen.panel import Panel
@@ -64,22 +64,41 @@ class AskedPanel(Panel):
         if not asked.question:
             return
         box = row.adjusted(37 * u, 0.2 * u, 0, -0.2 * u)
-        painter.setPen(look.pen("accent", 0.2))
-        painter.setBrush(look.colour("ground"))
-        painter.drawRect(box)
-        draw_entry(painter, look, box.adjusted(u, 0, -u, 0), asked.text)
+        draw_entry_box(painter, look, box, asked.text)
 
 
-def draw_entry(painter: QPainter, look: Look, inside: QRectF, text: str, *, cursor: bool = True) -> None:
-    """What is typed, and the bar behind it."""
+def draw_entry(
+    painter: QPainter, look: Look, inside: QRectF, text: str, *, size: float = 2.8, cursor: bool = True
+) -> None:
+    """What is typed, in letters of ``size`` units, and the bar behind it."""
     u = look.u
-    font = look.fit(text, 2.8, inside.width() - u, bold=True)
+    font = look.fit(text, size, inside.width() - u, bold=True)
     painter.setFont(font)
     painter.setPen(look.colour("text"))
     put_raw(painter, inside, LEFT, text)
     if cursor:
         at = inside.x() + min(QFontMetricsF(font).horizontalAdvance(text), inside.width() - u) + 0.3 * u
-        painter.fillRect(QRectF(at, inside.center().y() - 1.5 * u, 0.3 * u, 3.0 * u), look.colour("accent"))
+        high = (size + 0.2) * u
+        painter.fillRect(QRectF(at, inside.center().y() - high / 2, 0.3 * u, high), look.colour("accent"))
+
+
+def draw_entry_box(painter: QPainter, look: Look, box: QRectF, text: str, size: float = 2.8) -> None:
+    """A frame to type in, and what is typed."""
+    painter.setPen(look.pen("accent", 0.2))
+    painter.setBrush(look.colour("ground"))
+    painter.drawRect(box)
+    draw_entry(painter, look, box.adjusted(look.u, 0, -look.u, 0), text, size=size)
+
+
+def dress_line(edit: QLineEdit, look: Look, size: float, left: float) -> None:
+    """A stock line to type in, in font and colours of now; ``left`` units before its text."""
+    u, colours = look.u, look.palette
+    edit.setFont(look.font(size, bold=True))
+    edit.setStyleSheet(
+        f"QLineEdit {{ background: {colours.ground}; color: {colours.text};"
+        f" border: {max(1, round(0.2 * u))}px solid {colours.accent}; padding-left: {round(left * u)}px;"
+        f" selection-background-color: {colours.lit}; selection-color: {colours.on_lit}; }}"
+    )
 
 
 # --- A pad of large keys, so that an offset can be entered with a finger alone.

@@ -7,11 +7,12 @@ from functools import partial
 from typing import Protocol
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QFontMetricsF, QPainter, QWheelEvent
+from PySide6.QtGui import QPainter, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.sheet import Key, Row, Sheet
 from app.screen import page_table
+from app.screen.entry_panel import draw_entry_box
 from app.screen.look import LEFT, RIGHT, Look, put, put_raw
 from app.screen.page_base import Host, Page
 from app.screen.panel import Panel
@@ -137,17 +138,7 @@ class SheetPanel(Panel):
         painter.setFont(look.fit(sheet.question, 2.2, asked.width() - u, bold=True))
         put(painter, asked, LEFT, sheet.question)
         box = QRectF(asked.right(), row.y() + 0.2 * u, row.right() - asked.right(), row.height() - 0.4 * u)
-        painter.setPen(look.pen("accent", 0.2))
-        painter.setBrush(look.colour("ground"))
-        painter.drawRect(box)
-        inside = box.adjusted(u, 0, -u, 0)
-        font = look.fit(sheet.text, 2.6, inside.width() - u, bold=True)
-        painter.setFont(font)
-        painter.setPen(look.colour("text"))
-        put_raw(painter, inside, LEFT, sheet.text)
-        wide = min(QFontMetricsF(font).horizontalAdvance(sheet.text), inside.width() - u)
-        cursor = QRectF(inside.x() + wide + 0.3 * u, box.center().y() - 1.4 * u, 0.3 * u, 2.8 * u)
-        painter.fillRect(cursor, look.colour("accent"))
+        draw_entry_box(painter, look, box, sheet.text, 2.6)
 
 
 # --- A page that comes up with a list at its left: the model decides what its keys do.

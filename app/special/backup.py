@@ -101,27 +101,14 @@ class BackupAndRestore(SpecialFunction):
         """F4 looks for media again."""
         return {"F4": Key("LOOK", self.look)}
 
-    def typed(self, key: str) -> bool:
-        """Arrows mark, Return does it."""
-        if key == "Enter":
-            self._do()
-            return True
-        return self.moves(key)
-
-    def choose(self, row: int) -> None:
-        """A finger marks; on the marked row it is Return."""
-        if row == self.marked:
-            self._do()
-        else:
-            self.desk.clear()
-            self.marked = row
-
-    def _do(self) -> None:
+    def act(self) -> bool:
+        """Back up to a place, or restore a backup."""
         if self.busy:
             self.desk.say("STILL AT IT: WAIT UNTIL IT IS DONE")
         elif self.places:
             place = self.places[self.marked]
             (self._restore if place.backup else self._backup)(place)
+        return True
 
     def _backup(self, place: Place) -> None:
         name = f"{datetime.now().strftime('%Y-%m-%d-%H%M%S')}{ENDING}"

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from datetime import datetime
 
 from app.desk.desk import Desk
+from app.desk.formats import local_time
 from app.desk.latest import Latest
 from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
@@ -139,7 +139,7 @@ class LoggedEvents(SpecialFunction):
 
 
 def _row(event: EventRow) -> Row:
-    at = datetime.fromisoformat(event.at).astimezone().strftime("%Y-%m-%d %H:%M:%S")
+    at = local_time(event.at)
     line = str(event.line) if event.line else ""
     alarm = event.kind == "alarm"
     return Row((at, event.kind, event.text, line), True if alarm else None, Tone.ALARM)

@@ -110,20 +110,10 @@ class InputsOutputs(SpecialFunction):
         self.desk.clear()
         self.kind, self.marked = self.kind.following, 0
 
-    def typed(self, key: str) -> bool:
-        """Arrows mark, Return switches."""
-        if key == "Enter":
-            self._switch()
-            return True
-        return self.moves(key)
-
-    def choose(self, row: int) -> None:
-        """A finger marks an output; on the marked one it is Return."""
-        if row == self.marked:
-            self._switch()
-        else:
-            self.desk.clear()
-            self.marked = row
+    def act(self) -> bool:
+        """Switch the marked output over."""
+        self._switch()
+        return True
 
     def _switch(self) -> None:
         if self.kind is not Kind.OUTPUTS:

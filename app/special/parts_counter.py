@@ -83,24 +83,20 @@ class PartsCounter(FigureFunction):
         else:
             self.desk.ask(RESET, partial(self._kept, self.counter.reset))
 
-    def enter(self) -> None:
+    def take(self, text: str) -> bool:
         """The target, from the count on; 0 takes it away."""
         if not self.counter.program:
             self.desk.say(NO_PROGRAM)
-            return
-        try:
-            target = _whole(self.entry.text)
-        except EntryError as error:
-            self.desk.say(f"REFUSED: {error}")
-            return
+            return False
+        target = _whole(text)
         if 0 < target <= self.counter.count:
             made = self.counter.count
             self.desk.say(
                 tr("REFUSED: {made} PARTS ARE MADE ALREADY; F4 PUTS THE COUNT TO NOUGHT").format(made=made)
             )
-            return
-        self.entry.text = ""
+            return False
         self._kept(lambda: self.counter.aim(target))
+        return True
 
     def _kept(self, change: Callable[[], None]) -> None:
         try:

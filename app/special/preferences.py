@@ -45,15 +45,13 @@ class ScreenPreferences(SpecialFunction):
             ),
         )
 
-    def typed(self, key: str) -> bool:
-        """Arrows mark, Return chooses."""
-        if key == "Enter":
-            self._go_on()
-            return True
-        return self.moves(key)
+    def act(self) -> bool:
+        """Go on to the next choice."""
+        self._go_on()
+        return True
 
     def choose(self, row: int) -> None:
-        """A finger chooses."""
+        """A finger chooses at once."""
         self.marked = row
         self._go_on()
 

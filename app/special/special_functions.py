@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
+from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
 from app.desk.latest import Latest
-from app.desk.sheet import Entry, Key, Sheet
+from app.desk.sheet import STEPS, Entry, Key, Sheet
 from core.executor.snapshot import Snapshot
 
 
@@ -32,7 +33,11 @@ class SpecialFunction:
 
     def typed(self, key: str) -> bool:
         """A typed key; False leaves it to the window."""
-        return self.moves(key)
+        return (key == "Enter" and self.act()) or self.moves(key)
+
+    def act(self) -> bool:
+        """Return on the marked row; False where it does nothing."""
+        return False
 
     def takes(self, _key: str) -> bool:
         """Whether a character is text now."""
@@ -56,8 +61,12 @@ class SpecialFunction:
         """The desk shuts: what is under way ends."""
 
     def choose(self, row: int) -> None:
-        """A finger on a row."""
-        self.marked = row
+        """A finger marks a row; on the marked one it is Return."""
+        if row != self.marked:
+            self.desk.clear()
+            self.marked = row
+        else:
+            self.act()
 
     @property
     def count(self) -> int:
@@ -66,11 +75,10 @@ class SpecialFunction:
 
     def moves(self, key: str) -> bool:
         """Take the keys that move the mark."""
-        steps = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}
-        if key not in steps or not self.count:
+        if key not in STEPS or not self.count:
             return False
         self.desk.clear()
-        self.marked = max(0, min(self.count - 1, self.marked + steps[key]))
+        self.marked = max(0, min(self.count - 1, self.marked + STEPS[key]))
         return True
 
 
@@ -81,9 +89,17 @@ class FigureFunction(SpecialFunction):
         super().__init__(desk)
         self.entry = Entry()
 
-    def enter(self) -> None:
-        """Take what was typed, or say by ``desk.say`` why it is refused."""
+    def take(self, text: str) -> bool:
+        """Whether what was typed is taken. Raises EntryError where it is no good figure."""
         raise NotImplementedError
+
+    def enter(self) -> None:
+        """Take what was typed, or say why it is refused."""
+        try:
+            if self.take(self.entry.text):
+                self.entry.text = ""
+        except EntryError as error:
+            self.desk.say(f"REFUSED: {error}")
 
     def takes(self, key: str) -> bool:
         """Figures and signs."""
@@ -113,24 +129,24 @@ class FigureFunction(SpecialFunction):
 class SpecialFunctions:
     """``at`` is the function that is shown; while ``inside`` the keys are its own, else the list's."""
 
-    sections: Sequence[SpecialFunction]
+    functions: Sequence[SpecialFunction]
     worker: Latest
     at: int = 0
     inside: bool = False
 
     @property
-    def section(self) -> SpecialFunction:
+    def shown(self) -> SpecialFunction:
         """The function that is shown."""
-        return self.sections[self.at]
+        return self.functions[self.at]
 
     def show(self, number: int) -> None:
         """Another function, seen from the list."""
-        number = max(0, min(len(self.sections) - 1, number))
+        number = max(0, min(len(self.functions) - 1, number))
         if number != self.at or self.inside:
-            self.section.desk.clear()
-            self.section.left()
+            self.shown.desk.clear()
+            self.shown.left()
             self.at, self.inside = number, False
-            self.section.opened()
+            self.shown.opened()
 
     def enter(self, number: int) -> None:
         """Open a function: the keys are its own now."""
@@ -140,12 +156,12 @@ class SpecialFunctions:
     def typed(self, key: str) -> bool:
         """Arrows and figures in the list; in a function its own keys."""
         if self.inside:
-            return self.section.typed(key)
+            return self.shown.typed(key)
         if key in {"Up", "Down"}:
             self.show(self.at + (1 if key == "Down" else -1))
         elif key in {"Enter", "Tab"}:
             self.enter(self.at)
-        elif key.isdigit() and 1 <= int(key) <= len(self.sections):
+        elif key.isdigit() and 1 <= int(key) <= len(self.functions):
             self.enter(int(key) - 1)
         else:
             return False
@@ -153,33 +169,33 @@ class SpecialFunctions:
 
     def takes(self, key: str) -> bool:
         """Whether a character is text now."""
-        return self.section.takes(key) if self.inside else key.isdigit()
+        return self.shown.takes(key) if self.inside else key.isdigit()
 
     def escape(self) -> bool:
         """One step back; False from the list."""
-        section = self.section
+        shown = self.shown
         if not self.inside:
             return False
-        if section.desk.notice:
-            section.desk.clear()
-        elif not section.escape():
+        if shown.desk.notice:
+            shown.desk.clear()
+        elif not shown.escape():
             self.inside = False
         return True
 
     def prompt(self) -> str:
         """Of the function, or how to choose one."""
         if self.inside:
-            return self.section.prompt()
+            return self.shown.prompt()
         return "ARROWS OR A FIGURE CHOOSE A FUNCTION, RETURN OPENS IT; ESC FOR AUTOMATIC"
 
     def opened(self) -> None:
         """The page comes up with the list."""
         self.inside = False
-        self.section.opened()
+        self.shown.opened()
 
     def leave(self) -> None:
         """The page goes."""
-        self.section.left()
+        self.shown.left()
         self.inside = False
 
     def look(self) -> None:
@@ -188,6 +204,6 @@ class SpecialFunctions:
 
     def close(self) -> None:
         """End the worker, and what a function has under way."""
-        for section in self.sections:
-            section.close()
+        for function in self.functions:
+            function.close()
         self.worker.close()

@@ -47,11 +47,11 @@ class ItemList(Panel):
             self.update()
 
     def draw(self, painter: QPainter) -> None:
-        room, sections = self.inside(), self.model.sections
-        high = min(room.height() / max(1, len(sections)), ROW * self.look.u)
-        for number, section in enumerate(sections):
+        room, functions = self.inside(), self.model.functions
+        high = min(room.height() / max(1, len(functions)), ROW * self.look.u)
+        for number, function in enumerate(functions):
             box = QRectF(room.x(), room.y() + number * high, room.width(), high - 0.4 * self.look.u)
-            self._item(painter, box, number, section.name, section.use)
+            self._item(painter, box, number, function.name, function.use)
             self.place(box, partial(self._enter, number))
 
     def _item(self, painter: QPainter, box: QRectF, number: int, name: str, use: str) -> None:
@@ -96,7 +96,7 @@ class SpecialPage(ListPage):
 
     def _chosen(self, row: int) -> None:
         self.model.inside = True
-        self.model.section.choose(row)
+        self.model.shown.choose(row)
 
     def _touched(self, key: str) -> None:
         self.model.inside = True
@@ -107,30 +107,30 @@ class SpecialPage(ListPage):
 
     def labels(self) -> tuple[str, ...]:
         """Those of the function that is shown, beside the page's own."""
-        return self.labels_of({}, self.model.section.keys())
+        return self.labels_of({}, self.model.shown.keys())
 
     def key_actions(self) -> KeyActions:
         """The keys of the function that is shown; pressing one goes into it."""
-        keys = self.model.section.keys()
+        keys = self.model.shown.keys()
         return {name: partial(self._do, name) for name in keys}
 
     def has_field(self) -> bool:
         """The question of a function that is open."""
-        return self.model.inside and self.model.section.takes("1")
+        return self.model.inside and self.model.shown.takes("1")
 
     def _do(self, name: str) -> None:
         self.model.inside = True
-        self.model.section.keys()[name].action()
+        self.model.shown.keys()[name].action()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
         """The table of this snapshot."""
         self.model.look()
-        section = self.model.section
-        sheet = section.sheet(snapshot)
+        shown = self.model.shown
+        sheet = shown.sheet(snapshot)
         self.items.show_items()
         self.table.show_sheet(sheet)
-        letters = bool(sheet.question) and section.takes("a")
-        figures = bool(sheet.question) and section.takes("1") and not letters
+        letters = bool(sheet.question) and shown.takes("a")
+        figures = bool(sheet.question) and shown.takes("1") and not letters
         if (figures, letters) != (not self.pad.isHidden(), not self.letters.isHidden()):
             self.pad.setVisible(figures)
             self.letters.setVisible(letters)

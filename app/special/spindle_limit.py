@@ -65,24 +65,17 @@ class SpindleSpeedLimit(FigureFunction):
         else:
             self.desk.ask(LIFT, partial(self.desk.post, SpindleLimit(None)))
 
-    def enter(self) -> None:
+    def take(self, text: str) -> bool:
         """The limit, where this spindle can turn at it."""
-        try:
-            rpm = value_of(self.entry.text)
-            self._check(rpm)
-        except EntryError as error:
-            self.desk.say(f"REFUSED: {error}")
-            return
-        self.desk.post(SpindleLimit(rpm))
-        self.entry.text = ""
-        self.desk.say(tr("SPINDLE LIMITED TO {rpm} RPM UNTIL RESTART").format(rpm=formats.rpm(rpm)))
-
-    def _check(self, rpm: float) -> None:
+        rpm = value_of(text)
         low, high = self.spindle.rpm_min, self.spindle.rpm_max
         if not low <= rpm <= high:
             raise EntryError(
                 f"{rpm:g} rpm is not between {low:g} and {high:g} rpm, which this spindle can turn"
             )
+        self.desk.post(SpindleLimit(rpm))
+        self.desk.say(tr("SPINDLE LIMITED TO {rpm} RPM UNTIL RESTART").format(rpm=formats.rpm(rpm)))
+        return True
 
     def prompt(self) -> str:
         """How to set it."""

@@ -158,20 +158,18 @@ class SerialTransfer(SpecialFunction):
         """Arrows mark a setting, Return steps it on; or the name of what has come."""
         if self.received is not None:
             return self._named(key)
-        if key == "Enter" and self.count:
+        return super().typed(key)
+
+    def act(self) -> bool:
+        """Step the marked setting on, while nothing is under way."""
+        if self.count:
             self._step()
-            return True
-        return self.moves(key)
+        return bool(self.count)
 
     def choose(self, row: int) -> None:
-        """A finger marks; on the marked one it is Return."""
-        if not self.count:
-            return
-        if row == self.marked:
-            self._step()
-        else:
-            self.desk.clear()
-            self.marked = row
+        """A finger on a setting."""
+        if self.count:
+            super().choose(row)
 
     def prompt(self) -> str:
         """What the keys do."""

@@ -45,7 +45,7 @@ class Room:
     @property
     def section(self) -> MachineFileAcceptance:
         (found,) = [
-            s for s in self.desk.attached(SpecialFunctions).sections if isinstance(s, MachineFileAcceptance)
+            s for s in self.desk.attached(SpecialFunctions).functions if isinstance(s, MachineFileAcceptance)
         ]
         return found
 

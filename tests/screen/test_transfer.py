@@ -104,9 +104,9 @@ def hands(
     """A desk whose machine has a line for programs."""
     desk = desk_on(machine, keep=journal)
     section = SerialTransfer(desk, journal, lines, DEFAULT, tmp_path / "own")
-    *others, last = desk.attached(SpecialFunctions).sections
+    *others, last = desk.attached(SpecialFunctions).functions
     last.close()
-    desk.attached(SpecialFunctions).sections = [*others, section]
+    desk.attached(SpecialFunctions).functions = [*others, section]
     window = MainWindow(Look(DARK))
     window.resize(1024, 600)
     with qtbot.waitExposed(window):
