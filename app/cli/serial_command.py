@@ -161,7 +161,7 @@ def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> 
     from app.compose.stored_offsets import chosen_offsets
     from app.compose.workshop import workshop
 
-    lines = SerialLines(proving(workshop(machine, chosen_offsets(None))))
+    lines = SerialLines(proving(workshop(machine, chosen_offsets(None), pictures=False)))
     received = carry(lines.receive(settings), f"receiving from {settings.port}")
     if received is None:
         return EXIT_ERRORS

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from app.offsets.offset_effect import Draw
     from app.path.path_picture import Picture, Timed
     from core.interpreter.restart.state_rebuild import StateRebuild
+    from core.proving.program_timeline import MotionSpan, RestSpan
 
 
 def samples() -> Path:
@@ -47,9 +48,10 @@ def workshop(
     *,
     zero: Callable[[], Zero] = stored_zero,
     left: Callable[[], Modal] | None = None,
+    pictures: bool = True,
 ) -> LoadingSteps:
     """What loading needs; offsets, and unit and rapid rate that the job before has ``left``, are those of
-    the moment of loading."""
+    the moment of loading. ``pictures``: what is proved will be drawn."""
 
     def new_job(source: Source, block_delete: bool) -> Job:
         if journal is not None:
@@ -61,25 +63,46 @@ def workshop(
             setup = replace(setup, metric=modal.metric, last_rapid=modal.rapid_rate)
         return make_job(_whole(source), setup)
 
-    def prove_job(job: Job, watch: Watch) -> Proved:
-        pass
-        from core.proving.prove_program import prove
-
-        report = prove(job.reading, job.setup, machine, watch)
-        return Proved(proof_of(job, report), report.diagnostics)
-
-    def draw(job: Job, watch: Watch) -> Picture:
-        from app.path.path_picture import sketched
-        from core.proving.program_timeline import Timeline, timed_series
-
-        return sketched(timed_series(Timeline.of(job.reading, job.setup, machine)), watch)
-
     def renewed(job: Job) -> Job:
         tools, secondary = offsets()
         setup = replace(job.setup, tools=tools, secondary=secondary, zero=zero())
         return replace(make_job(job.source, setup), reading=job.reading)
 
-    return LoadingSteps(_read, new_job, prove_job, draw, renewed)
+    passes = _ProofAndPicture(machine, pictures=pictures)
+    return LoadingSteps(_read, new_job, passes.prove, passes.draw, renewed)
+
+
+class _ProofAndPicture:
+    """One pass through a program proves it and draws it; the picture is kept until it is asked for."""
+
+    def __init__(self, machine: Machine, *, pictures: bool) -> None:
+        self._machine = machine
+        self._pictures = pictures
+        self._drawn: tuple[Job, Picture] | None = None  # of the job that was proved last
+
+    def prove(self, job: Job, watch: Watch) -> Proved:
+        from app.path.path_picture import Sketch
+        from core.proving.prove_program import prove
+
+        self._drawn, sketch = None, Sketch()
+
+        def seen(span: MotionSpan | RestSpan) -> None:
+            for each in span.times_of_parts():
+                sketch.add_timed(each)
+
+        report = prove(job.reading, job.setup, self._machine, watch, seen=seen if self._pictures else None)
+        if self._pictures:
+            self._drawn = job, sketch.picture()
+        return Proved(proof_of(job, report), report.diagnostics)
+
+    def draw(self, job: Job, watch: Watch) -> Picture:
+        from app.path.path_picture import sketched
+        from core.proving.program_timeline import Timeline, timed_series
+
+        drawn, self._drawn = self._drawn, None
+        if drawn is not None and drawn[0] is job:
+            return drawn[1]
+        return sketched(timed_series(Timeline.of(job.reading, job.setup, self._machine)), watch)
 
 
 def _read(path: Path) -> Source:

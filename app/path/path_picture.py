@@ -120,6 +120,14 @@ class Sketch:
         self._chord.frombytes(np.hypot(series.x - series.x0, series.z - series.z0).tobytes())
         self._metric = like.modal.metric
 
+    def add_timed(self, each: Timed | TimedSeries) -> int:
+        """Append a block, or a series of moves, with its times; returns how many blocks that is."""
+        if isinstance(each, TimedSeries):
+            self.add_series(each.series, each.t1)
+            return len(each.series)
+        self.add(each[0], each[2])
+        return 1
+
     def picture(self) -> Picture:
         """The picture of what was added."""
         z, x, stroke, first = self._pencil.arrays()
@@ -189,12 +197,7 @@ def sketched(blocks: Iterable[Timed | TimedSeries], watch: Callable[[int], None]
     """The picture of all blocks; ``watch`` is told the count now and then and may raise to give up."""
     sketch, count, told = Sketch(), 0, 0
     for each in blocks:
-        if isinstance(each, TimedSeries):
-            sketch.add_series(each.series, each.t1)
-            count += len(each.series)
-        else:
-            sketch.add(each[0], each[2])
-            count += 1
+        count += sketch.add_timed(each)
         if count - told >= WATCHED:
             told = count
             watch(count)

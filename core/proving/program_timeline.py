@@ -120,6 +120,15 @@ class RestSpan(NamedTuple):
     t1: float
     block: Block | None
 
+    def times(self) -> Iterator[TimedBlock]:
+        """The block, if any, with its start and end on the program's clock."""
+        if self.block is not None:
+            yield self.block, self.t0, self.t1
+
+    def times_of_parts(self) -> Iterator[TimedBlock | TimedSeries]:
+        """The same."""
+        return self.times()
+
 
 _AT_ONCE = 1e12  # mm/s²: the ramps of an ideal machine are shorter than any digit that is shown
 
@@ -319,16 +328,10 @@ def _like(each: Block | Series) -> Block:
 def timed_blocks(timeline: Timeline) -> Iterator[TimedBlock]:
     """Every elementary block with its start and end, s; waits belong to no block."""
     for span in timeline.spans():
-        if isinstance(span, MotionSpan):
-            yield from span.times()
-        elif span.block is not None:
-            yield span.block, span.t0, span.t1
+        yield from span.times()
 
 
 def timed_series(timeline: Timeline) -> Iterator[TimedBlock | TimedSeries]:
     """The same, series of moves in one."""
     for span in timeline.spans():
-        if isinstance(span, MotionSpan):
-            yield from span.times_of_parts()
-        elif span.block is not None:
-            yield span.block, span.t0, span.t1
+        yield from span.times_of_parts()

@@ -12,7 +12,7 @@ from core.machine.machine_model import Machine
 from core.proving.block_delete import deletes_blocks, with_the_other
 from core.proving.cutting_checks import CuttingChecks
 from core.proving.program_branches import Branches
-from core.proving.program_timeline import Timeline
+from core.proving.program_timeline import MotionSpan, RestSpan, Timeline
 from core.proving.proof_pass import MAX_FINDINGS, ProofPass
 from core.proving.proof_report import Report
 
@@ -28,6 +28,7 @@ def prove(
     progress: Progress | None = None,
     *,
     ideal: bool = False,
+    seen: Callable[[MotionSpan | RestSpan], None] | None = None,
 ) -> Report:
     """Check a whole program: words, travel, times. ``progress`` hears how many blocks have passed.
 
@@ -37,18 +38,27 @@ def prove(
     other inputs, and with block delete the other way, is proved too, and found in ``diagnostics``.
 
     ``ideal``: times by feeds and limits of speed alone, without accelerations and waits.
+
+    ``seen`` is given each span of the program laid out in time, as ``setup`` has it: whoever draws it needs
+    no pass of his own.
     """
     reading = program if isinstance(program, ReadProgram) else ReadProgram(program, strict=setup.strict)
-    report = _proved(reading, setup, machine, progress, ideal=ideal)
+    report = _proved(reading, setup, machine, progress, seen, ideal=ideal)
     if not deletes_blocks(reading.source) or (setup.begin is not None and setup.begin.single):
         return report
     flipped = replace(setup, block_delete=not setup.block_delete)
-    other = _proved(reading, flipped, machine, progress, ideal=ideal)
+    other = _proved(reading, flipped, machine, progress, None, ideal=ideal)
     return with_the_other(report, other, deleted=flipped.block_delete)
 
 
 def _proved(
-    reading: ReadProgram, setup: Setup, machine: Machine, progress: Progress | None, *, ideal: bool
+    reading: ReadProgram,
+    setup: Setup,
+    machine: Machine,
+    progress: Progress | None,
+    seen: Callable[[MotionSpan | RestSpan], None] | None,
+    *,
+    ideal: bool,
 ) -> Report:
     """With block delete as it stands, and all inputs both ways."""
     branches = Branches(reading, setup, machine, ideal=ideal)
@@ -58,6 +68,8 @@ def _proved(
     proof_pass = ProofPass(machine, checks)
     for span in branches.spans(proof_pass, timeline):
         proof_pass.add(span)
+        if seen is not None:
+            seen(span)
         if progress is not None and proof_pass.last is not None:
             progress(proof_pass.last.n)
     report = proof_pass.report(timeline, reading.source)
