@@ -244,7 +244,7 @@ class Machine(Rig):
             assert self.homed
         way = math.dist(self.sim.machine.true_position()[:2], place[:2])
         if new.state not in MOVES and new.t - self.left > SETTLES + dt:
-            # How far a slide goes behind an encoder that stands is measured in test_axis_watch.
+            # How far a slide goes behind an encoder that stands is measured in test_following_error.
             assert way < STILL or self.blind, f"{way} mm in {new.state}"
 
     def _the_spindle_waits(self, old: Snapshot, new: Snapshot) -> None:
