@@ -53,8 +53,6 @@ if sys.platform != "win32":
     import select
     import termios
 
-    pass
-
     _FAILURES += (termios.error,)
 _NOT_OPENED: tuple[type[Exception], ...] = (*_FAILURES, ValueError)
 

@@ -89,7 +89,7 @@ def report_diagnostics(path: Path, timeline: Timeline) -> int:
 
 
 def _row(block: Block, t0: float) -> str:
-    from app.cli.omniturn_figures import inches, per_minute
+    from app.cli.figures import inches, per_minute
 
     feed = f"{inches(block.feed):.5f}/r" if block.per_rev else f"{per_minute(block.feed):.2f}/m"
     return (

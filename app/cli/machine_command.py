@@ -13,12 +13,6 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
-from app.compose.machine_files import named_machine
-from app.compose.machine_setup import read_machine
-from core.machine.machine_changes import Change
-from core.machine.machine_model import Machine
-from core.ports import DriverError
-from core.table_schema import MachineFileError
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -51,25 +45,13 @@ def add_parser(subparsers: SubParsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Checks the file and what it connects to: 0 all is well, 1 something does not answer, 2 bad file."""
-    if args.action == "peer":
-        pass
-
-        return play(args.file)
-    if args.action == "mtconnect":
-        pass
-
-        return write_model(args.file)
-    if args.action == "accept":
-        pass
-
-        return accept(args.file)
-    pass
-
-    return check(args.file, json_wanted=args.json)
+    if args.action == "check":
+        return check(args.file, json_wanted=args.json)
+    acts = {"peer": play, "mtconnect": write_model, "accept": accept}
+    return acts[args.action](args.file)
 
 
-# --- What ``turndesk machine check`` does.
-
+# --- check -----------------------------------------------------------------------------------------------
 
 WIDTH = 80
 Rows = Sequence[tuple[str, str, str, str]]  # name, where it hangs, state, detail
@@ -78,6 +60,8 @@ Rows = Sequence[tuple[str, str, str, str]]  # name, where it hangs, state, detai
 def check(file: str | None, *, json_wanted: bool) -> int:
     """Validates, connects and reports; answers the exit status."""
     from app.compose.machine_answers import check_ports
+    from app.compose.machine_files import named_machine
+    from core.table_schema import MachineFileError
 
     try:
         machine = named_machine(file)
@@ -111,8 +95,6 @@ def check(file: str | None, *, json_wanted: bool) -> int:
 
 def _changed(machine: Machine) -> Sequence[Change]:
     """What differs from the accepted file; nothing where no store can be read."""
-    pass
-
     try:
         return changed(machine)
     except CommandError as error:
@@ -136,8 +118,7 @@ def _report(json_wanted: bool, report: dict[str, object]) -> None:
         sys.stdout.write(json.dumps(report) + "\n")
 
 
-# --- Machine files that have changed: shown and accepted from a console; a real machine does not run before.
-
+# --- accept: a real machine does not run before a file that has changed is accepted ----------------------
 
 MOST = 5  # changes that a run tells; a check tells all
 
@@ -192,12 +173,14 @@ def accept(file: str) -> int:
     return EXIT_OK
 
 
-# --- What ``turndesk machine mtconnect`` does: the device model for an MTConnect agent.
+# --- mtconnect -------------------------------------------------------------------------------------------
 
 
 def write_model(file: str) -> int:
     """Writes ``Devices.xml`` of a machine file to stdout. Raises CommandError."""
+    from app.compose.machine_setup import read_machine
     from app.compose.shop_floor import device_model, told_to_agents
+    from core.ports import DriverError
 
     machine = read_machine(file)
     try:
@@ -209,11 +192,14 @@ def write_model(file: str) -> int:
     return EXIT_OK
 
 
-# --- What ``turndesk machine peer`` does: the other end of a bus that has no hardware on it.
+# --- peer: the other end of a bus that has no hardware on it ---------------------------------------------
 
 
 def play(file: str) -> int:
     """Answers on the bus of ``file`` until Ctrl-C or SIGTERM. Raises CommandError."""
+    from app.compose.machine_setup import read_machine
+    from core.ports import DriverError
+
     machine = read_machine(file)
     player = {"canopen": _drives, "grblhal": _controller}.get(machine.backend)
     if player is None:

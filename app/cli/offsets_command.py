@@ -61,8 +61,6 @@ def add_parser(subparsers: SubParsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Does what ``args`` asks; raises CommandError with one sentence."""
-    pass
-
     return OFFSET_ACTIONS[args.action](args)
 
 

@@ -48,7 +48,7 @@ def _status(path: Path, around: Circumstances, args: argparse.Namespace) -> int:
 
 
 def _prove(path: Path, around: Circumstances, args: argparse.Namespace) -> Report:
-    from app.cli.omniturn_figures import report_json, stops_of
+    from app.cli.proof_json import report_json, stops_of
     from core.proving.prove_program import prove
 
     source = read_source(path, args)
@@ -85,7 +85,7 @@ def _ways(report: Report) -> str:
 
 def _sheet(path: Path, report: Report) -> str:
     """The proof as a person reads it."""
-    from app.cli.omniturn_figures import MM_PER_INCH, inches, millimetres, per_minute
+    from app.cli.figures import MM_PER_INCH, inches, millimetres, per_minute
     from core.language.source import Dialect
 
     inch = report.dialect is Dialect.OMNITURN

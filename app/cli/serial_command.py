@@ -143,7 +143,6 @@ def _settings(args: argparse.Namespace, machine: Machine) -> DncModel:
 
 
 def _send(args: argparse.Namespace, settings: DncModel) -> int:
-    pass
     from app.compose.program_transfer import SerialLines
 
     path = Path(args.file)
@@ -156,7 +155,6 @@ def _send(args: argparse.Namespace, settings: DncModel) -> int:
 
 
 def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> int:
-    pass
     from app.compose.program_transfer import SerialLines, proving
     from app.compose.stored_offsets import chosen_offsets
     from app.compose.workshop import workshop

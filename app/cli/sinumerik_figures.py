@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.cli.omniturn_figures import Json, degrees, millimetres, seconds
+from app.cli.figures import Json, degrees, millimetres, seconds
 
 if TYPE_CHECKING:
     from core.interpreter.elementary_blocks import Block

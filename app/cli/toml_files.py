@@ -48,7 +48,8 @@ def refuse(path: Path, mistakes: list[str]) -> None:
 
 
 # --- The inputs file: [inputs] with ``10 = true`` for PLC input 10, ``"TB2-5" = false`` for a terminal.
-# M95 asks what the control calls input 7, terminal TB2-9; ``7`` is it too where the file does not name that.
+# M95 asks what the control calls input 7: terminal TB2-9. ``7`` stands for it too where the file does not
+# name TB2-9.
 
 
 def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:

@@ -66,7 +66,8 @@ def run(args: argparse.Namespace) -> int:
 
 def _write_json(timeline: Timeline, args: argparse.Namespace, path: Path) -> None:
     """What was written, in one object."""
-    from app.cli.omniturn_figures import diagnostic_json, seconds
+    from app.cli.figures import seconds
+    from app.cli.proof_json import diagnostic_json
 
     told = {
         "file": str(path),
@@ -82,7 +83,7 @@ class _Table:
     """The columns of a machine: time, its axes in their order, the spindle, the line."""
 
     def __init__(self, machine: Machine, *, inch: bool) -> None:
-        from app.cli.omniturn_figures import MM_PER_INCH
+        from app.cli.figures import MM_PER_INCH
 
         names = ",".join(axis.name.lower() for axis in machine.axes)
         self.header = f"t,{names},spindle_deg,line\n"

@@ -135,25 +135,56 @@ def desk_and_executor(
     """Both, with nobody ticking the executor yet; what happens goes to the journal, where there is one."""
     machine = read_machine(machine_file)
     connected = _connected(machine, clock)
-    heard: list[Desk] = []
-    keep = journal or NoPersistence()
-
-    def hear(event: Event) -> None:
-        for desk in heard:
-            desk.hear(event)
-        if journal is not None:
-            journal.hear(event)
-
+    events = _Events(clock, journal)
     executor = Executor(
         machine,
         connected.ports,
-        hear,
+        events.hear,
         note=journal.note if journal is not None else _kept_nowhere,
         left=journal.left if journal is not None else None,
     )
+    desk = _desk(machine, executor, connected, events, offsets, zero)
+    events.desk = desk
+    if journal is not None:
+        desk.log.recall(_stops(journal))
+    desk.shut = connected.close
+    for warning in (*connected.ports.warnings, *(f"machine file: {each}" for each in desk.changes.changes)):
+        events.say("warning", warning)
+    if desk.changes.barred:
+        desk.say(desk.changes.barred)
+    return desk, executor
 
-    def say(kind: str, text: str) -> None:
-        hear(Event(clock.now(), kind, text))
+
+class _Events:
+    """What happens is heard by the desk, once there is one, and by the journal, where there is one."""
+
+    def __init__(self, clock: Clock, journal: Journal | None) -> None:
+        self.journal = journal
+        self.desk: Desk | None = None
+        self._clock = clock
+
+    def hear(self, event: Event) -> None:
+        if self.desk is not None:
+            self.desk.hear(event)
+        if self.journal is not None:
+            self.journal.hear(event)
+
+    def say(self, kind: str, text: str) -> None:
+        """An event of this moment."""
+        self.hear(Event(self._clock.now(), kind, text))
+
+
+def _desk(
+    machine: Machine,
+    executor: Executor,
+    connected: Connected,
+    events: _Events,
+    offsets: Callable[[], Offsets],
+    zero: Callable[[], Zero],
+) -> Desk:
+    """The desk with all its pages."""
+    journal, say = events.journal, events.say
+    keep = journal or NoPersistence()
 
     def left() -> Modal:
         return executor.snapshot.modal
@@ -180,15 +211,7 @@ def desk_and_executor(
     furnish(desk, machine, keep, workshop(machine, offsets, zero=zero, left=left))
     give_mdi(desk, machine, offsets, keep)
     give_searchto(desk, machine)
-    heard.append(desk)
-    if journal is not None:
-        desk.log.recall(_stops(journal))
-    desk.shut = connected.close
-    for warning in (*connected.ports.warnings, *(f"machine file: {each}" for each in changed.changes)):
-        say("warning", warning)
-    if changed.barred:
-        desk.say(changed.barred)
-    return desk, executor
+    return desk
 
 
 def _stops(journal: Journal) -> Sequence[EventRow]:

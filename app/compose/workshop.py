@@ -175,7 +175,6 @@ def line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
     """Proves a line as a program is proved, from where the slides stand."""
 
     def prove_line(text: str, snapshot: Snapshot, watch: Watch) -> tuple[Job, Proved]:
-        pass
         from core.proving.prove_program import prove
 
         tools, secondary = offsets()

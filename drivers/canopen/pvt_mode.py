@@ -15,6 +15,8 @@ from drivers.canopen.position_modes import Fed
 from drivers.setpoint_queue import SetpointQueue
 
 # --- From setpoints to PVT records: points of the path in counts, times in whole milliseconds.
+# A drive goes from point to point on a cubic. Where the acceleration changes between two points the cubic
+# leaves the path, so such a piece is cut until it stays within half a count, down to the shortest record.
 
 
 Demand = Callable[[float], tuple[tuple[float, ...], tuple[float, ...]]]  # t → positions, velocities
@@ -26,16 +28,16 @@ _VELOCITY_TOP = 2**23 - 1
 
 
 class Span(NamedTuple):
-    """How long the stretch from ``t`` on lasts, and how far its cubic leaves the path, in counts."""
+    """How long the piece from ``t`` on lasts, and how far its cubic leaves the path, in counts."""
 
     ms: int
     off: float
 
 
 def span(demand: Demand, t: float, longest: int, counts: Sequence[float]) -> Span:
-    """The longest stretch of at most ``longest`` ms whose cubic keeps within half a count of the path.
+    """The longest piece of at most ``longest`` ms whose cubic keeps within half a count of the path.
 
-    ``counts`` is the length of a count by axis. The shortest stretch is taken whatever it costs.
+    ``counts`` is the length of a count by axis. The shortest piece is taken whatever it costs.
     """
     ms = longest
     while True:
@@ -190,11 +192,11 @@ class PvtFollower:
             self._phase = _Phase.ENDING
             return
         while self._in_drives(now) < MOST:
-            stretch = span(self._demand, self.front, self._longest, self._counts())
-            if self.front + 0.001 * stretch.ms > now + self._ahead:
+            piece = span(self._demand, self.front, self._longest, self._counts())
+            if self.front + 0.001 * piece.ms > now + self._ahead:
                 return
-            self.off_path = max(self.off_path, stretch.off)
-            self._push(stretch.ms)
+            self.off_path = max(self.off_path, piece.off)
+            self._push(piece.ms)
 
     def _in_drives(self, now: float) -> int:
         """Records that have not been played."""

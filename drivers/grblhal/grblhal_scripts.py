@@ -91,6 +91,9 @@ def demand_axes(c: Controller) -> None:
 
 
 # --- To rest without losing the position.
+# 0x18 and 0x19 do not brake: both end the steps where they are, and only 0x18 tells by ALARM:3 that the
+# position is lost by that. Behind 0x19 the line that is being planned goes on into the emptied planner, and
+# moves. So a feed hold comes first, or a jog cancel, and 0x18 when all is at rest.
 
 
 _LATE = 0.4  # s, beyond its ramp, for a stop to be seen

@@ -75,6 +75,7 @@ class Obedience:
 
 
 # --- Whether encoder and inverter tell of the same spindle: open couplings, slipping belts, wrong counts.
+# The inverter's figure is late by a round of its line, so it is compared only while it does not change.
 
 
 _EVEN_RPM, _EVEN = 10.0, 0.01  # a change of the output that is none

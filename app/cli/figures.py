@@ -1,0 +1,44 @@
+"""Figures as the commands show them: inches and minutes outside, millimetres and seconds inside."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from core.language.source import Dialect
+
+MM_PER_INCH = 25.4
+
+# A surface speed in ft/min is 12 in over 60 s.
+MM_S_PER_FT_MIN = 12 * MM_PER_INCH / 60
+
+Json = dict[str, object]
+
+
+def inches(mm: float) -> float:
+    """Inches of a length, to a billionth, so that the binary noise of the conversion does not show."""
+    return round(mm / MM_PER_INCH, 9) + 0.0  # + 0.0 makes -0.0 a plain zero
+
+
+def millimetres(mm: float) -> float:
+    """A length as it is, to a billionth."""
+    return round(mm, 9) + 0.0
+
+
+def length_of(dialect: Dialect) -> Callable[[float], float]:
+    """How lengths are shown to whoever programs in this language: OmniTurn counts in inches, others in mm."""
+    return inches if dialect is Dialect.OMNITURN else millimetres
+
+
+def per_minute(mm_s: float) -> float:
+    """in/min of a speed in mm/s."""
+    return round(mm_s * 60 / MM_PER_INCH, 6)
+
+
+def seconds(t: float) -> float:
+    """Seconds to the microsecond."""
+    return round(t, 6)
+
+
+def degrees(angle: float) -> float:
+    """Degrees to a millionth."""
+    return round(angle, 6) + 0.0
