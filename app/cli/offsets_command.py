@@ -180,7 +180,7 @@ def _value(field: Field, text: str) -> Value:
 
 def _clear(args: argparse.Namespace) -> int:
     with opened_store() as store:
-        count = store.clear_secondary(args.why, who="command line").result()
+        count = store.clear_offsets(Kind.SECONDARY, args.why, who="command line").result()
     sys.stdout.write(f"secondary offsets cleared: {count}; 'turndesk offsets undo' brings them back\n")
     return EXIT_OK
 

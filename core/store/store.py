@@ -31,7 +31,6 @@ from core.store.store_rows import (
 )
 from core.store.store_writer import Held, Keeping, Operation, StoreWriter, Unwritten
 from core.store.touch_off import Touch
-from core.store.zero_offset_table import ZeroChange, zero_change
 
 __all__ = ["Store", "StoreError"]
 
@@ -126,11 +125,6 @@ class Store:
         with self.read() as connection:
             return offset_tables.zero(connection)
 
-    def zero_history(self, limit: int = 100) -> tuple[ZeroChange, ...]:
-        """Changes of G54…G59, newest first."""
-        with self.read() as connection:
-            return tuple(map(zero_change, offset_tables.history(connection, Kind.ZERO, limit)))
-
     def programs(self) -> tuple[ProgramRow, ...]:
         """All programs by name."""
         with self.read() as connection:
@@ -215,10 +209,6 @@ class Store:
         """All offsets of a table at once, as one step of its history; answers how many were set."""
         return self.write(lambda c: offset_tables.clear(c, kind, Reason(why, who)))
 
-    def clear_secondary(self, why: str, *, who: str = "operator") -> Future[int]:
-        """All D offsets at once."""
-        return self.clear_offsets(Kind.SECONDARY, why, who=who)
-
     def undo_offset(
         self, why: str = "undo", *, kind: Kind | None = None, who: str = "operator"
     ) -> Future[tuple[Change, ...]]:
@@ -227,21 +217,6 @@ class Store:
         Without ``kind`` the last of tool and secondary offsets together.
         """
         return self.write(lambda c: offset_tables.undo(c, Reason(why, who), kind))
-
-    def set_zero(
-        self, code: int, why: str, values: Mapping[str, float], *, who: str = "operator"
-    ) -> Future[Row]:
-        """Sets what ``values`` names of G54…G59: mm, X a radius, C in degrees; the rest stays."""
-        return self.set_offset(Kind.ZERO, code, why, values, who=who)
-
-    def clear_zero(self, why: str, *, who: str = "operator") -> Future[int]:
-        """All of G54…G59 at once, as one step of their history; answers how many were set."""
-        return self.clear_offsets(Kind.ZERO, why, who=who)
-
-    def undo_zero(self, why: str = "undo", *, who: str = "operator") -> Future[tuple[ZeroChange, ...]]:
-        """Takes the last change of G54…G59 back; again: the one before. StoreError when there is none."""
-        reason = Reason(why, who)
-        return self.write(lambda c: tuple(map(zero_change, offset_tables.undo(c, reason, Kind.ZERO))))
 
     def save_program(self, name: str, text: bytes, why: str) -> Future[int]:
         """Keeps a version; answers its number, that of the newest when the text is the same."""

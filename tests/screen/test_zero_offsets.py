@@ -13,7 +13,7 @@ from app.offsets.zero_offsets_view import ZeroOffsetsPage
 from app.screen import page_table
 from core.executor.snapshot import State
 from core.store.store import Store
-from core.store.store_rows import ZeroRow
+from core.store.store_rows import Kind, ZeroRow
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
 
@@ -75,7 +75,7 @@ def test_return_alone_goes_on_and_changes_nothing(hands: Hands, store: Store) ->
     for _ in range(18):
         hands.key(Key.Key_Return)
     assert (page.model.row, page.model.column) == (0, 0)
-    assert store.zero_history() == ()
+    assert store.history(Kind.ZERO) == ()
 
 
 def test_undo_clear_and_history(hands: Hands, store: Store) -> None:
@@ -107,7 +107,7 @@ def test_nothing_changes_under_a_running_program(hands: Hands, store: Store) -> 
     hands.key(Key.Key_F4)
     hands.key(Key.Key_C)
     hands.key(Key.Key_C)
-    assert store.zero_history() == ()
+    assert store.history(Kind.ZERO) == ()
 
 
 def test_escape_takes_an_entry_back_and_then_leaves(hands: Hands, store: Store) -> None:
@@ -156,7 +156,7 @@ def test_where_the_machine_stands_reads_what_is_typed(hands: Hands, store: Store
     hands.key(Key.Key_Tab)
     hands.key(Key.Key_F2)
     hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(z=-85.0, c=15.0)})
-    assert store.zero_history()[1].why == "Z reads 1.5"
+    assert store.history(Kind.ZERO)[1].why == "Z reads 1.5"
     assert page.model.text == ""
 
 
@@ -165,4 +165,4 @@ def test_an_axis_that_is_not_homed_is_no_place_to_count_from(hands: Hands, store
     hands.machine.now = replace(hands.machine.now, homed=(False, True, True))
     hands.key(Key.Key_F2)
     assert hands.prompt() == "X DOES NOT KNOW ITS POSITION: HOME IT FIRST"
-    assert store.zero_history() == ()
+    assert store.history(Kind.ZERO) == ()

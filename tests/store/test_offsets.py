@@ -57,7 +57,7 @@ def test_clear_is_one_step_and_undo_brings_all_back(store: Store) -> None:
     store.set_tool(1, "stays", x=9.0)
     store.set_secondary(1, "a", x=1.0)
     store.set_secondary(2, "b", r=0.5)
-    assert store.clear_secondary("new job").result() == 2
+    assert store.clear_offsets(Kind.SECONDARY, "new job").result() == 2
     assert store.secondary() == {}
     assert len(store.undo_offset().result()) == 2
     assert store.secondary() == {1: SecondaryRow(1.0, 0.0, 0.0), 2: SecondaryRow(0.0, 0.0, 0.5)}
