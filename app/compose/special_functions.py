@@ -12,7 +12,7 @@ from app.desk.latest import Latest
 from app.desk.persistence import Persistence
 from app.desk.program_loading import LoadingSteps
 from app.desk.screen_settings import SettingsBook
-from app.programs.folder_chooser import Chooser
+from app.programs.folder_chooser import FolderChooser
 from app.programs.import_export import ImportExport
 from app.programs.preview import Preview
 from app.programs.program_list import ProgramList
@@ -97,5 +97,5 @@ def _files(desk: Desk, keep: Persistence, workshop: LoadingSteps, own: Path) -> 
         return errors[0] if errors else ""
 
     worker = Latest("editing-programs")
-    transfer = ImportExport(desk, own, keep, worker, check, Chooser(Path.home()))
+    transfer = ImportExport(desk, own, keep, worker, check, FolderChooser(Path.home()))
     return ProgramList(desk, own, keep, worker, Preview(workshop), transfer)

@@ -133,6 +133,10 @@ class Desk:
         """Put an answer on the prompt line; it stays until the next key or the next state."""
         self.answers.say(text)
 
+    def refuse(self, why: str) -> None:
+        """Say that it was not done, and why."""
+        self.say(f"REFUSED: {why}")
+
     def ask(self, question: str, yes: Callable[[], None], key: str = YES) -> None:
         """Ask before something is lost or moves: ``PRESS Y TO …, ESC TO …``.
 

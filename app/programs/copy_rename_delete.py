@@ -173,7 +173,4 @@ class CopyRenameDelete:
             self.desk.say(tr(words).format(name=name))
             self.changed(name)
 
-        self.worker.queue(work, done, self._failed)
-
-    def _failed(self, why: str) -> None:
-        self.desk.say(f"REFUSED: {why}")
+        self.worker.queue(work, done, self.desk.refuse)

@@ -64,7 +64,7 @@ MOST = 2000
 
 
 @dataclass(frozen=True, slots=True)
-class Spot:
+class FolderLine:
     """One line: a place, a folder, the way up, or a program."""
 
     name: str
@@ -74,72 +74,72 @@ class Spot:
 
 
 @dataclass(slots=True)
-class Chooser:
+class FolderChooser:
     """``at`` is the folder that is looked into, None: the list of places. ``look`` takes its time."""
 
     home: Path
     plugged: Callable[[], Sequence[Stick]] = sticks
     at: Path | None = None
     top: Path | None = None  # the place it belongs to; the way up ends there
-    spots: tuple[Spot, ...] = ()
+    lines: tuple[FolderLine, ...] = ()
     marked: int = 0
     trouble: str = field(default="")
 
-    def look(self) -> tuple[Spot, ...]:
+    def look(self) -> tuple[FolderLine, ...]:
         """What is there now; raises FileError when the folder cannot be read. On a worker."""
         if self.at is None:
-            places = [Spot(stick.label, stick.path, True, stick.free) for stick in self.plugged()]
-            return (*places, Spot("THIS CONTROL", self.home, True))
+            places = [FolderLine(stick.label, stick.path, True, stick.free) for stick in self.plugged()]
+            return (*places, FolderLine("THIS CONTROL", self.home, True))
         try:
-            return (Spot(UP, self.at.parent, True), *_inside(self.at))
+            return (FolderLine(UP, self.at.parent, True), *_inside(self.at))
         except OSError as error:
             raise FileError(f"{self.at.name} CANNOT BE READ: {error.strerror}") from error
 
-    def found(self, spots: tuple[Spot, ...]) -> None:
+    def found(self, lines: tuple[FolderLine, ...]) -> None:
         """Take what ``look`` has found."""
-        self.spots, self.trouble = spots, ""
-        self.marked = min(self.marked, max(0, len(spots) - 1))
+        self.lines, self.trouble = lines, ""
+        self.marked = min(self.marked, max(0, len(lines) - 1))
 
-    def go(self, spot: Spot) -> None:
+    def go(self, line: FolderLine) -> None:
         """Into a folder, or up; from the top of a place to the list of places."""
         self.marked = 0
-        if spot.name == UP and self.at == self.top:
+        if line.name == UP and self.at == self.top:
             self.at = self.top = None
         else:
             if self.at is None:
-                self.top = spot.path
-            self.at = spot.path
+                self.top = line.path
+            self.at = line.path
 
     @property
-    def here(self) -> Spot | None:
+    def here(self) -> FolderLine | None:
         """The marked line."""
-        return self.spots[self.marked] if self.marked < len(self.spots) else None
+        return self.lines[self.marked] if self.marked < len(self.lines) else None
 
     @property
     def programs(self) -> tuple[Path, ...]:
         """The programs of the folder that is looked into."""
-        return tuple(spot.path for spot in self.spots if not spot.folder)
+        return tuple(line.path for line in self.lines if not line.folder)
 
 
-def _inside(folder: Path) -> list[Spot]:
+def _inside(folder: Path) -> list[FolderLine]:
     paths = sorted(folder.iterdir(), key=lambda path: path.name.lower())[:MOST]
     seen = [path for path in paths if not path.name.startswith(".")]
-    folders = [Spot(path.name, path, True) for path in seen if path.is_dir()]
+    folders = [FolderLine(path.name, path, True) for path in seen if path.is_dir()]
     files = [path for path in seen if path.suffix.lower() in ENDINGS and path.is_file()]
-    return folders + [Spot(path.name, path, False, path.stat().st_size) for path in files]
+    return folders + [FolderLine(path.name, path, False, path.stat().st_size) for path in files]
 
 
-def chooser_sheet(chooser: Chooser, title: str) -> Sheet:
+def chooser_sheet(chooser: FolderChooser, title: str) -> Sheet:
     """Places, folders and programs."""
     rows = tuple(
         Row(
             (
-                spot.name,
-                "FOLDER" if spot.folder else "PROGRAM",
-                formats.file_size(spot.size) if spot.size else "",
+                line.name,
+                "FOLDER" if line.folder else "PROGRAM",
+                formats.file_size(line.size) if line.size else "",
             )
         )
-        for spot in chooser.spots
+        for line in chooser.lines
     )
     where = str(chooser.at) if chooser.at else "PLACES"
     return Sheet(

@@ -17,39 +17,40 @@ from app.desk.persistence import Persistence
 from app.desk.sheet import STEPS, Key, Sheet
 from app.desk.translation import tr
 from app.programs.copy_rename_delete import BUSY, good_name, taken
-from app.programs.folder_chooser import Chooser, chooser_sheet
+from app.programs.folder_chooser import FolderChooser, chooser_sheet
 from app.programs.whole_file import FileError, present, settle, write_out, write_whole
 from core.language.source import SourceError, load_source
 from core.store.store_errors import StoreError
 
-# --- Programs in and out by folder and USB stick. On a worker.
-
-
 LARGEST = 50_000_000  # bytes: no program is larger
 
 Check = Callable[[Path], str]  # the first error that proving finds in a program; empty: none
+PLACE_FIRST = "OPEN A PLACE FIRST: ARROWS MARK IT, RETURN OPENS IT"
+
+
+# --- the files, on a worker --------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
-class Moved:
+class Carried:
     """What has come of it: names copied, names that stand there and differ, and what proving found."""
 
     done: tuple[str, ...] = ()
-    standing: tuple[str, ...] = ()
-    found: tuple[str, ...] = ()
+    differing: tuple[str, ...] = ()
+    findings: tuple[str, ...] = ()
 
 
-def brought_in(
+def imported(
     sources: Sequence[Path], folder: Path, keep: Persistence, check: Check, *, replace: bool
-) -> Moved:
+) -> Carried:
     """Programs into the operator's folder, each proved. Raises FileError.
 
     Nothing is written as long as one stands there that differs and ``replace`` is not allowed.
     """
     texts = {good_name(path.name, path): _program(path) for path in sources}
-    standing = _differing(texts, folder)
-    if standing and not replace:
-        return Moved(standing=standing)
+    differing = _differing(texts, folder)
+    if differing and not replace:
+        return Carried(differing=differing)
     found = []
     for name, text in texts.items():
         target = folder / (taken(folder, name) or name)
@@ -57,19 +58,19 @@ def brought_in(
         write_whole(target, text)
         if trouble := check(target):
             found.append(f"{target.name}: {trouble}")
-    return Moved(tuple(texts), (), tuple(found))
+    return Carried(tuple(texts), (), tuple(found))
 
 
-def taken_out(sources: Sequence[Path], folder: Path, *, replace: bool) -> Moved:
+def exported(sources: Sequence[Path], folder: Path, *, replace: bool) -> Carried:
     """Programs to a folder or stick, whole and on the medium when this comes back. Raises FileError."""
     texts = {path.name: _bytes(path) for path in sources}
-    standing = _differing(texts, folder)
-    if standing and not replace:
-        return Moved(standing=standing)
+    differing = _differing(texts, folder)
+    if differing and not replace:
+        return Carried(differing=differing)
     for name, text in texts.items():
         write_out(folder / (taken(folder, name) or name), text)
     settle(folder)
-    return Moved(tuple(texts))
+    return Carried(tuple(texts))
 
 
 def _program(path: Path) -> bytes:
@@ -110,7 +111,7 @@ def _keep_old(target: Path, keep: Persistence, text: bytes) -> None:
         raise FileError(f"{target.name} IS NOT REPLACED, BECAUSE ITS TEXT CANNOT BE KEPT: {error}") from error
 
 
-PLACE_FIRST = "OPEN A PLACE FIRST: ARROWS MARK IT, RETURN OPENS IT"
+# --- the chooser of folders, and what came of it ----------------------------------------------------------
 
 
 def _nobody() -> None:
@@ -126,7 +127,7 @@ class ImportExport:
     keep: Persistence
     worker: Latest
     check: Check
-    chooser: Chooser
+    chooser: FolderChooser
     finished: Callable[[], None] = _nobody
     open: bool = False
     out: bool = False
@@ -151,7 +152,7 @@ class ImportExport:
         self.worker.queue(self.chooser.look, self.chooser.found, self._unread)
 
     def _unread(self, why: str) -> None:
-        self.desk.say(f"REFUSED: {why}")
+        self.desk.refuse(why)
         self.chooser.at = self.chooser.top = None
         self.worker.queue(self.chooser.look, self.chooser.found, self.desk.say)
 
@@ -184,7 +185,7 @@ class ImportExport:
         """Mark a line; on the marked one a finger is Return."""
         self._asked = ()
         self.desk.clear()
-        self.chooser.marked = max(0, min(len(self.chooser.spots) - 1, row))
+        self.chooser.marked = max(0, min(len(self.chooser.lines) - 1, row))
 
     def touch(self, row: int) -> None:
         """A finger on a line."""
@@ -194,18 +195,18 @@ class ImportExport:
             self.choose(row)
 
     def _enter(self) -> None:
-        spot = self.chooser.here
-        if spot is None:
+        line = self.chooser.here
+        if line is None:
             return
-        if spot.folder:
+        if line.folder:
             self._asked = ()
             self.desk.clear()
-            self.chooser.go(spot)
+            self.chooser.go(line)
             self._look()
         elif self.out:
             self.desk.say("F4 EXPORTS TO THE FOLDER THAT IS OPEN; RETURN OPENS FOLDERS")
         else:
-            self._send((spot.path,))
+            self._send((line.path,))
 
     def _one_here(self) -> None:
         if self.one is not None:
@@ -238,28 +239,30 @@ class ImportExport:
         self._at = at
         self.desk.say("COPYING: LEAVE THE STICK WHERE IT IS")
         if self.out:
-            self.worker.queue(lambda: taken_out(paths, at, replace=replace), self._done, self._failed)
+            self.worker.queue(lambda: exported(paths, at, replace=replace), self._done, self._failed)
         else:
             own, keep, check = self.own, self.keep, self.check
             self.worker.queue(
-                lambda: brought_in(paths, own, keep, check, replace=replace), self._done, self._failed
+                lambda: imported(paths, own, keep, check, replace=replace), self._done, self._failed
             )
 
-    def _done(self, moved: Moved) -> None:
-        if moved.standing:
-            names = ", ".join(moved.standing[:3]) + (" …" if len(moved.standing) > 3 else "")
+    def _done(self, carried: Carried) -> None:
+        if carried.differing:
+            names = ", ".join(carried.differing[:3]) + (" …" if len(carried.differing) > 3 else "")
             asked = tr("{names}: THERE ALREADY WITH ANOTHER TEXT. PRESS Y TO REPLACE, ESC TO KEEP")
             again = partial(self._carry, self._asked, self._at, replace=True)
             self.desk.ask(asked.format(names=names), again)
             return
         self._asked = ()
-        count = len(moved.done)
+        count = len(carried.done)
         if self.out:
             words = tr("{count} COPIED, READ BACK AND ON THE DISK: A STICK IS SAFE TO REMOVE").format(
                 count=count
             )
-        elif moved.found:
-            words = tr("{count} IMPORTED; NOT ALL PROVE: {found}").format(count=count, found=moved.found[0])
+        elif carried.findings:
+            words = tr("{count} IMPORTED; NOT ALL PROVE: {found}").format(
+                count=count, found=carried.findings[0]
+            )
         else:
             words = tr("{count} IMPORTED AND PROVED WITHOUT AN ERROR").format(count=count)
         self.desk.say(words)
@@ -268,7 +271,7 @@ class ImportExport:
 
     def _failed(self, why: str) -> None:
         self._asked = ()
-        self.desk.say(f"REFUSED: {why}")
+        self.desk.refuse(why)
 
     def prompt(self) -> str:
         """What the keys do here."""

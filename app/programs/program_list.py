@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 from app.desk import formats
@@ -62,7 +63,8 @@ class ProgramList:
 
     def look_again(self) -> None:
         """Read the folders again; the answer comes with a later frame."""
-        self.worker.queue(lambda: programs(self.desk.shelf, self.own, self.keep), self._found, self._failed)
+        work = partial(programs, self.desk.shelf, self.own, self.keep)
+        self.worker.queue(work, self._found, self.desk.refuse)
 
     def look(self) -> None:
         """Once a frame: take what the worker has found."""
@@ -72,9 +74,6 @@ class ProgramList:
         name = self._after or (self.here.name if self.here else "")
         self._after, self.all = "", found
         self._narrow(name)
-
-    def _failed(self, why: str) -> None:
-        self.desk.say(f"REFUSED: {why}")
 
     def _narrow(self, keep: str = "") -> None:
         part = self.find.text.strip().lower()

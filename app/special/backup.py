@@ -158,7 +158,7 @@ class BackupAndRestore(SpecialFunction):
     def _failed(self, why: str) -> None:
         self.busy = ""
         self.desk.restoring = False
-        self.desk.say(f"REFUSED: {why}")
+        self.desk.refuse(why)
 
     def prompt(self) -> str:
         """What Return does."""

@@ -99,7 +99,7 @@ class FigureFunction(SpecialFunction):
             if self.take(self.entry.text):
                 self.entry.text = ""
         except EntryError as error:
-            self.desk.say(f"REFUSED: {error}")
+            self.desk.refuse(str(error))
 
     def takes(self, key: str) -> bool:
         """Figures and signs."""

@@ -118,13 +118,10 @@ class SerialTransfer(SpecialFunction):
 
     def opened(self) -> None:
         """Look for ports."""
-        self.worker.queue(lambda: [device for device, _ in self.lines.ports()], self._found, self._no_ports)
+        self.worker.queue(lambda: [device for device, _ in self.lines.ports()], self._found, self.desk.refuse)
 
     def _found(self, ports: list[str]) -> None:
         self.ports = ports
-
-    def _no_ports(self, why: str) -> None:
-        self.desk.say(f"REFUSED: {why}")
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
         """The face of this moment."""
@@ -258,7 +255,7 @@ class SerialTransfer(SpecialFunction):
         try:
             path = stored(self.received.text, self.own, self.entry.text)
         except FileError as error:
-            self.desk.say(f"REFUSED: {error}")
+            self.desk.refuse(str(error))
             return
         self.received = None
         self._say(tr("STORED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED").format(name=path.name))
@@ -278,7 +275,7 @@ class SerialTransfer(SpecialFunction):
         try:
             self.keep.keep_setting(KEPT, kept_form(self.settings))
         except StoreError as error:
-            self.desk.say(f"REFUSED: {error}")
+            self.desk.refuse(str(error))
 
 
 def _kept(keep: Persistence, default: DncModel) -> DncModel:

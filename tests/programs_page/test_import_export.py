@@ -10,8 +10,8 @@ import pytest
 from app.desk.persistence import NoPersistence
 from app.programs import import_export
 from app.programs.copy_rename_delete import deleted, good_name, renamed
-from app.programs.folder_chooser import UP, Chooser, Stick
-from app.programs.import_export import Moved, brought_in, taken_out
+from app.programs.folder_chooser import UP, FolderChooser, Stick
+from app.programs.import_export import Carried, exported, imported
 from app.programs.whole_file import FileError
 from tests.programs_page.test_run_record import Kept
 
@@ -36,8 +36,8 @@ def test_nothing_is_written_while_one_stands_there_with_another_text(tmp_path: P
     sources = made(tmp_path / "stick", a="M30\n", b="M02\n")
     own = tmp_path / "own"
     made(own, b="M00\n")
-    moved = brought_in(sources, own, Keeping(), lambda _path: "", replace=False)
-    assert moved == Moved(standing=("b.nc",))
+    carried = imported(sources, own, Keeping(), lambda _path: "", replace=False)
+    assert carried == Carried(differing=("b.nc",))
     assert not (own / "a.nc").exists()
 
 
@@ -46,7 +46,7 @@ def test_the_same_text_is_no_quarrel(tmp_path: Path) -> None:
     own = tmp_path / "own"
     made(own, a="M30\n")
     keep = Keeping()
-    assert brought_in(sources, own, keep, lambda _path: "", replace=False).done == ("a.nc",)
+    assert imported(sources, own, keep, lambda _path: "", replace=False).done == ("a.nc",)
     assert keep.told == []
 
 
@@ -55,7 +55,7 @@ def test_where_versions_are_not_kept_nothing_is_replaced(tmp_path: Path) -> None
     own = tmp_path / "own"
     made(own, a="M00\n")
     with pytest.raises(FileError, match="CANNOT BE KEPT"):
-        brought_in(sources, own, NoPersistence(), lambda _path: "", replace=True)
+        imported(sources, own, NoPersistence(), lambda _path: "", replace=True)
     assert (own / "a.nc").read_text() == "M00\n"
 
 
@@ -64,7 +64,7 @@ def test_one_bad_file_keeps_all_of_them_out(tmp_path: Path) -> None:
     bad = tmp_path / "stick" / "b.nc"
     bad.write_bytes(b"\x00\x01" * 40)
     with pytest.raises(FileError, match=r"b\.nc IS NO PROGRAM"):
-        brought_in([*sources, bad], tmp_path / "own", Keeping(), lambda _path: "", replace=False)
+        imported([*sources, bad], tmp_path / "own", Keeping(), lambda _path: "", replace=False)
     assert not (tmp_path / "own").exists()
 
 
@@ -72,7 +72,7 @@ def test_a_file_that_is_too_large_is_not_read(tmp_path: Path, monkeypatch: pytes
     monkeypatch.setattr(import_export, "LARGEST", 3)
     sources = made(tmp_path / "stick", a="M30\n")
     with pytest.raises(FileError, match="LARGER THAN ANY PROGRAM"):
-        taken_out(sources, tmp_path, replace=False)
+        exported(sources, tmp_path, replace=False)
 
 
 def test_a_copy_that_does_not_read_back_is_no_copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -82,7 +82,7 @@ def test_a_copy_that_does_not_read_back_is_no_copy(tmp_path: Path, monkeypatch: 
     real = Path.read_bytes
     monkeypatch.setattr(Path, "read_bytes", lambda path: b"" if ".part" in str(path) else real(path))
     with pytest.raises(FileError, match="DOES NOT READ BACK"):
-        taken_out(sources, stick, replace=False)
+        exported(sources, stick, replace=False)
     assert list(stick.iterdir()) == []
 
 
@@ -96,7 +96,7 @@ def test_a_full_stick_leaves_no_half_file(tmp_path: Path, monkeypatch: pytest.Mo
 
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(FileError, match="No space left"):
-        taken_out(sources, stick, replace=False)
+        exported(sources, stick, replace=False)
     assert list(stick.iterdir()) == []
 
 
@@ -133,15 +133,15 @@ def test_the_chooser_goes_in_and_up_to_the_places(tmp_path: Path) -> None:
     made(tmp_path / "stick" / "jobs", a="M30\n")
     (tmp_path / "stick" / "jobs" / ".hidden.nc").write_text("")
     (tmp_path / "stick" / "jobs" / "photo.jpg").write_text("")
-    chooser = Chooser(tmp_path, lambda: (Stick("STICK", tmp_path / "stick", 5),))
+    chooser = FolderChooser(tmp_path, lambda: (Stick("STICK", tmp_path / "stick", 5),))
     chooser.found(chooser.look())
-    assert [spot.name for spot in chooser.spots] == ["STICK", "THIS CONTROL"]
+    assert [line.name for line in chooser.lines] == ["STICK", "THIS CONTROL"]
     for name in ("STICK", "jobs"):
-        chooser.go(next(spot for spot in chooser.spots if spot.name == name))
+        chooser.go(next(line for line in chooser.lines if line.name == name))
         chooser.found(chooser.look())
-    assert [spot.name for spot in chooser.spots] == [UP, "a.nc"]
+    assert [line.name for line in chooser.lines] == [UP, "a.nc"]
     assert [path.name for path in chooser.programs] == ["a.nc"]
     for _ in range(2):
-        chooser.go(chooser.spots[0])
+        chooser.go(chooser.lines[0])
         chooser.found(chooser.look())
     assert chooser.at is None
