@@ -23,7 +23,7 @@ from app.special.event_log import LoggedEvents
 from app.special.inputs_outputs import InputsOutputs
 from app.special.machine_file_acceptance import MachineFileAcceptance
 from app.special.part_count import PartCounter
-from app.special.parts_counter import PartsCounter
+from app.special.parts_counter import PartsCounterFunction
 from app.special.preferences import ScreenPreferences
 from app.special.special_functions import SpecialFunction, SpecialFunctions
 from app.special.spindle_limit import SpindleSpeedLimit
@@ -57,7 +57,7 @@ def _transfer(
 # One line for each special function, in the order of the list; one whose hardware is not there has none.
 ITEMS: tuple[MakeFunction, ...] = (
     lambda desk, machine, _keep, _worker: SpindleSpeedLimit(desk, machine.spindle),
-    lambda desk, _machine, _keep, _worker: PartsCounter(desk),
+    lambda desk, _machine, _keep, _worker: PartsCounterFunction(desk),
     lambda desk, machine, _keep, _worker: InputsOutputs(desk, machine),
     lambda desk, machine, _keep, _worker: DriveStatus(desk, machine),
     lambda desk, _machine, keep, worker: LoggedEvents(desk, keep, worker),

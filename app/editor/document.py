@@ -1,4 +1,4 @@
-"""The program that is edited: where it lies, what it held when it was opened, what it may be called."""
+"""The program that is edited: where it lies, what it may be called, and how it is saved."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def program_name(typed: str) -> str:
     return name if ending else name + USUAL_ENDING
 
 
-# --- Saving: the file first, then the version; what stood there before is in the history too.
+# --- saving: the file first, then the version; what stood there before is kept too -------------------------
 
 
 CHANGED = "changed by another program"

@@ -38,7 +38,7 @@ class Stage(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Left:
+class LeftProgram:
     """Which program was left, whether it was saved meanwhile with changes, and whether it is to be run."""
 
     path: Path
@@ -46,7 +46,7 @@ class Left:
     to_desk: bool
 
 
-def nowhere(_left: Left) -> None:
+def nowhere(_left: LeftProgram) -> None:
     """Nobody wants to know what was saved."""
 
 
@@ -61,7 +61,7 @@ class Editor:
     archive: Archive
     programs: Path
     samples: Path
-    left: Callable[[Left], None] = nowhere
+    left: Callable[[LeftProgram], None] = nowhere
     stage: Stage = Stage.CLOSED
     document: Document | None = None
     notice: str = ""
@@ -275,7 +275,7 @@ class Editor:
 
     def _go(self, document: Document) -> None:
         self._shut()
-        self.left(Left(document.path, self._changed, self._to_desk))
+        self.left(LeftProgram(document.path, self._changed, self._to_desk))
 
     def _shut(self) -> None:
         if self.document is not None:
@@ -321,7 +321,7 @@ def enter(desk: Desk, editor: Editor) -> bool:
     return True
 
 
-def _take_up(desk: Desk, left: Left) -> None:
+def _take_up(desk: Desk, left: LeftProgram) -> None:
     """The program on the desk is read and proved anew when its text has changed.
 
     Another one comes there only when it was written and left for that; to look at it changes nothing.

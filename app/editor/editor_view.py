@@ -25,8 +25,8 @@ from app.editor.editor import Editor, Stage, enter
 from app.editor.findings_view import FindingList
 from app.editor.heading_view import KEYBOARD, Heading, HeadLine, editor_places
 from app.editor.question_view import AskLine, Finder
-from app.editor.text_view import Draft, TextField
-from app.editor.versions import History
+from app.editor.text_view import TextField, TypedText
+from app.editor.versions import VersionHistory
 from app.editor.versions_view import VersionList
 from app.path.measuring import measuring_words
 from app.screen import page_table
@@ -81,11 +81,11 @@ class EditorPage(Page):
         self.path = EditedPath(look, self.go_to, self)
         self.space = WorkingPlaneView(look, self)  # takes the path's place where the program is for a mill
         self.findings = FindingList(look, self.go_to, self)
-        self.history = History(editor.archive, editor.worker)
+        self.history = VersionHistory(editor.archive, editor.worker)
         self.versions = VersionList(look, self.history, self)
         self.ask = AskLine(look, self, self)
         self.finder = Finder(self.field, self.ask)
-        self.draft = Draft(self.field, self.editor)
+        self.typed_text = TypedText(self.field, self.editor)
 
     # --- the frame's calls ---------------------------------------------------------------------------
 
@@ -104,7 +104,7 @@ class EditorPage(Page):
             self.editor.abort()
         if self.editor.stage is not Stage.CLOSED:
             self._target = page_table.AUTOMATIC
-            self.editor.leave(self.draft.now())
+            self.editor.leave(self.typed_text.now())
         return self.editor.stage is Stage.CLOSED
 
     def labels(self) -> tuple[str, ...]:
@@ -133,7 +133,7 @@ class EditorPage(Page):
             self.editor.clear()
         elif self.desk.notice:
             return False
-        elif self.editor.is_dirty(self.draft.now()):
+        elif self.editor.is_dirty(self.typed_text.now()):
             self.editor.notice = messages.UNSAVED
         else:
             self._target = page_table.AUTOMATIC
@@ -168,7 +168,7 @@ class EditorPage(Page):
         if editor.stage is Stage.CLOSED:
             self._go()
             return
-        self.draft.refresh()
+        self.typed_text.refresh()
         self._follow_stage()
         self.show_text()
         if self.mode is Mode.LOOK and self.path.ruler is None:
@@ -220,7 +220,7 @@ class EditorPage(Page):
         self.show_mode()
         if mode is Mode.HISTORY:
             self.versions.raise_()
-            self.history.look(self.editor.name, self.draft.now())
+            self.history.look(self.editor.name, self.typed_text.now())
         if mode in {Mode.HISTORY, Mode.OFFER}:
             self.setFocus()
         elif mode is Mode.TEXT:
@@ -248,20 +248,20 @@ class EditorPage(Page):
 
     def save(self) -> None:
         """Save and go on."""
-        self.editor.save(self.draft.now())
+        self.editor.save(self.typed_text.now())
 
     def leave_to(self, page: str) -> None:
         """Save and go to another page."""
         self._target = page
-        self.editor.leave(self.draft.now(), to_desk=page == page_table.AUTOMATIC)
+        self.editor.leave(self.typed_text.now(), to_desk=page == page_table.AUTOMATIC)
 
     def abandon(self) -> None:
         """Go without saving."""
-        self.editor.abandon(self.draft.now())
+        self.editor.abandon(self.typed_text.now())
 
     def answer(self) -> None:
         """Yes to what the editor asks."""
-        self.editor.answer(self.draft.now())
+        self.editor.answer(self.typed_text.now())
 
     def restore(self) -> None:
         """The marked version into the editor."""
@@ -314,7 +314,7 @@ class EditorPage(Page):
         editor = self.editor
         line, column = self.field.line, self.field.textCursor().positionInBlock() + 1
         place = f"LINE {line} OF {self.field.blockCount()}  ·  {column}"
-        self.head.show_heading(Heading(editor.name, self.draft.mark, place))
+        self.head.show_heading(Heading(editor.name, self.typed_text.mark, place))
         findings = editor.proof.now
         self.field.show_findings(findings.by_line)
         self.findings.show_findings(findings, line)

@@ -1,4 +1,4 @@
-"""The line over the text: what is edited, whether it differs from its file, where the cursor stands."""
+"""The line over the text (what is edited, whether it differs from its file), and where all parts stand."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class HeadLine(Panel):
         self.place(key, self._keys)
 
 
-# --- Where everything stands on the editor page. Pure arithmetic, in the unit of the Automatic page.
+# --- where everything stands on the page, in the unit of the Automatic page --------------------------------
 
 
 KEYBOARD = 29.0  # units: height of the drawn keyboard, four rows of a finger's height

@@ -236,10 +236,10 @@ class Margin(QWidget):
 _PAGE = frozenset({Qt.Key.Key_Escape, *(Qt.Key(Qt.Key.Key_F1 + n) for n in range(12))})
 _CHORDS = frozenset({Qt.Key.Key_S, Qt.Key.Key_F, Qt.Key.Key_H, Qt.Key.Key_G, Qt.Key.Key_M})
 
-# --- Between the text field and the editor: texts that come, texts that were typed, and whether they differ.
+# --- between the field and the editor ----------------------------------------------------------------------
 
 
-class Draft:
+class TypedText:
     """Looks at most once a frame at what has been typed, however fast that is."""
 
     def __init__(self, field: TextField, editor: Editor) -> None:

@@ -1,4 +1,4 @@
-"""What the editor needs from the rest of the house."""
+"""The versions of the program that is edited: where they are kept, what each would change, line by line."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class NoArchive:
         return 0
 
 
-# --- What has changed between two versions of a program, line by line.
+# --- what has changed between two versions, line by line ---------------------------------------------------
 
 
 AROUND = 2  # unchanged lines shown about a change
@@ -52,7 +52,7 @@ MOST_COMPARED = 20_000  # lines: above that only the first and last difference a
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class DifferenceRow:
     """One line of a comparison. ``sign`` is + (new), - (old), blank (both) or … (lines left out)."""
 
     sign: str
@@ -61,15 +61,15 @@ class Row:
     text: str
 
 
-def differences(old: str, new: str) -> tuple[Row, ...]:
+def differences(old: str, new: str) -> tuple[DifferenceRow, ...]:
     """The rows from one text to another; empty when they are the same."""
     if old == new:
         return ()
     before, after = old.splitlines(), new.splitlines()
-    rows: list[Row] = []
+    rows: list[DifferenceRow] = []
     for group in _groups(before, after):
         if rows or group[0][1] > 0:
-            rows.append(Row("…", 0, 0, ""))
+            rows.append(DifferenceRow("…", 0, 0, ""))
         for tag, i1, i2, j1, j2 in group:
             rows += _rows(tag, (i1, i2), (j1, j2), before, after)
     return tuple(rows)
@@ -89,19 +89,19 @@ def _groups(before: Sequence[str], after: Sequence[str]) -> list[list[tuple[str,
 
 def _rows(
     tag: str, old: tuple[int, int], new: tuple[int, int], before: Sequence[str], after: Sequence[str]
-) -> list[Row]:
+) -> list[DifferenceRow]:
     if tag == "equal":
         shift = new[0] - old[0]
-        return [Row(" ", n + 1, n + 1 + shift, before[n]) for n in range(*old)]
-    gone = [Row("-", n + 1, 0, before[n]) for n in range(*old)]
-    return gone + [Row("+", 0, n + 1, after[n]) for n in range(*new)]
+        return [DifferenceRow(" ", n + 1, n + 1 + shift, before[n]) for n in range(*old)]
+    gone = [DifferenceRow("-", n + 1, 0, before[n]) for n in range(*old)]
+    return gone + [DifferenceRow("+", 0, n + 1, after[n]) for n in range(*new)]
 
 
-# --- The versions of the program that is edited, and what each would change.
+# --- the versions of the program that is edited ------------------------------------------------------------
 
 
 @dataclass(slots=True)
-class History:
+class VersionHistory:
     """``rows`` are the versions, newest first; ``changes`` leads from the marked one to the text on hand."""
 
     archive: Archive
@@ -111,7 +111,7 @@ class History:
     rows: tuple[VersionRow, ...] = ()
     marked: int = 0
     text: str | None = None  # of the marked version, once it is read
-    changes: tuple[Row, ...] = ()
+    changes: tuple[DifferenceRow, ...] = ()
     trouble: str = ""
 
     def look(self, name: str, now: str) -> None:
@@ -128,7 +128,7 @@ class History:
         self.text, self.changes, self.trouble = None, (), ""
         name, now, number = self.name, self.now, self.rows[self.marked].number
 
-        def compare(_watch: Watch) -> tuple[str, tuple[Row, ...]]:
+        def compare(_watch: Watch) -> tuple[str, tuple[DifferenceRow, ...]]:
             text = _lines(self.archive.text_of(name, number))
             return text, differences(text, now)
 
@@ -153,7 +153,7 @@ class History:
         self.rows = rows
         self.mark(0)
 
-    def _compared(self, answer: tuple[str, tuple[Row, ...]]) -> None:
+    def _compared(self, answer: tuple[str, tuple[DifferenceRow, ...]]) -> None:
         self.text, self.changes = answer
 
     def _failed(self, why: str) -> None:

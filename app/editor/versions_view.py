@@ -10,7 +10,7 @@ from PySide6.QtGui import QPainter, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.sheet import Key
-from app.editor.versions import History, Row
+from app.editor.versions import DifferenceRow, VersionHistory
 from app.screen.look import LEFT, RIGHT, Look, put, put_raw
 from app.screen.panel import Panel
 from core.store.store_rows import VersionRow
@@ -26,7 +26,7 @@ class VersionList(Panel):
 
     title = "HISTORY"
 
-    def __init__(self, look: Look, history: History, parent: QWidget) -> None:
+    def __init__(self, look: Look, history: VersionHistory, parent: QWidget) -> None:
         super().__init__(look, parent)
         self._history = history
         self._shown: tuple[object, ...] = ()
@@ -96,7 +96,7 @@ class VersionList(Panel):
             self._change(painter, row, change)
             row.translate(0, LINE * u)
 
-    def _change(self, painter: QPainter, row: QRectF, change: Row) -> None:
+    def _change(self, painter: QPainter, row: QRectF, change: DifferenceRow) -> None:
         look, u = self.look, self.look.u
         painter.setPen(look.colour("soft"))
         painter.setFont(look.font(1.6))

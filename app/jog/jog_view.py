@@ -14,7 +14,7 @@ from app.jog.jog_pad_view import JogPad
 from app.jog.tool_setting_view import ToolPanel
 from app.jog.touch_off import TOUCH_X, TOUCH_Z
 from app.screen import page_table
-from app.screen.entry_panel import Asked, AskedPanel, KeyPad
+from app.screen.entry_panel import EntryPanel, EntryWords, KeyPad
 from app.screen.page_base import Host, KeyActions, Page
 from core.executor.snapshot import Snapshot
 
@@ -54,7 +54,7 @@ class JogPage(Page):
         self.pad = JogPad(self.look, self.model, self)
         self.numbers = KeyPad(self.look, self._touched, own=("L", tr("ALONE")), parent=self)
         self.tool = ToolPanel(self.look, self.model, self)
-        self.asked = AskedPanel(self.look, self)
+        self.asked = EntryPanel(self.look, self)
         self._was_active = False  # the window, before anything was held
 
     # --- keys ----------------------------------------------------------------------------------------
@@ -175,7 +175,7 @@ class JogPage(Page):
             if entering
             else tr("T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo")
         )
-        self.asked.show_asked(Asked("", tool.question(), tool.text, tool.old_to_new(), foot))
+        self.asked.show_entry(EntryWords("", tool.question(), tool.text, tool.old_to_new(), foot))
 
     def _has_keyboard(self) -> bool:
         """Whether keys still come here: no dialog, no menu, no other window in front.

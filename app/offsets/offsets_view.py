@@ -20,7 +20,7 @@ from app.offsets.offset_table import OffsetTable
 from app.path.path_pane_view import ZOOM_STEP
 from app.path.path_view import PathView
 from app.screen import page_table
-from app.screen.entry_panel import Asked, AskedPanel, KeyPad
+from app.screen.entry_panel import EntryPanel, EntryWords, KeyPad
 from app.screen.look import LEFT, Look, put
 from app.screen.page_base import Host, KeyActions, Page
 from app.screen.panel import Panel
@@ -136,7 +136,7 @@ class OffsetPage(Page):
         super().__init__(host, parent)
         self.model = model
         self.history = HistoryList(self.look, self)
-        self.asked = AskedPanel(self.look, self)
+        self.asked = EntryPanel(self.look, self)
         self.effect_model = EffectDisplay(model)
         self.effect = EffectView(self.look, self.effect_model, self)
         own = ("C", "C") if model.clears else None
@@ -233,7 +233,9 @@ class OffsetPage(Page):
         if changes is not None:
             self.history.show_entries(tuple(model.history.in_words(change) for change in changes))
         self.show_table(snapshot)
-        self.asked.show_asked(Asked(model.heading, model.question, model.text, model.old_to_new, model.foot))
+        self.asked.show_entry(
+            EntryWords(model.heading, model.question, model.text, model.old_to_new, model.foot)
+        )
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Table over the line that is typed, the pad at their right."""

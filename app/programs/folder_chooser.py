@@ -1,4 +1,4 @@
-"""A chooser of folders by keys and fingers: places first, then folders and the programs in them."""
+"""Folders, USB sticks and the programs in them, to go through by keys and fingers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.desk.program_folder import ENDINGS
 from app.desk.sheet import Row, Sheet
 from app.programs.whole_file import FileError
 
-# --- USB sticks and other removable media: where the system has mounted them, and how much room they have.
+# --- USB sticks and other removable media ------------------------------------------------------------------
 
 
 ROOTS = (Path("/media"), Path("/run/media"), Path("/mnt"))

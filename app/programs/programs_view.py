@@ -29,7 +29,7 @@ from core.executor.snapshot import Snapshot
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
 
-# --- What is known of the marked program: runs, parts, times, proof.
+# --- what is known of the marked program -------------------------------------------------------------------
 
 
 LABEL = 11.0  # units

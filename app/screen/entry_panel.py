@@ -1,4 +1,4 @@
-"""The dialogue under the table: which offset, what is asked, what was typed, and old → new."""
+"""What all entries of figures look like: what is asked, what was typed, old → new, and keys for fingers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from app.screen.panel import Panel
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class EntryWords:
     """The words of one moment."""
 
     which: str = ""
@@ -25,16 +25,16 @@ class Asked:
     foot: str = ""
 
 
-class AskedPanel(Panel):
+class EntryPanel(Panel):
     """Redrawn when one of its words has changed."""
 
     ground = "panel"
 
     def __init__(self, look: Look, parent: QWidget) -> None:
         super().__init__(look, parent)
-        self.asked = Asked()
+        self.asked = EntryWords()
 
-    def show_asked(self, asked: Asked) -> None:
+    def show_entry(self, asked: EntryWords) -> None:
         """The model's words of now."""
         if asked != self.asked:
             self.asked = asked
@@ -101,7 +101,7 @@ def dress_line(edit: QLineEdit, look: Look, size: float, left: float) -> None:
     )
 
 
-# --- A pad of large keys, so that an offset can be entered with a finger alone.
+# --- the keys of a finger ----------------------------------------------------------------------------------
 
 
 _KEYS = (

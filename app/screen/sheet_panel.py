@@ -1,4 +1,4 @@
-"""A table with a head line, lamps, a marked row, notes, and one question below."""
+"""A table with head line, lamps, a marked row, notes and a question below; and a page that opens with one."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ class SheetPanel(Panel):
         draw_entry_box(painter, look, box, sheet.text, 2.6)
 
 
-# --- A page that comes up with a list at its left: the model decides what its keys do.
+# --- a page that comes up with such a list -----------------------------------------------------------------
 
 
 class ListModel(Protocol):

@@ -18,7 +18,7 @@ RESET = "PRESS Y TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT"
 NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT"
 
 
-class PartsCounter(FigureFunction):
+class PartsCounterFunction(FigureFunction):
     """Of the program on the desk."""
 
     name = "PARTS COUNTER"

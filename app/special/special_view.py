@@ -21,7 +21,7 @@ from app.screen.sheet_panel import ListPage, SheetPanel
 from app.special.special_functions import SpecialFunctions
 from core.executor.snapshot import Snapshot
 
-# --- The list of special functions: a number, a name, what it is for; each a target for a finger.
+# --- the list of functions ---------------------------------------------------------------------------------
 
 
 ROW = 7.0  # units at most: a fingertip

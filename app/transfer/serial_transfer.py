@@ -21,7 +21,7 @@ from core.executor.snapshot import Snapshot
 from core.machine.serial_table import DncModel
 from core.store.store_errors import StoreError
 
-# --- What the RS-232 function shows: its settings, how far a transfer has come, a program that has come in.
+# --- what it shows -----------------------------------------------------------------------------------------
 
 
 TITLE = "RS-232"

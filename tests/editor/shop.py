@@ -12,7 +12,7 @@ from app.compose.machine_setup import setup_for
 from app.compose.workshop import proof_of
 from app.desk.latest import Watch
 from app.desk.program_loading import LoadingSteps, Proved
-from app.editor.editor import Editor, Left, nowhere
+from app.editor.editor import Editor, LeftProgram, nowhere
 from app.path.path_picture import Picture, sketched
 from core.executor.job import Job
 from core.interpreter.dialects import ReadProgram
@@ -71,7 +71,9 @@ def workshop() -> LoadingSteps:
     return LoadingSteps(load_source, make_job, proved, draw)
 
 
-def editor_in(folder: Path, archive: Memory | None = None, left: Callable[[Left], None] = nowhere) -> Editor:
+def editor_in(
+    folder: Path, archive: Memory | None = None, left: Callable[[LeftProgram], None] = nowhere
+) -> Editor:
     """The operator's programs and the samples, both empty at first."""
     (folder / "samples").mkdir(exist_ok=True)
     return Editor(workshop(), archive or Memory(), folder / "programs", folder / "samples", left)

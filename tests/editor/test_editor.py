@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from app.editor import editor_messages as messages
-from app.editor.editor import Editor, Left, Stage
-from app.editor.versions import History
+from app.editor.editor import Editor, LeftProgram, Stage
+from app.editor.versions import VersionHistory
 from tests.editor.shop import GOOD, Memory, editor_in
 
 
@@ -19,12 +19,12 @@ def memory() -> Memory:
 
 
 @pytest.fixture
-def left() -> list[Left]:
+def left() -> list[LeftProgram]:
     return []
 
 
 @pytest.fixture
-def editor(tmp_path: Path, memory: Memory, left: list[Left]) -> Iterator[Editor]:
+def editor(tmp_path: Path, memory: Memory, left: list[LeftProgram]) -> Iterator[Editor]:
     editor = editor_in(tmp_path, memory, left.append)
     yield editor
     editor.close()
@@ -45,25 +45,25 @@ def own(editor: Editor, name: str, text: str = GOOD) -> Path:
 
 
 def test_an_unchanged_program_is_left_unchanged_and_without_a_version(
-    editor: Editor, left: list[Left], memory: Memory
+    editor: Editor, left: list[LeftProgram], memory: Memory
 ) -> None:
     path = own(editor, "part.nc")
     editor.leave(editor.text)
-    assert (editor.stage, left, memory.kept) == (Stage.CLOSED, [Left(path, False, False)], {})
+    assert (editor.stage, left, memory.kept) == (Stage.CLOSED, [LeftProgram(path, False, False)], {})
 
 
 def test_leaving_saves_and_keeps_the_old_and_the_new(
-    editor: Editor, left: list[Left], memory: Memory
+    editor: Editor, left: list[LeftProgram], memory: Memory
 ) -> None:
     path = own(editor, "part.nc")
     editor.leave(GOOD + "(END)\n")
     settle(editor)
-    assert left == [Left(path, True, False)]
+    assert left == [LeftProgram(path, True, False)]
     assert path.read_text() == GOOD + "(END)\n"
     assert len(memory.kept["part.nc"]) == 2
 
 
-def test_a_saving_that_fails_keeps_the_text_and_the_page(editor: Editor, left: list[Left]) -> None:
+def test_a_saving_that_fails_keeps_the_text_and_the_page(editor: Editor, left: list[LeftProgram]) -> None:
     path = own(editor, "part.nc")
     editor.leave("X1\0\n")
     settle(editor)
@@ -110,7 +110,7 @@ def test_a_new_file_does_not_take_a_name_that_is_there(editor: Editor) -> None:
     assert editor.stage is Stage.OFFERED
 
 
-def test_a_sample_is_saved_under_a_free_name_only(editor: Editor, left: list[Left]) -> None:
+def test_a_sample_is_saved_under_a_free_name_only(editor: Editor, left: list[LeftProgram]) -> None:
     own(editor, "mine.nc", "M02\n")
     editor.abandon(editor.text)
     sample = editor.samples / "knob.nc"
@@ -123,7 +123,7 @@ def test_a_sample_is_saved_under_a_free_name_only(editor: Editor, left: list[Lef
     assert not editor.take_name("a/b")
     assert editor.take_name("other")
     settle(editor)
-    assert left == [Left(editor.programs / "other.nc", True, False)]
+    assert left == [LeftProgram(editor.programs / "other.nc", True, False)]
     assert sample.read_text() == GOOD
 
 
@@ -138,7 +138,7 @@ def test_a_version_that_cannot_be_kept_is_told_after_leaving(editor: Editor, mem
 
 def test_history_compares_with_the_text_in_the_editor(editor: Editor, memory: Memory) -> None:
     memory.kept["part.nc"] = [(b"X1\r\nM30\r\n", "first"), (b"X2\nM30\n", "second")]
-    history = History(memory, editor.worker)
+    history = VersionHistory(memory, editor.worker)
     history.look("part.nc", "X2\nM30\n")
     settle(editor)
     assert (history.number, history.words()) == (2, "THE SAME AS IN THE EDITOR")
@@ -149,7 +149,7 @@ def test_history_compares_with_the_text_in_the_editor(editor: Editor, memory: Me
 
 
 def test_no_history_is_said(editor: Editor, memory: Memory) -> None:
-    history = History(memory, editor.worker)
+    history = VersionHistory(memory, editor.worker)
     history.look("part.nc", "")
     settle(editor)
     assert history.words() == "NO VERSION IS KEPT OF THIS PROGRAM YET"

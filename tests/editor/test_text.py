@@ -6,7 +6,8 @@ import pytest
 
 from app.editor.document import NameRefusedError, program_name
 from app.editor.find_replace import Search, following, preceding
-from app.editor.versions import Row, differences
+from app.editor.versions import DifferenceRow as Row
+from app.editor.versions import differences
 
 TEXT = "F100\nX1F1000\nf100(F100.)\nF100.5 F100X2\n"
 

@@ -53,5 +53,5 @@ class Writer(Hands):
         """Whether what is typed is proved."""
         page = self.editor
         proof = page.editor.proof
-        fresh = not page.draft.stale and not proof.behind  # what was typed has come to the proof
+        fresh = not page.typed_text.stale and not proof.behind  # what was typed has come to the proof
         return fresh and page.findings.findings is proof.now and proof.now.number > 0
