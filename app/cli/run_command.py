@@ -20,7 +20,7 @@ from app.cli.progress_bar import Progress
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.desk.headless_run import Outcome
+    from app.desk.run_without_screen import Outcome
     from core.executor.job import Job
     from core.language.source import Dialect
     from core.proving.proof_report import Report

@@ -25,7 +25,7 @@ class Kept(Protocol):
 class Keeps(Kept, Protocol):
     """Settings that can be written."""
 
-    def keep_setting(self, key: str, value: object) -> None: ...
+    def save_setting(self, key: str, value: object) -> None: ...
 
 
 def key_of(machine: Machine) -> str:
@@ -60,7 +60,7 @@ def file_changes(machine: Machine, kept: Keeps, tell: Callable[[str], None]) -> 
     told = differences(machine, kept)
 
     def keep() -> None:
-        kept.keep_setting(key_of(machine), record_of(machine))
+        kept.save_setting(key_of(machine), record_of(machine))
         said = "; ".join(str(change) for change in told or ())
         tell(f"machine file {machine.source} accepted{': ' if said else ''}{said}")
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from app.compose.feeder_process import driven, has_station
 from app.compose.inverter_backend import has_inverter, with_inverter
 from app.compose.simulated_backend import simulated
-from app.desk.operator_station import StationPanel
+from app.desk.station_hands import StationPanel
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError, MachinePorts
 from drivers.canopen.canopen_table import CanopenTable

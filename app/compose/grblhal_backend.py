@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from app.compose.inverter_backend import has_inverter, with_inverter
-from app.desk.operator_station import StationPanel
+from app.desk.station_hands import StationPanel
 from core.machine.machine_model import Axis, Machine
 from core.ports import Clock, DriverError, MachinePorts
 from drivers.clocks import RealClock

@@ -15,7 +15,7 @@ from app.compose.backends import Connected, connect, played, real_time
 from app.compose.journal import Journal
 from app.compose.shop_floor import open_shop_floor, told_to_agents
 from app.desk.data_folder import data_folder
-from app.desk.headless_run import HeadlessRun
+from app.desk.run_without_screen import HeadlessRun
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.interruption_watch import Note

@@ -125,7 +125,7 @@ class Journal:
         store = self._store
         return store.setting(key) if store else None
 
-    def keep_setting(self, key: str, value: object) -> None:
+    def save_setting(self, key: str, value: object) -> None:
         """Post a setting."""
         self._post(lambda store: store.set_setting(key, value))
 
@@ -172,7 +172,7 @@ class Journal:
         if store is not None:
             store.rename_program(old, new).result()
 
-    def keep_text(self, program: str, text: bytes, why: str) -> None:
+    def save_version(self, program: str, text: bytes, why: str) -> None:
         """Keep a version; back when it is on the disk. Raises StoreError."""
         self.keep_version(program, text, why)
 

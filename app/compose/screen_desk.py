@@ -82,7 +82,7 @@ def build_desk(
 
     desk.shut = shut
     desk.differs = lambda: file.differs
-    desk.unkept, desk.waiting = (lambda: journal.trouble or log.trouble), (lambda: journal.held)
+    desk.not_kept, desk.waiting = (lambda: journal.trouble or log.trouble), (lambda: journal.held)
     gc.freeze()  # modules and the like: collections need not look at them again
     thread.start()
     watchdog.start()

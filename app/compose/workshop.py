@@ -16,7 +16,7 @@ from app.desk.desk import Desk
 from app.desk.latest import Watch
 from app.desk.persistence import Persistence
 from app.desk.program_loading import LoadingSteps, Proved
-from app.mdi.mdi_model import MdiModel, ProveLine, Typing
+from app.mdi.mdi_model import MdiLine, MdiModel, ProveLine
 from app.searchto.searchto_model import SearchtoModel
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Snapshot
@@ -81,10 +81,10 @@ class _ProofAndPicture:
         self._drawn: tuple[Job, Picture] | None = None  # of the job that was proved last
 
     def prove(self, job: Job, watch: Watch) -> Proved:
-        from app.path.path_picture import Sketch
+        from app.path.path_picture import PictureBuilder
         from core.proving.prove_program import prove
 
-        self._drawn, sketch = None, Sketch()
+        self._drawn, sketch = None, PictureBuilder()
 
         def seen(span: MotionSpan | RestSpan) -> None:
             for each in span.times_of_parts():
@@ -96,13 +96,13 @@ class _ProofAndPicture:
         return Proved(proof_of(job, report), report.diagnostics)
 
     def draw(self, job: Job, watch: Watch) -> Picture:
-        from app.path.path_picture import sketched
+        from app.path.path_picture import picture_of
         from core.proving.program_timeline import Timeline, timed_series
 
         drawn, self._drawn = self._drawn, None
         if drawn is not None and drawn[0] is job:
             return drawn[1]
-        return sketched(timed_series(Timeline.of(job.reading, job.setup, self._machine)), watch)
+        return picture_of(timed_series(Timeline.of(job.reading, job.setup, self._machine)), watch)
 
 
 def _read(path: Path) -> Source:
@@ -143,11 +143,11 @@ def drawer(machine: Machine) -> Draw:
     """Draws a job on this machine, each tool in the frame of the offset that is given for it."""
 
     def draw(job: Job, frame: Mapping[int, ToolOffset], watch: Watch) -> Picture:
-        from app.path.path_picture import sketched
+        from app.path.path_picture import picture_of
         from core.proving.program_timeline import Timeline, timed_blocks
 
         blocks = timed_blocks(Timeline.of(job.reading, job.setup, machine))
-        return sketched(_seen(blocks, frame), watch)
+        return picture_of(_seen(blocks, frame), watch)
 
     return draw
 
@@ -193,7 +193,7 @@ def line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
 def give_mdi(desk: Desk, machine: Machine, offsets: Callable[[], Offsets], keep: Persistence) -> None:
     """Give the desk its MDI."""
     prove_line = line_prover(machine, offsets)
-    mdi = MdiModel(prove_line, desk.post, desk.snapshot, desk.say, desk.clear, Typing(keep))
+    mdi = MdiModel(prove_line, desk.post, desk.snapshot, desk.say, desk.clear, MdiLine(keep))
     desk.attach(mdi)
     desk.own_starts.append(mdi)
 

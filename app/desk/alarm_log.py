@@ -23,35 +23,37 @@ _BY_NUMBER: dict[int, Code] = {entry.number: code for code, entry in CATALOGUE.i
 
 
 @dataclass(frozen=True, slots=True)
-class Stop:
+class LoggedStop:
     """One alarm or stop and when it came, as a wall clock shows it."""
 
     at: str
     alarm: Alarm
 
 
-class StopLog:
+class AlarmLog:
     """``hear`` may be called from the executor's thread, all else belongs to the screen's."""
 
     def __init__(self, clock: Callable[[], str]) -> None:
         self._clock = clock
-        self._heard: deque[Stop] = deque(maxlen=KEPT)
-        self._entries: tuple[Stop, ...] = ()
+        self._heard: deque[LoggedStop] = deque(maxlen=KEPT)
+        self._entries: tuple[LoggedStop, ...] = ()
 
     def hear(self, event: Event) -> None:
         """Remember what stopped the machine; other events are none of this log."""
         if event.alarm is not None:
-            self._heard.append(Stop(self._clock(), event.alarm))
+            self._heard.append(LoggedStop(self._clock(), event.alarm))
 
     def recall(self, rows: Iterable[EventRow]) -> None:
         """What the store has kept, newest first: it comes behind what was heard since."""
-        kept = tuple(Stop(_local(row.at), alarm) for row in rows if (alarm := read_back(row)) is not None)
+        kept = tuple(
+            LoggedStop(_local(row.at), alarm) for row in rows if (alarm := read_back(row)) is not None
+        )
         self._entries = (*self.entries, *kept)[:KEPT]
 
     @property
-    def entries(self) -> tuple[Stop, ...]:
+    def entries(self) -> tuple[LoggedStop, ...]:
         """All of them, newest first."""
-        new: list[Stop] = []
+        new: list[LoggedStop] = []
         while self._heard:
             new.append(self._heard.popleft())
         if new:

@@ -15,16 +15,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from app.desk import interrupted_notice, prompt_line
-from app.desk.alarm_log import StopLog
+from app.desk.alarm_log import AlarmLog
 from app.desk.machine_file_changes import FileChanges
 from app.desk.machine_status import MachineStatus, SilenceWatch, Tone, status_of
-from app.desk.operator_station import OVERRIDE_MOST, StationHands, StationPanel, stepped
 from app.desk.program_folder import ProgramFolders
 from app.desk.program_loading import Loaded, Phase, ProgramLoader
-from app.desk.program_renewal import Rebuilding
-from app.desk.prompt_line import UNDER_WAY, YES, Answers
+from app.desk.program_renewal import ProgramRenewal
+from app.desk.prompt_line import UNDER_WAY, YES, PromptAnswers
 from app.desk.readouts import Readout
 from app.desk.screen_settings import SettingsBook
+from app.desk.station_hands import OVERRIDE_MOST, StationHands, StationPanel, stepped
 from app.desk.translation import tr
 from app.offsets.offset_book import NONE_KEPT, OffsetBook
 from app.programs.run_record import RunRecord
@@ -97,7 +97,9 @@ class Desk:
     shut: Callable[[], None] = _nothing
     waiting: Callable[[], str] = str  # what of it waits in memory, in words
     differs: Callable[[], str] = str  # how the file on the disk is not the program on the desk
-    unkept: Callable[[], str] = str  # why events, parts and versions are not being kept; empty while they are
+    not_kept: Callable[[], str] = (
+        str  # why events, parts and versions are not being kept; empty while they are
+    )
     clock: Callable[[], float] = time.monotonic
     time_of_day: Callable[[], str] = _time_of_day
     settings: SettingsBook = field(default_factory=SettingsBook)
@@ -109,22 +111,22 @@ class Desk:
     stop_held: Callable[[], bool] = bool  # whether a key that stops is held down
     starts_here: bool = True  # whether the page in front is one on which cycles are started
     hands: StationHands = field(init=False)
-    log: StopLog = field(init=False)
-    answers: Answers = field(init=False)
-    rebuilding: Rebuilding = field(init=False)
+    log: AlarmLog = field(init=False)
+    answers: PromptAnswers = field(init=False)
+    rebuilding: ProgramRenewal = field(init=False)
     own_starts: list[OwnStart] = field(default_factory=list)
     _attached: dict[type[Attached], Attached] = field(default_factory=dict)
     _silence: SilenceWatch = field(default_factory=SilenceWatch)
 
     def __post_init__(self) -> None:
-        self.log = StopLog(self.time_of_day)
-        self.answers = Answers(self.snapshot, self._not_kept, self._now)
-        self.rebuilding = Rebuilding(self.session, self.say)
+        self.log = AlarmLog(self.time_of_day)
+        self.answers = PromptAnswers(self.snapshot, self._not_kept, self._now)
+        self.rebuilding = ProgramRenewal(self.session, self.say)
         starting = self.answers.starting
         self.hands = StationHands(self.station, self.clock, self.say, self.clear, starting, self.barred)
 
     def _not_kept(self) -> str:
-        return self.unkept()
+        return self.not_kept()
 
     def _now(self) -> float:
         return self.hands.clock()

@@ -17,14 +17,14 @@ class Persistence(Protocol):
     """Settings, part counts, runs, versions and the event log.
 
     Reading raises StoreError; writing is posted and never waits. ``backup``, ``restore``, ``events``,
-    ``runs`` and ``keep_text`` take their time: they are called on a worker.
+    ``runs`` and ``save_version`` take their time: they are called on a worker.
     """
 
     def setting(self, key: str) -> object:
         """What was kept under this name; None: nothing."""
         ...
 
-    def keep_setting(self, key: str, value: object) -> None:
+    def save_setting(self, key: str, value: object) -> None:
         """Keep anything JSON can hold; None forgets it."""
         ...
 
@@ -68,7 +68,7 @@ class Persistence(Protocol):
         """Versions, count and record go with a program that gets another name."""
         ...
 
-    def keep_text(self, program: str, text: bytes, why: str) -> None:
+    def save_version(self, program: str, text: bytes, why: str) -> None:
         """Keep a version before the file goes; back when it is on the disk. Raises StoreError."""
         ...
 
@@ -91,7 +91,7 @@ class NoPersistence:
         """What was set since the start."""
         return self.settings.get(key)
 
-    def keep_setting(self, key: str, value: object) -> None:
+    def save_setting(self, key: str, value: object) -> None:
         """Until the program ends."""
         self.settings[key] = value
 
@@ -128,7 +128,7 @@ class NoPersistence:
     def renamed(self, _old: str, _new: str) -> None:
         """Nothing goes with it."""
 
-    def keep_text(self, _program: str, _text: bytes, _why: str) -> None:
+    def save_version(self, _program: str, _text: bytes, _why: str) -> None:
         """Versions are not kept here, so nothing may be thrown away."""
         raise StoreError(NOTHING_KEPT)
 

@@ -23,7 +23,7 @@ from core.executor.snapshot import Snapshot, State
 
 
 @dataclass(slots=True)
-class Renewing:
+class RunningRenewal:
     """One renewal at a time; a later one takes its place, and so does a program that is loaded.
 
     The text is that of the program under way, not what stands on the disk by now. On the screen the old
@@ -113,7 +113,7 @@ class Renewing:
 
 
 @dataclass(slots=True)
-class Rebuilding:
+class ProgramRenewal:
     """Offsets of both kinds, and the unit that the job before has left.
 
     Between two programs it is read, proved and drawn again; under a running one it is proved with the new
@@ -123,11 +123,11 @@ class Rebuilding:
     session: ProgramLoader
     say: Callable[[str], None]
     wanted: bool = False
-    renewing: Renewing = field(init=False)
+    renewing: RunningRenewal = field(init=False)
     _changes: int = 0  # of the book, as far as they were seen
 
     def __post_init__(self) -> None:
-        self.renewing = Renewing(self.session)
+        self.renewing = RunningRenewal(self.session)
 
     def look(self, snapshot: Snapshot, book: OffsetBook, post: Callable[[Command], None]) -> None:
         """Once a frame: note what has changed, and begin as soon as that may be."""

@@ -153,7 +153,7 @@ READ = 0.5  # s: sooner nobody has read a question, and what is pressed is meant
 
 
 @dataclass(slots=True)
-class Answers:
+class PromptAnswers:
     """One answer at a time; it stays until the next key or the next state of the machine.
 
     An answer may be a question: what is lost for good is done by a key of its own, and never by the key that
@@ -161,7 +161,7 @@ class Answers:
     """
 
     snapshot: Callable[[], Snapshot]
-    unkept: Callable[[], str]  # why events, parts and versions are not being kept; empty while they are
+    not_kept: Callable[[], str]  # why events, parts and versions are not being kept; empty while they are
     clock: Callable[[], float]
     notice: str = ""
     asked: Callable[[], None] | None = None  # what yes does now
@@ -169,7 +169,7 @@ class Answers:
     _since: float = 0.0
     _in: State | None = None
     _refused: str = ""
-    _unkept: str = ""
+    _not_kept: str = ""
     _heard: deque[Event] = field(default_factory=lambda: deque(maxlen=HEARD))
 
     def say(self, text: str) -> None:
@@ -223,14 +223,14 @@ class Answers:
             self._refused = snapshot.start_refused
             if self._refused:
                 self.say(f"NO START: {self._refused}")
-        self._tell_unkept()
+        self._tell_not_kept()
 
-    def _tell_unkept(self) -> None:
+    def _tell_not_kept(self) -> None:
         """A disk that fails in the middle of a run is told once, not found out the day after."""
-        trouble = self.unkept()
-        if trouble != self._unkept:
-            if self.notice == f"NOT KEPT: {self._unkept}":
+        trouble = self.not_kept()
+        if trouble != self._not_kept:
+            if self.notice == f"NOT KEPT: {self._not_kept}":
                 self.notice = ""  # it is not so any more
-            self._unkept = trouble
+            self._not_kept = trouble
             if trouble:
                 self.say(f"NOT KEPT: {trouble}")

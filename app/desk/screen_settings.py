@@ -69,7 +69,7 @@ class SettingsBook:
         if not _is_choice(name, value):
             raise ValueError(f"{name} cannot be {value!r}")
         self.now = replace(self.now, **{name: value})  # type: ignore[arg-type]
-        self.keep.keep_setting(KEY, asdict(self.now))
+        self.keep.save_setting(KEY, asdict(self.now))
 
     def following(self, name: str) -> object:
         """The choice after the present one."""

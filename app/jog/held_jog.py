@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from app.desk.translation import tr
-from app.jog.jog_speeds import CONTINUOUS, Speeds
+from app.jog.jog_speeds import CONTINUOUS, JogSpeeds
 from app.offsets.offset_values import Mode
 from core.executor.commands import Command, Jog, JogStep, JogStop
 from core.executor.snapshot import Snapshot, State
@@ -37,10 +37,10 @@ class Held:
 
 
 @dataclass(slots=True)
-class JogHold:
+class HeldJog:
     """``lease`` seconds; ``barred`` tells why nothing is jogged now; ``clock`` is monotonic."""
 
-    speeds: Speeds
+    speeds: JogSpeeds
     lease: float
     post: Callable[[Command], None]
     say: Callable[[str], None]

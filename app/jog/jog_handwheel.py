@@ -10,8 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from app.desk.translation import tr
-from app.jog.held_jog import BEGINS, RENEWED, JogHold
-from app.jog.jog_speeds import CONTINUOUS, Speeds
+from app.jog.held_jog import BEGINS, RENEWED, HeldJog
+from app.jog.jog_speeds import CONTINUOUS, JogSpeeds
 from core.executor.commands import Command, Wheel, WheelOff
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
@@ -25,11 +25,11 @@ Choice = tuple[str, int]  # axis and number of the step
 
 
 @dataclass(slots=True)
-class WheelHold:
+class JogHandwheel:
     """``choice`` is what the wheel shall move, None for nothing."""
 
     machine: Machine
-    hold: JogHold
+    hold: HeldJog
     names: tuple[str, ...]  # axes that can be jogged, in their order
     barred: Callable[[], str]  # why it moves nothing now; asked every frame
     choice: Choice | None = None
@@ -55,7 +55,7 @@ class WheelHold:
         return any(selector(name) in self.machine.inputs for name in self.names)
 
     @property
-    def _speeds(self) -> Speeds:
+    def _speeds(self) -> JogSpeeds:
         return self.hold.speeds
 
     @property

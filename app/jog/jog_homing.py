@@ -12,7 +12,7 @@ from core.executor.snapshot import Snapshot, State
 from core.machine.machine_model import Axis, Machine
 
 
-class Known(StrEnum):
+class AxisState(StrEnum):
     """Whether an axis knows its position."""
 
     HOMED = "HOMED"
@@ -24,16 +24,16 @@ class Known(StrEnum):
     def words(self) -> str:
         """For the operator."""
         words = {
-            Known.HOMED: tr("HOMED"),
-            Known.LOST: tr("NOT HOMED"),
-            Known.LOOKING: tr("HOMING"),
-            Known.ABSOLUTE: tr("ABSOLUTE"),
+            AxisState.HOMED: tr("HOMED"),
+            AxisState.LOST: tr("NOT HOMED"),
+            AxisState.LOOKING: tr("HOMING"),
+            AxisState.ABSOLUTE: tr("ABSOLUTE"),
         }
         return words[self]
 
 
 @dataclass(slots=True)
-class HomeAsk:
+class HomingQuestion:
     """The home key asks: Return homes all axes in their order, a letter one of them."""
 
     machine: Machine
@@ -54,21 +54,21 @@ class HomeAsk:
             if a.name != "C" or self.machine.c_enabled or self.machine.kind != "lathe"
         )
 
-    def known(self, snapshot: Snapshot) -> dict[str, Known]:
+    def known(self, snapshot: Snapshot) -> dict[str, AxisState]:
         """How it stands with every axis."""
         homed = dict(zip(snapshot.axes, snapshot.homed, strict=True))
         lost = sorted((a for a in self.axes if not homed[a.name]), key=lambda axis: axis.home_order)
-        known = {a.name: Known.ABSOLUTE if a.absolute else Known.HOMED for a in self.axes}
-        known |= {axis.name: Known.LOST for axis in lost}
+        known = {a.name: AxisState.ABSOLUTE if a.absolute else AxisState.HOMED for a in self.axes}
+        known |= {axis.name: AxisState.LOST for axis in lost}
         if snapshot.state is State.HOME and lost:
-            known[lost[0].name] = Known.LOOKING
+            known[lost[0].name] = AxisState.LOOKING
         return known
 
     def lost(self, snapshot: Snapshot) -> list[str]:
         """The axes that have to be homed, in their order."""
         known = self.known(snapshot)
         order = sorted(self.axes, key=lambda axis: axis.home_order)
-        return [axis.name for axis in order if known[axis.name] in {Known.LOST, Known.LOOKING}]
+        return [axis.name for axis in order if known[axis.name] in {AxisState.LOST, AxisState.LOOKING}]
 
     def key(self, snapshot: Snapshot, why_not: str) -> None:
         """The home key: asks."""

@@ -9,12 +9,12 @@ from app.desk import prompt_line
 from app.desk.desk import Desk
 from app.desk.prompt_line import STOP_HELD
 from app.desk.translation import tr
-from app.jog.held_jog import JogHold
-from app.jog.jog_handwheel import WheelHold
-from app.jog.jog_homing import HomeAsk
-from app.jog.jog_speeds import CONTINUOUS, Direction, Speeds, directions_of
+from app.jog.held_jog import HeldJog
+from app.jog.jog_handwheel import JogHandwheel
+from app.jog.jog_homing import HomingQuestion
+from app.jog.jog_speeds import CONTINUOUS, JogDirection, JogSpeeds, directions_of
+from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z, TOUCHES
 from app.jog.tool_setting import TOOL, ToolSetting
-from app.jog.touch_off import TOUCH_X, TOUCH_Z, TOUCHES
 from core.executor.commands import JogStop
 from core.executor.snapshot import Snapshot, State
 from core.machine.machine_model import Machine
@@ -42,19 +42,19 @@ class JogModel:
 
     desk: Desk
     machine: Machine
-    speeds: Speeds = field(init=False)
-    hold: JogHold = field(init=False)
-    wheel: WheelHold = field(init=False)
-    home: HomeAsk = field(init=False)
+    speeds: JogSpeeds = field(init=False)
+    hold: HeldJog = field(init=False)
+    wheel: JogHandwheel = field(init=False)
+    home: HomingQuestion = field(init=False)
     tool: ToolSetting = field(init=False)
-    directions: tuple[Direction, ...] = ()
+    directions: tuple[JogDirection, ...] = ()
     armed: bool = False
 
     def __post_init__(self) -> None:
         desk = self.desk
-        self.speeds = Speeds(self.machine)
+        self.speeds = JogSpeeds(self.machine)
         self.directions = directions_of(self.machine)
-        self.hold = JogHold(
+        self.hold = HeldJog(
             self.speeds,
             min(self.machine.timing.lease, LEASE),
             desk.post,
@@ -65,8 +65,8 @@ class JogModel:
         )
         names = tuple(dict.fromkeys(each.axis for each in self.directions))
         names = tuple(sorted(names, key=_order(self.machine)))
-        self.wheel = WheelHold(self.machine, self.hold, names, self._wheel_barred)
-        self.home = HomeAsk(self.machine, desk)
+        self.wheel = JogHandwheel(self.machine, self.hold, names, self._wheel_barred)
+        self.home = HomingQuestion(self.machine, desk)
         self.tool = ToolSetting(desk, desk.book)
 
     def _now(self) -> float:

@@ -12,9 +12,9 @@ from PySide6.QtGui import QPainter, QPolygonF, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.jog.jog_homing import Known
+from app.jog.jog_homing import AxisState
 from app.jog.jog_model import JogModel
-from app.jog.jog_speeds import CONTINUOUS, Direction, rapid_word, speed_words, step_words
+from app.jog.jog_speeds import CONTINUOUS, JogDirection, rapid_word, speed_words, step_words
 from app.offsets.offset_values import Mode
 from app.screen.look import CENTRE, LEFT, Look, put
 from app.screen.panel import Control, FingerPanel
@@ -182,7 +182,7 @@ class JogPad(FingerPanel):
         self._model = model
         self._dial = Dial(model.turn_wheel)
         self._shown: object = None
-        self._known: dict[str, Known] = {}
+        self._known: dict[str, AxisState] = {}
         self._state = ""
 
     def show_jog(self, snapshot: Snapshot) -> None:
@@ -266,7 +266,9 @@ class JogPad(FingerPanel):
             words.append(f"{axis.name} {self._known[axis.name].words}" if self._known else axis.name)
             presses.append(partial(model.home_one, axis.name))
         lost = frozenset(
-            i for i, known in enumerate(self._known.values(), 1) if known in {Known.LOST, Known.LOOKING}
+            i
+            for i, known in enumerate(self._known.values(), 1)
+            if known in {AxisState.LOST, AxisState.LOOKING}
         )
         chosen = 0 if model.home.asking else -1
         self._tiles(painter, row, Tiles(("", ""), tuple(words), presses, chosen, alarmed=lost))
@@ -289,7 +291,7 @@ class JogPad(FingerPanel):
         middle = QRectF(room.x() + wide, room.y() + high, wide - 0.8 * u, high - 0.6 * u)
         self._middle(painter, middle)
 
-    def _target(self, painter: QPainter, box: QRectF, way: Direction) -> None:
+    def _target(self, painter: QPainter, box: QRectF, way: JogDirection) -> None:
         look, u, held = self.look, self.look.u, self._model.hold.held
         axis, sign, arrow = way.axis, way.sign, way.arrow
         moving = held is not None and held.axis == axis and held.velocity * sign > 0

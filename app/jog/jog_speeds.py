@@ -22,7 +22,7 @@ CONTINUOUS = -1
 
 
 @dataclass(slots=True)
-class Speeds:
+class JogSpeeds:
     """What is chosen now; ``step`` CONTINUOUS or one of four lengths, ``speed`` one of four."""
 
     machine: Machine
@@ -95,7 +95,7 @@ _NO_ARROW: Arrow = (0, 0)
 
 
 @dataclass(frozen=True, slots=True)
-class Direction:
+class JogDirection:
     """One target: axis and sign, its cell in the cross, and its key by Qt's name with how it is written."""
 
     axis: str
@@ -109,20 +109,20 @@ class Direction:
 
 # A lathe from above: X+ is towards the operator, Z+ to the right.
 _LATHE = (
-    Direction("X", -1, 1, 0, "Up", "↑", (0, -1)),
-    Direction("Z", -1, 0, 1, "Left", "←", (-1, 0)),
-    Direction("Z", 1, 2, 1, "Right", "→", (1, 0)),
-    Direction("X", 1, 1, 2, "Down", "↓", (0, 1)),
+    JogDirection("X", -1, 1, 0, "Up", "↑", (0, -1)),
+    JogDirection("Z", -1, 0, 1, "Left", "←", (-1, 0)),
+    JogDirection("Z", 1, 2, 1, "Right", "→", (1, 0)),
+    JogDirection("X", 1, 1, 2, "Down", "↓", (0, 1)),
 )
-_LATHE_C = (Direction("C", -1, 0, 2, "PageDown", "PgDn"), Direction("C", 1, 2, 2, "PageUp", "PgUp"))
+_LATHE_C = (JogDirection("C", -1, 0, 2, "PageDown", "PgDn"), JogDirection("C", 1, 2, 2, "PageUp", "PgUp"))
 # A mill from above: X+ to the right, Y+ away from the operator, Z+ up.
 _MILL = (
-    Direction("Y", 1, 1, 0, "Up", "↑", (0, -1)),
-    Direction("X", -1, 0, 1, "Left", "←", (-1, 0)),
-    Direction("X", 1, 2, 1, "Right", "→", (1, 0)),
-    Direction("Y", -1, 1, 2, "Down", "↓", (0, 1)),
-    Direction("Z", 1, 2, 0, "PageUp", "PgUp"),
-    Direction("Z", -1, 2, 2, "PageDown", "PgDn"),
+    JogDirection("Y", 1, 1, 0, "Up", "↑", (0, -1)),
+    JogDirection("X", -1, 0, 1, "Left", "←", (-1, 0)),
+    JogDirection("X", 1, 2, 1, "Right", "→", (1, 0)),
+    JogDirection("Y", -1, 1, 2, "Down", "↓", (0, 1)),
+    JogDirection("Z", 1, 2, 0, "PageUp", "PgUp"),
+    JogDirection("Z", -1, 2, 2, "PageDown", "PgDn"),
 )
 # Of its rotary axes in the machine's order: cells and keys of + and −.
 _ROTARY = (
@@ -131,7 +131,7 @@ _ROTARY = (
 )
 
 
-def directions_of(machine: Machine) -> tuple[Direction, ...]:
+def directions_of(machine: Machine) -> tuple[JogDirection, ...]:
     """All targets of a machine; a lathe has those of C where its spindle can be positioned."""
     if machine.kind != "mill":
         return _LATHE + (_LATHE_C if machine.c_enabled else ())
@@ -140,5 +140,5 @@ def directions_of(machine: Machine) -> tuple[Direction, ...]:
     for name, ends in zip(rotary, _ROTARY, strict=False):
         for sign, end in zip((1, -1), ends, strict=True):
             column, row, key, label = end
-            found.append(Direction(name, sign, column, row, key, label))
+            found.append(JogDirection(name, sign, column, row, key, label))
     return tuple(found)

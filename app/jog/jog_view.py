@@ -11,8 +11,8 @@ from app.desk.program_loading import Loaded
 from app.desk.translation import tr
 from app.jog.jog_model import JogModel
 from app.jog.jog_pad_view import JogPad
+from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z
 from app.jog.tool_setting_view import ToolPanel
-from app.jog.touch_off import TOUCH_X, TOUCH_Z
 from app.screen import page_table
 from app.screen.entry_panel import EntryPanel, EntryWords, KeyPad
 from app.screen.page_base import Host, KeyActions, Page

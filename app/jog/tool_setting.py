@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError, value_of
 from app.desk.desk import Desk
 from app.desk.translation import tr
-from app.jog import touch_off
-from app.jog.touch_off import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
+from app.jog import jog_touch_off
+from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_history import CORRECTIONS, OffsetHistory, refusal
 from app.offsets.offset_values import TOOL_FIELDS, Mode, marked, not_set, shown_value, value_typed, word
@@ -147,7 +147,7 @@ class ToolSetting:
         if why or not self.number:
             return why or tr("WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST")
         if what in TOUCHES:
-            return touch_off.refusal(what, snapshot)
+            return jog_touch_off.refusal(what, snapshot)
         if self.row is None:
             return tr("T{number} WAS NEVER SET: TOUCH X AND Z FIRST").format(number=self.number)
         return ""

@@ -12,8 +12,8 @@ from PySide6.QtWidgets import QWidget
 from app.desk.formats import length
 from app.desk.translation import tr
 from app.jog.jog_model import JogModel
+from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z
 from app.jog.tool_setting import TOOL
-from app.jog.touch_off import TOUCH_X, TOUCH_Z
 from app.offsets.offset_values import Mode, marked, not_set, shown_value, signed, word
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Panel

@@ -51,7 +51,7 @@ KEPT = 100  # lines
 
 
 @dataclass(slots=True)
-class Typing:
+class MdiLine:
     """One line with a cursor; arrows up and down go through the history, as in every shell."""
 
     keep: Persistence = field(default_factory=NoPersistence)
@@ -110,7 +110,7 @@ class Typing:
         if self.text.strip() and (not self.history or self.history[-1] != self.text):
             self.history = [*self.history, self.text][-KEPT:]
             with suppress(StoreError):  # the desk says by itself that nothing is kept
-                self.keep.keep_setting(KEY, self.history)
+                self.keep.save_setting(KEY, self.history)
         self.put("")
         self.back, self._draft = 0, ""
 
@@ -132,7 +132,7 @@ class MdiModel:
     snapshot: Callable[[], Snapshot]
     say: Callable[[str], None]
     clear: Callable[[], None]
-    typing: Typing = field(default_factory=Typing)
+    typing: MdiLine = field(default_factory=MdiLine)
     open: bool = False
     found: tuple[Diagnostic, ...] = ()  # what proving had to say of the line
     ready: Job | None = None  # proved and prepared

@@ -145,7 +145,7 @@ class HistoryPanel(Panel):
 SHARE = 0.4  # of a row for its label
 
 
-class InForcePanel(Panel):
+class ModalPanel(Panel):
     """All rows at once, as large as the room lets them be."""
 
     def __init__(self, look: Look, parent: QWidget) -> None:
@@ -190,7 +190,7 @@ class MdiPage(Page):
         self.line = LinePanel(self.look, self._other_hand, self)
         self.history = HistoryPanel(self.look, self._recall, self)
         self.letters = LetterPad(self.look, self._touched, self, LINES)
-        self.inforce = InForcePanel(self.look, self)
+        self.inforce = ModalPanel(self.look, self)
 
     def key_actions(self) -> KeyActions:
         """Keys of this page alone."""

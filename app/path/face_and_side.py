@@ -34,7 +34,7 @@ def face_point(x: float, c: float, h: float = 0.0) -> tuple[float, float]:
     return rho * math.cos(at), -rho * math.sin(at)
 
 
-class FaceSketch:
+class FaceBuilder:
     """Collects what is seen on the face."""
 
     def __init__(self, blocks: int) -> None:
@@ -73,7 +73,7 @@ class FaceSketch:
         return Polyline(z, x, stroke, first, (-reach, reach, -reach, reach), centres=centres)
 
 
-class SideSketch:
+class SideBuilder:
     """Collects what is seen on the side; ``x`` is minus C in degrees until the radius is known."""
 
     def __init__(self, blocks: int) -> None:
@@ -113,11 +113,11 @@ class SideSketch:
         return Polyline(z, down, stroke, first, bounds, centres=centres, round=scale)
 
 
-class TurnedSketch:
+class FaceAndSideBuilder:
     """Both views of everything that is done with C locked; made at the first block that is."""
 
     def __init__(self, blocks: int) -> None:
-        self._face, self._side = FaceSketch(blocks), SideSketch(blocks)
+        self._face, self._side = FaceBuilder(blocks), SideBuilder(blocks)
 
     def add(self, block: Block, stroke: int, way: list[Spot]) -> None:
         """One move with C locked; ``way`` are the mill's points behind its start, for a move in a plane."""

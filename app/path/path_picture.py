@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from app.path.face_and_side import TurnedSketch, way_of
+from app.path.face_and_side import FaceAndSideBuilder, way_of
 from app.path.polyline import SAME, Floats, Polyline, PolylineBuilder, Stroke, arc_pieces, bounds_of
-from app.working_plane.plane_scene import Scene, SceneSketch
+from app.working_plane.plane_scene import Scene, SceneBuilder
 from core.geometry.lines_and_arcs import arc_sweep
 from core.geometry.virtual_mill import Face
 from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries
@@ -78,14 +78,14 @@ class Picture(Polyline):
         return total - end + (end - start) * share
 
 
-class Sketch:
+class PictureBuilder:
     """Collects blocks into a picture."""
 
     def __init__(self) -> None:
         self._pencil = PolylineBuilder()
-        self._turned: TurnedSketch | None = None
+        self._turned: FaceAndSideBuilder | None = None
         self._metric = False
-        self._scene = SceneSketch()
+        self._scene = SceneBuilder()
         self._ends, self._chord, self._line = array("d", [0.0]), array("d"), array("q")
 
     def add(self, block: Block, end: float) -> None:
@@ -150,7 +150,7 @@ class Sketch:
 
     def _locked(self, block: Block) -> None:
         if self._turned is None:
-            self._turned = TurnedSketch(len(self._line))
+            self._turned = FaceAndSideBuilder(len(self._line))
         stroke, way = _stroke(block), way_of(block)
         self._turned.add(block, stroke, way)
         if block.plane is not None:
@@ -193,9 +193,9 @@ class Sketch:
                 self._pencil.start(*at)
 
 
-def sketched(blocks: Iterable[Timed | TimedSeries], watch: Callable[[int], None]) -> Picture:
+def picture_of(blocks: Iterable[Timed | TimedSeries], watch: Callable[[int], None]) -> Picture:
     """The picture of all blocks; ``watch`` is told the count now and then and may raise to give up."""
-    sketch, count, told = Sketch(), 0, 0
+    sketch, count, told = PictureBuilder(), 0, 0
     for each in blocks:
         count += sketch.add_timed(each)
         if count - told >= WATCHED:

@@ -80,7 +80,7 @@ def renamed(source: Path, name: str, keep: Persistence) -> str:
 def deleted(path: Path, keep: Persistence) -> str:
     """The file goes, its text stays as a version. Raises FileError, and then the file is still there."""
     try:
-        keep.keep_text(path.name, _read(path), "deleted")
+        keep.save_version(path.name, _read(path), "deleted")
         path.unlink()
     except StoreError as error:
         raise FileError(f"NOT DELETED, BECAUSE ITS TEXT CANNOT BE KEPT: {error}") from error

@@ -106,7 +106,7 @@ def _keep_old(target: Path, keep: Persistence, text: bytes) -> None:
     try:
         old = present(target)
         if old is not None and old != text:
-            keep.keep_text(target.name, old, "replaced by an import")
+            keep.save_version(target.name, old, "replaced by an import")
     except (StoreError, FileError) as error:
         raise FileError(f"{target.name} IS NOT REPLACED, BECAUSE ITS TEXT CANNOT BE KEPT: {error}") from error
 

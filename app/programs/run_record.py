@@ -31,7 +31,7 @@ class RunRecord:
     _loaded: Loaded | None = None
 
     def see(self, snapshot: Snapshot, loaded: Loaded) -> None:
-        """One frame. Where the store does not take it the desk says so by itself (``Desk.unkept``)."""
+        """One frame. Where the store does not take it the desk says so by itself (``Desk.not_kept``)."""
         try:
             self._run(snapshot)
             self._proof(loaded)

@@ -9,7 +9,7 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QPainter, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.alarm_log import Stop
+from app.desk.alarm_log import LoggedStop
 from app.desk.machine_status import Tone
 from app.desk.prompt_line import exactly
 from app.desk.translation import tr
@@ -122,11 +122,11 @@ class AlarmList(Panel):
 
     def __init__(self, look: Look, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
-        self.entries: tuple[Stop, ...] = ()
+        self.entries: tuple[LoggedStop, ...] = ()
         self._top = 0
         self.hide()
 
-    def show_entries(self, entries: Sequence[Stop]) -> None:
+    def show_entries(self, entries: Sequence[LoggedStop]) -> None:
         """The log as it stands."""
         if entries is not self.entries:
             self.entries = tuple(entries)
@@ -160,7 +160,7 @@ class AlarmList(Panel):
             self._entry(painter, QRectF(room.x(), y, room.width(), _HIGH * u), entry)
         self._pages(painter, QRectF(room.x(), room.bottom() - _FOOT * u, room.width(), _FOOT * u))
 
-    def _entry(self, painter: QPainter, row: QRectF, entry: Stop) -> None:
+    def _entry(self, painter: QPainter, row: QRectF, entry: LoggedStop) -> None:
         look, u, alarm = self.look, self.look.u, entry.alarm
         grave = CATALOGUE[alarm.code].reaction in {Reaction.OFF, Reaction.STOP} or alarm.code == "estop"
         left, wide = row.x() + _WHEN * u, row.width() - _WHEN * u

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk import formats
 from app.desk.desk import Desk
-from app.desk.operator_station import OVERRIDE_MOST
+from app.desk.station_hands import OVERRIDE_MOST
 from app.desk.translation import tr
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Control, FingerPanel

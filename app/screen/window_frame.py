@@ -109,10 +109,10 @@ class Frame(QWidget):
             "F1": partial(self._go, page_table.MENU),
             "F7": self.toggle_log,
             **self.page.key_actions(),
-            **(self._log_doings() if self.log.isVisible() else {}),
+            **(self._log_keys() if self.log.isVisible() else {}),
         }
 
-    def _log_doings(self) -> dict[str, Callable[[], None]]:
+    def _log_keys(self) -> dict[str, Callable[[], None]]:
         """Keys that look through the log while it lies over the page."""
         log = self.log
         return {
@@ -277,7 +277,7 @@ class Frame(QWidget):
     def _lamps_of(self, snapshot: Snapshot, view: MachineStatus) -> tuple[Lamp, ...]:
         """The lit words, from left to right."""
         on = snapshot.state not in {State.ESTOP, State.DISABLED}
-        kept = (Lamp("NOT KEPT", lit=True, warn=True),) if self.desk.unkept() else ()
+        kept = (Lamp("NOT KEPT", lit=True, warn=True),) if self.desk.not_kept() else ()
         return (*view.modes, *view.lamps, *kept, Lamp("DRIVES ON", on, "D"), Lamp("RESET", False, "R"))
 
     def _notices_of(self, snapshot: Snapshot, loaded: Loaded, *, here: bool) -> tuple[NoticeRow, ...]:
@@ -289,10 +289,10 @@ class Frame(QWidget):
             rows.append(
                 NoticeRow(found.text, found.figures, _KEYS[not may_go_on(loaded) :] if offered else ())
             )
-        if desk.unkept():
+        if desk.not_kept():
             held = desk.waiting()
             waits = tr("HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: {what}").format(what=held) if held else ""
-            rows.append(NoticeRow(tr("NOT KEPT: {why}").format(why=desk.unkept()), waits))
+            rows.append(NoticeRow(tr("NOT KEPT: {why}").format(why=desk.not_kept()), waits))
         return tuple(rows)
 
 

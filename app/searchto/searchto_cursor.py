@@ -14,7 +14,7 @@ _QUOTE = '"'
 
 
 @dataclass(slots=True)
-class Cursor:
+class LineCursor:
     """A line of the program, counted from 1, and what is being typed to find another."""
 
     lines: Sequence[str] = ()

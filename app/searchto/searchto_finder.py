@@ -19,7 +19,7 @@ Answer = RestartPoint | NoRestart | CutRecord | tuple[Job, Proved]
 
 
 @dataclass(slots=True)
-class Finder:
+class LineFinder:
     """``rebuild`` and ``prove`` are called on the worker; a later line goes on from an earlier one.
 
     ``found`` and ``failed`` are called with what has come, when the worker is polled.

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from app.desk.latest import Watch
 from app.desk.program_loading import Loaded, Phase, ProgramLoader, Proved
 from app.desk.translation import tr
-from app.searchto.searchto_cursor import Cursor
-from app.searchto.searchto_finder import Answer, Finder
-from app.searchto.searchto_plan import Leaving, Plan, leaving_of, now_of, plan_of
+from app.searchto.searchto_cursor import LineCursor
+from app.searchto.searchto_finder import Answer, LineFinder
+from app.searchto.searchto_plan import Plan, WayOut, now_of, plan_of, way_out_of
 from core.executor.commands import Command, Prepare
 from core.executor.job import Job, make_job
 from core.executor.snapshot import CYCLE, Snapshot, Starts, State
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 WAY_OUT = "(WAY OUT OF THE PART)"
 
 
-class Stage(Enum):
+class SearchtoStage(Enum):
     """From choosing a line to a restart that the palms begin."""
 
     CHOOSE = auto()
@@ -49,17 +49,17 @@ class SearchtoModel:
     clear: Callable[[], None]
     rebuild: Callable[[Job, Watch], StateRebuild]  # what goes through a program; called on the worker
     choices: Choices = field(default_factory=Choices)
-    cursor: Cursor = field(default_factory=Cursor)
-    stage: Stage = Stage.CHOOSE
+    cursor: LineCursor = field(default_factory=LineCursor)
+    stage: SearchtoStage = SearchtoStage.CHOOSE
     open: bool = False
     answer: NoRestart | None = None
     plan: Plan | None = None
-    leaving: Leaving | None = None  # the way out alone
+    leaving: WayOut | None = None  # the way out alone
     number: int = 0  # of the pass in which the line is meant; 0: the one that was interrupted, or the first
     count: int = 0  # how often the run comes to the line, once that is known
     proved: Proved | None = None
     started: bool = False  # the restart was started: what is to be seen now is the Automatic page
-    finder: Finder = field(init=False)
+    finder: LineFinder = field(init=False)
     _job: Job | None = None
     _of: Job | None = None  # the program's job that was searched
     _accepted: bool = False
@@ -67,7 +67,7 @@ class SearchtoModel:
     _going_out: bool = False
 
     def __post_init__(self) -> None:
-        self.finder = Finder(self.rebuild, self.session.workshop.prove, self._found, self._not_searched)
+        self.finder = LineFinder(self.rebuild, self.session.workshop.prove, self._found, self._not_searched)
 
     # --- opened and left -----------------------------------------------------------------------------
 
@@ -125,7 +125,7 @@ class SearchtoModel:
 
     def _withdraw(self) -> None:
         self.finder.worker.give_up()
-        self.stage, self.answer, self.plan, self.proved = Stage.CHOOSE, None, None, None
+        self.stage, self.answer, self.plan, self.proved = SearchtoStage.CHOOSE, None, None, None
         self.leaving, self._cut = None, None
         self._job, self._accepted = None, False
 
@@ -189,7 +189,7 @@ class SearchtoModel:
         job, line = loaded.job, self.cursor.line
         if job is None:
             return
-        self.stage, self._of = Stage.SEARCHING, job
+        self.stage, self._of = SearchtoStage.SEARCHING, job
         self.finder.find(job, line, self.number, now_of(self.snapshot(), job).broken)
 
     def nearest(self, way: int) -> None:
@@ -205,7 +205,7 @@ class SearchtoModel:
         self._forget()
         self.clear()
         if job is not None:
-            self.stage, self._of = Stage.SEARCHING, job
+            self.stage, self._of = SearchtoStage.SEARCHING, job
             self.finder.cut(job)
 
     def turn_coolant(self) -> None:
@@ -216,10 +216,10 @@ class SearchtoModel:
         """Yes to what will start and to the way, or to the way out: it is proved and ready for the palms."""
         self.clear()
         snapshot, plan, whole = self.snapshot(), self.plan, self.session.now.job
-        if self.stage is Stage.SHOWN and self._cut is not None and whole is not None:
+        if self.stage is SearchtoStage.SHOWN and self._cut is not None and whole is not None:
             self._confirm_out(snapshot, self._cut, whole)
             return
-        if self.stage is not Stage.SHOWN or plan is None or whole is None:
+        if self.stage is not SearchtoStage.SHOWN or plan is None or whole is None:
             self.say(tr("CHOOSE A GOOD LINE FIRST"))
             return
         if snapshot.state is not State.IDLE:
@@ -230,19 +230,19 @@ class SearchtoModel:
             self.say(plan.trouble)
             return
         setup = replace(whole.setup, start=snapshot.demand, begin=plan.begin)
-        self.stage = Stage.PROVING
+        self.stage = SearchtoStage.PROVING
         self.finder.check(make_job(whole.source, setup, whole))
 
     def _confirm_out(self, snapshot: Snapshot, cut: CutRecord, whole: Job) -> None:
         if snapshot.state is not State.IDLE:
             self.say(tr("SWITCH THE DRIVES ON FIRST (D)"))
             return
-        out = self.leaving = leaving_of(cut, snapshot, whole, self.choices)
+        out = self.leaving = way_out_of(cut, snapshot, whole, self.choices)
         if out.trouble:
             self.say(out.trouble)
             return
         setup = replace(whole.setup, start=snapshot.demand, begin=out.begin)
-        self.stage = Stage.PROVING
+        self.stage = SearchtoStage.PROVING
         self.finder.check(make_job(Source("WAY OUT", WAY_OUT), setup))
 
     def escape(self) -> bool:
@@ -250,7 +250,7 @@ class SearchtoModel:
         if self.cursor.text:
             self.cursor.text = ""
             return True
-        if self.stage is Stage.CHOOSE:
+        if self.stage is SearchtoStage.CHOOSE:
             return False
         self._forget()
         return True
@@ -272,7 +272,7 @@ class SearchtoModel:
         if self._going_out and snapshot.state not in CYCLE:
             self._going_out = False
             self._forget()
-        if self.stage is Stage.READY:
+        if self.stage is SearchtoStage.READY:
             self._see_start(snapshot)
         self.finder.worker.poll()
 
@@ -287,7 +287,7 @@ class SearchtoModel:
 
     def barred(self) -> str:
         """Why the palms start nothing now; empty when they may."""
-        if self.stage is Stage.READY or self.snapshot().state in CYCLE:
+        if self.stage is SearchtoStage.READY or self.snapshot().state in CYCLE:
             return ""
         return tr("NO START: SEARCH A LINE AND CONFIRM IT FIRST (F10)")
 
@@ -309,7 +309,7 @@ class SearchtoModel:
         self._accepted = waits
 
     def _not_searched(self, why: str) -> None:
-        self.stage = Stage.CHOOSE
+        self.stage = SearchtoStage.CHOOSE
         self.say(tr("THE LINE CANNOT BE SEARCHED: {why}").format(why=why))
 
     def _found(self, answer: Answer) -> None:
@@ -319,44 +319,46 @@ class SearchtoModel:
         elif isinstance(answer, CutRecord):
             self._show_out(answer)
         elif isinstance(answer, NoRestart):
-            self.stage, self.answer = Stage.REFUSED, answer
+            self.stage, self.answer = SearchtoStage.REFUSED, answer
         else:
             self._made_ready(*answer)
 
     def _show(self, found: RestartPoint) -> None:
         if self._of is not None:
-            self.stage = Stage.SHOWN
+            self.stage = SearchtoStage.SHOWN
             self.plan = plan_of(found, self.snapshot(), self._of, self.choices)
 
     def _show_out(self, cut: CutRecord) -> None:
         if self._of is not None:
-            self.stage, self._cut = Stage.SHOWN, cut
-            self.leaving = leaving_of(cut, self.snapshot(), self._of, self.choices)
+            self.stage, self._cut = SearchtoStage.SHOWN, cut
+            self.leaving = way_out_of(cut, self.snapshot(), self._of, self.choices)
 
     def _made_ready(self, job: Job, proved: Proved) -> None:
         self.proved = proved
         if proved.proof.errors:
-            self.stage = Stage.SHOWN
+            self.stage = SearchtoStage.SHOWN
             self.say(tr("WILL NOT START: {why}").format(why=proved.proof.errors[0]))
             return
-        self.stage, self._job, self._accepted = Stage.READY, job, False
+        self.stage, self._job, self._accepted = SearchtoStage.READY, job, False
         starts = Starts.RESTART if self.leaving is None else Starts.LINE
         self.post(Prepare(starts, job, proved.proof))
 
 
-def searchto_prompt(stage: Stage, snapshot: Snapshot, trouble: str, start: str, *, out: bool = False) -> str:
+def searchto_prompt(
+    stage: SearchtoStage, snapshot: Snapshot, trouble: str, start: str, *, out: bool = False
+) -> str:
     """``start`` names what starts a cycle here; ``trouble`` keeps the plan from being started; ``out``: it is
     the way out of the part alone."""
-    if out and stage is Stage.SHOWN and not trouble:
+    if out and stage is SearchtoStage.SHOWN and not trouble:
         return tr("LOOK AT THE WAY OUT OF THE PART; F10 CONFIRMS IT")
-    if out and stage is Stage.READY:
+    if out and stage is SearchtoStage.READY:
         return tr("TO TAKE THE TOOL OUT OF THE PART {start}; ESC TAKES IT BACK").format(start=start)
     words = {
-        Stage.SEARCHING: tr("GOING THROUGH THE PROGRAM; ESC GIVES UP"),
-        Stage.PROVING: tr("PROVING THE RESTART; ESC GIVES UP"),
-        Stage.SHOWN: trouble or tr("COMPARE; LOOK AT THE WAY AND AT WHAT WILL START; F10 CONFIRMS"),
-        Stage.REFUSED: tr("NO START FROM THIS LINE: F8 OR F9 GOES TO THE NEAREST GOOD ONE"),
-        Stage.READY: tr("TO START THE RESTART {start}; ESC TAKES IT BACK").format(start=start),
+        SearchtoStage.SEARCHING: tr("GOING THROUGH THE PROGRAM; ESC GIVES UP"),
+        SearchtoStage.PROVING: tr("PROVING THE RESTART; ESC GIVES UP"),
+        SearchtoStage.SHOWN: trouble or tr("COMPARE; LOOK AT THE WAY AND AT WHAT WILL START; F10 CONFIRMS"),
+        SearchtoStage.REFUSED: tr("NO START FROM THIS LINE: F8 OR F9 GOES TO THE NEAREST GOOD ONE"),
+        SearchtoStage.READY: tr("TO START THE RESTART {start}; ESC TAKES IT BACK").format(start=start),
     }
     return words.get(stage) or _choose(snapshot)
 

@@ -32,7 +32,7 @@ from core.interpreter.restart.restart_retract import Retract, ToolPlace
 
 
 @dataclass(frozen=True, slots=True)
-class Leaving:
+class WayOut:
     """The way out alone: its legs, and at which feed they go in the part. ``trouble``: why there is none."""
 
     begin: Begin
@@ -41,7 +41,7 @@ class Leaving:
     trouble: str = ""
 
 
-def leaving_of(cut: CutRecord, snapshot: Snapshot, job: Job, choices: Choices) -> Leaving:
+def way_out_of(cut: CutRecord, snapshot: Snapshot, job: Job, choices: Choices) -> WayOut:
     """The way out from where the tool stands now."""
     now = now_of(snapshot, job)
     found, tool = retract_from_work(cut, now)
@@ -52,7 +52,7 @@ def leaving_of(cut: CutRecord, snapshot: Snapshot, job: Job, choices: Choices) -
     trouble = jog_words(found, tool)
     if not trouble and not steps:
         trouble = tr("T{tool} STANDS CLEAR OF THE PART ALREADY").format(tool=tool)
-    return Leaving(begin, drawn(steps, snapshot, cut.offsets.get(tool, (0.0, 0.0))), feed, trouble)
+    return WayOut(begin, drawn(steps, snapshot, cut.offsets.get(tool, (0.0, 0.0))), feed, trouble)
 
 
 def now_of(snapshot: Snapshot, job: Job) -> MachineNow:
@@ -108,7 +108,7 @@ def _towards(x: int, z: int) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Beside:
+class StateRow:
     """One row: what is wanted at the line, what is active now, and whether they differ."""
 
     label: str
@@ -127,7 +127,7 @@ class Plan:
 
     found: RestartPoint
     begin: Begin
-    rows: tuple[Beside, ...]
+    rows: tuple[StateRow, ...]
     starts: tuple[str, ...]  # what will turn, flow or switch on
     legs: tuple[Drawn, ...]
     trouble: str = ""  # why it cannot be started as the machine stands
@@ -151,7 +151,7 @@ def plan_of(found: RestartPoint, snapshot: Snapshot, job: Job, choices: Choices)
     )
 
 
-def _passes(found: RestartPoint) -> tuple[Beside, ...]:
+def _passes(found: RestartPoint) -> tuple[StateRow, ...]:
     """The passes and calls in which the line is, beside those that were interrupted."""
     was = found.was.within if found.was is not None else ()
     return tuple(
@@ -160,14 +160,14 @@ def _passes(found: RestartPoint) -> tuple[Beside, ...]:
     )
 
 
-def _pass(wanted: LoopPass | Called, was: LoopPass | Called | None) -> Beside:
+def _pass(wanted: LoopPass | Called, was: LoopPass | Called | None) -> StateRow:
     if isinstance(wanted, Called):
         label = tr("CALLED ON LINE")
         now = str(was.line) if isinstance(was, Called) else NONE
-        return Beside(label, str(wanted.line), now)
+        return StateRow(label, str(wanted.line), now)
     label = tr("PASS OF LINES {first}-{last}").format(first=wanted.first, last=wanted.last)
     same = isinstance(was, LoopPass) and was.first == wanted.first
-    return Beside(label, _of(wanted), _of(was) if same and isinstance(was, LoopPass) else NONE)
+    return StateRow(label, _of(wanted), _of(was) if same and isinstance(was, LoopPass) else NONE)
 
 
 def _of(loop: LoopPass) -> str:
@@ -183,11 +183,11 @@ def _left_out(found: RestartPoint) -> str:
     )
 
 
-def _rows(point: Checkpoint, snapshot: Snapshot) -> tuple[Beside, ...]:
+def _rows(point: Checkpoint, snapshot: Snapshot) -> tuple[StateRow, ...]:
     wanted = (*_places(point, *point.machine), *rows_of(point))
     now = (*_places(point, *snapshot.demand[:2]), *rows_of(_now(snapshot)))
     both = zip(wanted, now, strict=True)
-    return tuple(Beside(w.label, w.value, n.value) for w, n in both if w.key != "comment" or w.value)
+    return tuple(StateRow(w.label, w.value, n.value) for w, n in both if w.key != "comment" or w.value)
 
 
 def _now(snapshot: Snapshot) -> Checkpoint:

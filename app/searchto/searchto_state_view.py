@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QWidget
 from app.desk.translation import tr
 from app.screen.look import CENTRE, LEFT, Look, put
 from app.screen.panel import Panel
-from app.searchto.searchto_plan import Beside
+from app.searchto.searchto_plan import StateRow
 
 DIFFERS = "≠"
 PASS_BEFORE, PASS_AFTER = "Pass before", "Pass after"
@@ -22,7 +22,7 @@ _LABEL, _SIGN = 0.25, 0.61  # shares of a row: where the label ends, where the s
 
 
 @dataclass(frozen=True, slots=True)
-class Near:
+class NearestGood:
     """A good line near one that is not: the key that goes there, its number (0: none) and its text."""
 
     key: str
@@ -36,9 +36,9 @@ class StateShown:
     """Either the rows of a good line, or why a line is not good and which ones are."""
 
     title: str = ""
-    rows: tuple[Beside, ...] = ()
+    rows: tuple[StateRow, ...] = ()
     why: str = ""
-    near: tuple[Near, ...] = ()
+    near: tuple[NearestGood, ...] = ()
     passes: str = ""  # which pass of how many, of a line that is run more than once
 
 
@@ -88,12 +88,12 @@ class StatePanel(Panel):
         u = self.look.u
         high = min(2.7 * u, room.height() / (len(self.shown.rows) + 1))
         size = min(1.9, high / u * 0.78)
-        head = Beside("", tr("AT THE LINE"), tr("NOW"))
+        head = StateRow("", tr("AT THE LINE"), tr("NOW"))
         for number, row in enumerate((head, *self.shown.rows)):
             box = QRectF(room.x(), room.y() + number * high, room.width(), high)
             self._row(painter, box, row, size, head=number == 0)
 
-    def _row(self, painter: QPainter, box: QRectF, row: Beside, size: float, *, head: bool) -> None:
+    def _row(self, painter: QPainter, box: QRectF, row: StateRow, size: float, *, head: bool) -> None:
         look, u = self.look, self.look.u
         label, sign = _LABEL * box.width(), _SIGN * box.width()
         differs = row.differs and not head
@@ -123,7 +123,7 @@ class StatePanel(Panel):
             box = QRectF(room.x(), room.y() + (11 + 9.4 * number) * u, room.width(), 8.4 * u)
             self._near(painter, box, near)
 
-    def _near(self, painter: QPainter, box: QRectF, near: Near) -> None:
+    def _near(self, painter: QPainter, box: QRectF, near: NearestGood) -> None:
         look, u = self.look, self.look.u
         painter.fillRect(box, look.colour("key"))
         painter.setPen(look.colour("accent" if near.line else "soft"))

@@ -21,9 +21,9 @@ from app.screen.look import LEFT, Look, put
 from app.screen.page_base import Host, KeyActions, Page
 from app.screen.panel import Panel
 from app.screen.program_listing import Listing
-from app.searchto.searchto_model import SearchtoModel, Stage
-from app.searchto.searchto_plan import Leaving, Plan
-from app.searchto.searchto_state_view import PASS_AFTER, PASS_BEFORE, Near, StatePanel, StateShown
+from app.searchto.searchto_model import SearchtoModel, SearchtoStage
+from app.searchto.searchto_plan import Plan, WayOut
+from app.searchto.searchto_state_view import PASS_AFTER, PASS_BEFORE, NearestGood, StatePanel, StateShown
 from core.executor.snapshot import Snapshot
 
 # --- What is typed to find a line.
@@ -234,7 +234,7 @@ class SearchtoPage(Page):
             return self._state(plan)
         if model.leaving is not None:
             return StateShown(tr("THE WAY OUT OF THE PART"), (), model.leaving.trouble)
-        if model.stage is Stage.SEARCHING:
+        if model.stage is SearchtoStage.SEARCHING:
             words = tr("GOING THROUGH THE PROGRAM TO LINE {line}").format(line=line)
             return StateShown(f"{words}  ·  {model.finder.worker.reached}")
         return StateShown(tr("ENTER REBUILDS THE STATE OF LINE {line}").format(line=line))
@@ -246,11 +246,11 @@ class SearchtoPage(Page):
         words = tr("PASS {number} OF {count}").format(number=visit.number, count=visit.of)
         return StateShown(f"{title}, {words}", plan.rows, passes=words)
 
-    def _near(self, key: str, label: str, line: int) -> Near:
+    def _near(self, key: str, label: str, line: int) -> NearestGood:
         if not line:
-            return Near(key, tr("{which}: NONE").format(which=label), 0, "")
+            return NearestGood(key, tr("{which}: NONE").format(which=label), 0, "")
         words = tr("{which}: LINE {line}").format(which=label, line=line)
-        return Near(key, words, line, self.model.cursor.lines[line - 1].strip())
+        return NearestGood(key, words, line, self.model.cursor.lines[line - 1].strip())
 
     def _show_plan(self) -> None:
         model, plan = self.model, self.model.plan
@@ -267,13 +267,13 @@ class SearchtoPage(Page):
             choices.append(tr("F5: WITH COOLANT") if model.choices.coolant else tr("F5: WITHOUT COOLANT"))
         trouble = plan.trouble or plan.warning
         starts = plan.starts or (tr("NOTHING BUT THE SLIDES"),)
-        self.starts.show_starts(starts, choices, trouble, confirmed=model.stage is Stage.READY)
+        self.starts.show_starts(starts, choices, trouble, confirmed=model.stage is SearchtoStage.READY)
 
-    def _show_leaving(self, leaving: Leaving) -> None:
+    def _show_leaving(self, leaving: WayOut) -> None:
         self.path.show_approach(leaving.legs)
         told = tr("THE TOOL LEAVES THE PART AT {feed}").format(feed=leaving.feed)
         choices = () if leaving.trouble else (told, tr("H HOLDS IT ON ITS WAY"))
-        ready = self.model.stage is Stage.READY
+        ready = self.model.stage is SearchtoStage.READY
         only = () if leaving.trouble else (tr("NOTHING BUT THE SLIDES"),)
         self.starts.show_starts(only, choices, leaving.trouble, confirmed=ready)
 

@@ -92,7 +92,7 @@ class PartCounter:
     def aim(self, target: int) -> None:
         """So many parts, 0: no target. Raises StoreError when it is not kept."""
         self.target, self._last_told = target, -1
-        self.keep.keep_setting(_key(self.program), target or None)
+        self.keep.save_setting(_key(self.program), target or None)
 
     def correct(self, by: int) -> None:
         """Parts that were made otherwise, or are scrap. Raises StoreError when it is not kept."""

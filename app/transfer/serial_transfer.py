@@ -273,7 +273,7 @@ class SerialTransfer(SpecialFunction):
         self.settings = replace(ROWS[self.marked][2](self.settings, ports))
         self.desk.clear()
         try:
-            self.keep.keep_setting(KEPT, kept_form(self.settings))
+            self.keep.save_setting(KEPT, kept_form(self.settings))
         except StoreError as error:
             self.desk.refuse(str(error))
 

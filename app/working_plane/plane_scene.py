@@ -62,7 +62,7 @@ class Scene:
         return int(np.searchsorted(self.block, block, side="right"))
 
 
-class SceneSketch:
+class SceneBuilder:
     """Collects blocks that tell where they stand in a working plane."""
 
     def __init__(self) -> None:

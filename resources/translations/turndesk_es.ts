@@ -1959,37 +1959,37 @@
       <translation>ninguna</translation>
     </message>
     <message>
-      <location filename="app/jog/touch_off.py" />
+      <location filename="app/jog/jog_touch_off.py" />
       <source>, alone</source>
       <translation>, sola</translation>
     </message>
     <message>
-      <location filename="app/jog/touch_off.py" />
+      <location filename="app/jog/jog_touch_off.py" />
       <source>TOUCH OFF WITH THE MACHINE AT REST AND READY</source>
       <translation>TOQUE LA HERRAMIENTA CON LA MÁQUINA EN REPOSO Y LISTA</translation>
     </message>
     <message>
-      <location filename="app/jog/touch_off.py" />
+      <location filename="app/jog/jog_touch_off.py" />
       <source>touched Z</source>
       <translation>tocada en Z</translation>
     </message>
     <message>
-      <location filename="app/jog/touch_off.py" />
+      <location filename="app/jog/jog_touch_off.py" />
       <source>touched off, new tool</source>
       <translation>tocada, herramienta nueva</translation>
     </message>
     <message>
-      <location filename="app/jog/touch_off.py" />
+      <location filename="app/jog/jog_touch_off.py" />
       <source>touched Ø</source>
       <translation>tocada en Ø</translation>
     </message>
     <message>
-      <location filename="app/jog/touch_off.py" />
+      <location filename="app/jog/jog_touch_off.py" />
       <source>{axis} IS NOT HOMED: ITS POSITION MEANS NOTHING YET</source>
       <translation>{axis} NO TIENE REFERENCIA: SU POSICIÓN AÚN NO VALE</translation>
     </message>
     <message>
-      <location filename="app/jog/touch_off.py" />
+      <location filename="app/jog/jog_touch_off.py" />
       <source>{axis} would be out of range</source>
       <translation>{axis} quedaría fuera de alcance</translation>
     </message>

@@ -51,7 +51,7 @@ from pathlib import Path
 from app.compose.machine_setup import read_machine, setup_for
 from app.compose.stored_offsets import chosen_offsets
 from app.compose.simulated_backend import simulated
-from app.desk.headless_run import HeadlessRun
+from app.desk.run_without_screen import HeadlessRun
 from core.executor.commands import CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job

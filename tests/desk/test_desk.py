@@ -294,7 +294,7 @@ def _no_workshop() -> LoadingSteps:
 
 def test_a_store_that_fails_in_the_middle_of_a_run_is_told_once(desk: Desk, machine: FakeMachine) -> None:
     trouble = ""
-    desk.unkept = lambda: trouble
+    desk.not_kept = lambda: trouble
     at(machine, State.HOLD)
     desk.look()
     assert "NOT KEPT" not in desk.notice

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from app.desk.headless_run import HeadlessRun, Outcome
+from app.desk.run_without_screen import HeadlessRun, Outcome
 from core.executor.commands import Command, EnableDrives, Home
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import Snapshot, State

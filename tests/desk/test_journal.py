@@ -27,21 +27,21 @@ def test_a_bad_backup_leaves_everything_as_it_was(journal: Journal, tmp_path: Pa
     with pytest.raises(StoreError, match="is not a database"):
         journal.restore(bad)
     journal.hear(Event(0.0, "start", "after"))
-    journal.keep_text("a.nc", b"M30", "so that all is written")
+    journal.save_version("a.nc", b"M30", "so that all is written")
     assert [event.text for event in journal.events("", (), 9)] == ["after", "before"]
     assert journal.trouble == ""
 
 
 def test_a_part_made_meanwhile_is_counted_in_the_restored_store(journal: Journal, tmp_path: Path) -> None:
     journal.hear(Event(0.0, "load", "/programs/pin.nc"))
-    journal.keep_text("pin.nc", b"M30", "test")
+    journal.save_version("pin.nc", b"M30", "test")
     target = tmp_path / "copy.db"
     journal.backup(target)
     book = journal.book()
     before = book.store
     journal.restore(target)
     journal.hear(Event(0.0, "part", "part 1"))
-    journal.keep_text("pin.nc", b"M02", "so that all is written")
+    journal.save_version("pin.nc", b"M02", "so that all is written")
     assert journal.parts("pin.nc") == 1
     assert book.poll() == ""
     assert book.store is not before
@@ -51,7 +51,7 @@ def test_a_part_made_meanwhile_is_counted_in_the_restored_store(journal: Journal
 def test_a_backup_brings_no_interrupted_job_and_takes_none_away(journal: Journal, tmp_path: Path) -> None:
     """Whose tool stands in a part is of this machine and of now."""
     journal.note(broken_off(line=3))
-    journal.keep_text("pin.nc", b"M30", "so that all is written")
+    journal.save_version("pin.nc", b"M30", "so that all is written")
     target = tmp_path / "copy.db"
     journal.backup(target)
     journal.note(broken_off(line=8))
@@ -60,7 +60,7 @@ def test_a_backup_brings_no_interrupted_job_and_takes_none_away(journal: Journal
     again = Journal(tmp_path / "home")
     assert again.left == broken_off(line=8)
     again.note(None)
-    again.keep_text("pin.nc", b"M02", "so that all is written")
+    again.save_version("pin.nc", b"M02", "so that all is written")
     again.restore(target)
     again.close()
     last = Journal(tmp_path / "home")
@@ -69,7 +69,7 @@ def test_a_backup_brings_no_interrupted_job_and_takes_none_away(journal: Journal
 
 
 def test_a_job_that_cannot_be_read_is_none(journal: Journal, tmp_path: Path) -> None:
-    journal.keep_setting(UNDER_WAY, {"line": "eight"})
+    journal.save_setting(UNDER_WAY, {"line": "eight"})
     journal.close()
     again = Journal(tmp_path / "home")
     assert (again.left, again.trouble) == (None, "")
@@ -83,7 +83,7 @@ def test_without_a_store_nothing_is_backed_up_or_restored(tmp_path: Path) -> Non
     for call in (lambda: journal.backup(tmp_path / "x.db"), lambda: journal.restore(tmp_path / "x.db")):
         with pytest.raises(StoreError):
             call()
-    journal.keep_setting("a", 1)
+    journal.save_setting("a", 1)
     assert journal.setting("a") is None
     assert journal.parts("pin.nc") == 0
     journal.close()

@@ -157,9 +157,9 @@ def test_the_same_file_that_means_other_values_in_a_drive_is_a_change(tmp_path: 
     drives = record["drives"]
     assert isinstance(drives, dict)
     assert sorted(drives) == ["X", "Z", "io", "spindle"]
-    kept.keep_setting(key_of(machine), record)
+    kept.save_setting(key_of(machine), record)
     assert differences(machine, kept) == ()
-    kept.keep_setting(key_of(machine), {**record, "drives": {**drives, "Z": "0123456789ab"}})
+    kept.save_setting(key_of(machine), {**record, "drives": {**drives, "Z": "0123456789ab"}})
     (change,) = differences(machine, kept) or ()
     assert change.path.startswith("canopen.nodes.Z")
     assert change.old == "0123456789ab"
@@ -168,5 +168,5 @@ def test_the_same_file_that_means_other_values_in_a_drive_is_a_change(tmp_path: 
 @pytest.mark.parametrize("damaged", [None, 3, {}, {"text": 5}])
 def test_a_record_that_is_none_counts_as_a_first_start(tmp_path: Path, damaged: object) -> None:
     machine, kept = bus_machine(tmp_path), NoPersistence()
-    kept.keep_setting(key_of(machine), damaged)
+    kept.save_setting(key_of(machine), damaged)
     assert differences(machine, kept) is None

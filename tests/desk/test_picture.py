@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from app.path.path_picture import Sketch, sketched
+from app.path.path_picture import PictureBuilder, picture_of
 from app.path.polyline import CHORD_ERROR, Stroke, arc_pieces
 from core.interpreter.actions import SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries
@@ -23,7 +23,7 @@ def move(n: int, kind: Kind, start: tuple[float, float], end: tuple[float, float
 
 
 def test_lines_share_their_corners() -> None:
-    sketch = Sketch()
+    sketch = PictureBuilder()
     sketch.add(move(1, Kind.RAPID, (10, 5), (8, 1)), 1.0)
     sketch.add(move(2, Kind.FEED, (8, 1), (8, -20)), 3.0)
     picture = sketch.picture()
@@ -34,14 +34,14 @@ def test_lines_share_their_corners() -> None:
 
 
 def test_bounds_are_of_what_is_cut() -> None:
-    sketch = Sketch()
+    sketch = PictureBuilder()
     sketch.add(move(1, Kind.RAPID, (100, 90), (8, 1)), 1.0)
     sketch.add(move(2, Kind.FEED, (8, 1), (6, -20)), 3.0)
     assert sketch.picture().bounds == (-20, 1, 6, 8)
 
 
 def test_no_blocks_make_an_empty_picture() -> None:
-    picture = Sketch().picture()
+    picture = PictureBuilder().picture()
     assert picture.blocks == 0
     assert picture.bounds == (0, 0, 0, 0)
     assert picture.time_left(1, 0.0) == 0.0
@@ -50,21 +50,21 @@ def test_no_blocks_make_an_empty_picture() -> None:
 def test_the_offset_of_the_tool_is_taken_out_and_the_shift_left_in() -> None:
     modal = Modal(spindle=1, tool_x=-50.0, tool_z=-200.0)
     block = move(1, Kind.FEED, (5, 0), (5, -3), modal=modal, offset_x=-50.0, offset_z=-230.0)
-    sketch = Sketch()
+    sketch = PictureBuilder()
     sketch.add(block, 1.0)
     assert sketch.picture().z.tolist() == [-30, -33]
     assert sketch.picture().x.tolist() == [5, 5]
 
 
 def test_another_tool_jumps() -> None:
-    sketch = Sketch()
+    sketch = PictureBuilder()
     sketch.add(move(1, Kind.FEED, (5, 0), (5, -3)), 1.0)
     sketch.add(move(2, Kind.FEED, (2, 7), (2, 6)), 2.0)
     assert sketch.picture().stroke.tolist() == [Stroke.JUMP, Stroke.TURN, Stroke.JUMP, Stroke.TURN]
 
 
 def test_a_feed_with_the_spindle_standing_is_milled() -> None:
-    sketch = Sketch()
+    sketch = PictureBuilder()
     sketch.add(move(1, Kind.FEED, (5, 0), (5, -3), modal=Modal()), 1.0)
     assert sketch.picture().stroke[-1] == Stroke.MILL
 
@@ -72,7 +72,7 @@ def test_a_feed_with_the_spindle_standing_is_milled() -> None:
 @pytest.mark.parametrize("clockwise", [True, False])
 def test_an_arc_stays_on_its_circle(clockwise: bool) -> None:
     # quarter of a circle of 10 mm about (x, z) = (0, -10), or three quarters the other way
-    sketch = Sketch()
+    sketch = PictureBuilder()
     sketch.add(move(1, Kind.ARC, (0, 0), (10, -10), cx=0.0, cz=-10.0, clockwise=clockwise), 1.0)
     picture = sketch.picture()
     radius = np.hypot(picture.x, picture.z + 10)
@@ -90,7 +90,7 @@ def test_tiny_arcs_are_few_chords() -> None:
 
 
 def test_time_left_counts_within_the_block() -> None:
-    sketch = Sketch()
+    sketch = PictureBuilder()
     sketch.add(move(1, Kind.FEED, (5, 0), (5, -10)), 4.0)
     sketch.add(Block(2, 2, Kind.ACTION, "", 5, -10, 0, 5, -10, 0, 0, 0, TURNING, action=SpindleStop()), 5.0)
     picture = sketch.picture()
@@ -109,7 +109,7 @@ def test_the_watch_may_give_up() -> None:
 
     blocks = ((move(n, Kind.FEED, (5, 0), (5, -1)), 0.0, 1.0) for n in range(1, 5000))
     with pytest.raises(EnoughError):
-        sketched(blocks, watch)
+        picture_of(blocks, watch)
 
 
 def test_series_are_drawn_as_their_blocks_are() -> None:
@@ -121,8 +121,8 @@ def test_series_are_drawn_as_their_blocks_are() -> None:
     x0, z0, x, z = columns
     series = Series(moves[0], [""] * 5, numbers, numbers, x0=x0, z0=z0, x=x, z=z)
     told: list[int] = []
-    rows = sketched([TimedSeries(series, np.array([0.0, *ends[:-1]]), np.array(ends))], told.append)
-    single = sketched([(b, 0.0, end) for b, end in zip(moves, ends, strict=True)], told.append)
+    rows = picture_of([TimedSeries(series, np.array([0.0, *ends[:-1]]), np.array(ends))], told.append)
+    single = picture_of([(b, 0.0, end) for b, end in zip(moves, ends, strict=True)], told.append)
     for name in ("z", "x", "stroke", "first", "ends", "line"):
         assert getattr(rows, name).tolist() == getattr(single, name).tolist()
     assert rows.chord == pytest.approx(single.chord)

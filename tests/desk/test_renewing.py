@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from app.desk.program_loading import LoadingSteps, Phase
-from app.desk.program_renewal import Renewing
+from app.desk.program_renewal import RunningRenewal
 from core.executor.commands import Renew
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot, State
@@ -24,7 +24,7 @@ class Shop(Bench):
         self.renewals = 0
         self.broken = False
         self.session.workshop = LoadingSteps(self.read, self.make, self.prove, self.draw, self.renewed)
-        self.renewing = Renewing(self.session)
+        self.renewing = RunningRenewal(self.session)
         self.session.load(Path("part.nc"))
         self.settled()
         self.posted.clear()
@@ -121,6 +121,6 @@ def test_offsets_that_cannot_be_read_are_told_to_the_executor_too(shop: Shop) ->
 
 def test_without_a_program_there_is_nothing_to_renew() -> None:
     bench = Bench()
-    assert not Renewing(bench.session).begin()
+    assert not RunningRenewal(bench.session).begin()
     assert bench.posted == []
     bench.session.close()

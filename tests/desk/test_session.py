@@ -11,7 +11,7 @@ import pytest
 from app.desk.latest import Watch
 from app.desk.program_loading import Loaded, LoadingSteps, Phase, ProgramLoader, Proved
 from app.desk.prompt_line import prompt, refusal
-from app.path.path_picture import Picture, Sketch
+from app.path.path_picture import Picture, PictureBuilder
 from core.executor.commands import Command, GiveProof, LoadJob
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Snapshot, State
@@ -55,7 +55,7 @@ class Bench:
 
     def draw(self, _job: Job, watch: Watch) -> Picture:
         watch(500)
-        return Sketch().picture()
+        return PictureBuilder().picture()
 
     def settled(self) -> Loaded:
         """The program on the desk once loading is over."""

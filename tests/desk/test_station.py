@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.desk.operator_station import Palms, Pot
+from app.desk.station_hands import Palms, Pot
 
 
 @pytest.mark.parametrize(("gap", "together"), [(0.0, True), (0.5, True), (0.51, False), (3.0, False)])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.desk.alarm_log import KEPT, StopLog, read_back
+from app.desk.alarm_log import KEPT, AlarmLog, read_back
 from core.alarms import CATALOGUE, Code
 from core.executor.raised_alarm import log_line, make_alarm
 from core.executor.snapshot import Event
@@ -22,23 +22,23 @@ def row(event: Event, at: str = "2020-02-03T04:05:06Z") -> EventRow:
 
 
 @pytest.fixture
-def log() -> StopLog:
-    return StopLog(lambda: "09:41:07")
+def log() -> AlarmLog:
+    return AlarmLog(lambda: "09:41:07")
 
 
-def test_the_newest_stands_on_top_with_its_time(log: StopLog) -> None:
+def test_the_newest_stands_on_top_with_its_time(log: AlarmLog) -> None:
     log.hear(event("following", "X is 2.345 off its setpoint", 4))
     log.hear(event("estop"))
     assert [(entry.at, entry.alarm.number) for entry in log.entries] == [("09:41:07", 701), ("09:41:07", 102)]
     assert log.entries[1].alarm.cause == "X is 2.345 off its setpoint"
 
 
-def test_what_is_no_stop_is_none_of_it(log: StopLog) -> None:
+def test_what_is_no_stop_is_none_of_it(log: AlarmLog) -> None:
     log.hear(Event(1.0, "switch", "single block on"))
     assert log.entries == ()
 
 
-def test_it_keeps_as_many_as_it_says_and_no_more(log: StopLog) -> None:
+def test_it_keeps_as_many_as_it_says_and_no_more(log: AlarmLog) -> None:
     for line in range(KEPT + 10):
         log.hear(event("feed-hold", line=line))
     assert len(log.entries) == KEPT
@@ -47,7 +47,7 @@ def test_it_keeps_as_many_as_it_says_and_no_more(log: StopLog) -> None:
     assert log.entries[0].alarm.code == "estop"
 
 
-def test_the_days_before_come_behind_what_was_heard_since(log: StopLog) -> None:
+def test_the_days_before_come_behind_what_was_heard_since(log: AlarmLog) -> None:
     log.hear(event("estop"))
     log.recall([row(event("following", "Z is 1.2 off its setpoint", 7))])
     today, before = log.entries
@@ -81,11 +81,11 @@ def test_every_alarm_comes_back_out_of_the_store(code: Code) -> None:
         ("alarm", ""),
     ],
 )
-def test_what_cannot_be_understood_is_left_out(log: StopLog, kind: str, text: str) -> None:
+def test_what_cannot_be_understood_is_left_out(log: AlarmLog, kind: str, text: str) -> None:
     log.recall([EventRow("rubbish", kind, text, 0)])
     assert log.entries == ()
 
 
-def test_a_time_that_is_none_is_shown_as_it_is(log: StopLog) -> None:
+def test_a_time_that_is_none_is_shown_as_it_is(log: AlarmLog) -> None:
     log.recall([row(event("estop"), at="yesterday")])
     assert log.entries[0].at == "yesterday"

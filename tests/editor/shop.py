@@ -13,7 +13,7 @@ from app.compose.workshop import proof_of
 from app.desk.latest import Watch
 from app.desk.program_loading import LoadingSteps, Proved
 from app.editor.editor import Editor, LeftProgram, nowhere
-from app.path.path_picture import Picture, sketched
+from app.path.path_picture import Picture, picture_of
 from core.executor.job import Job
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import ToolOffset
@@ -66,7 +66,7 @@ def workshop() -> LoadingSteps:
         return Proved(proof_of(job, report), report.diagnostics)
 
     def draw(job: Job, watch: Watch) -> Picture:
-        return sketched(timed_blocks(Timeline.of(job.source, job.setup, lathe)), watch)
+        return picture_of(timed_blocks(Timeline.of(job.source, job.setup, lathe)), watch)
 
     return LoadingSteps(load_source, make_job, proved, draw)
 

@@ -8,7 +8,7 @@ import pytest
 
 from app.compose.workshop import proof_of
 from app.searchto.searchto_model import WAY_OUT
-from app.searchto.searchto_plan import leaving_of
+from app.searchto.searchto_plan import way_out_of
 from core.executor.commands import CycleStart, FeedHold, LoadJob, Prepare, Reset
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Snapshot, Starts, State
@@ -285,7 +285,7 @@ def way_out_alone(rig: Rig) -> None:
     whole = rig.executor._control.status.job
     assert whole is not None
     cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
-    out = leaving_of(cut, rig.shot, whole, Choices())
+    out = way_out_of(cut, rig.shot, whole, Choices())
     assert not out.trouble, out.trouble
     setup = replace(whole.setup, start=rig.shot.demand, begin=out.begin)
     job = make_job(Source("WAY OUT", WAY_OUT), setup)
@@ -398,7 +398,7 @@ def test_a_turned_pass_broken_off_again_on_its_way_off_the_part() -> None:
     whole = rig.executor._control.status.job
     assert whole is not None
     cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
-    out = leaving_of(cut, rig.shot, whole, Choices())
+    out = way_out_of(cut, rig.shot, whole, Choices())
     assert not out.trouble
     assert [leg.label for leg in out.legs] == ["", "1 X", "2 Z", "3 Z"]
 
@@ -411,7 +411,7 @@ def test_in_a_program_that_was_changed_since_no_block_tells_where_the_tool_stand
     assert whole is not None
     assert rig.shot.interrupted_line == 7
     cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
-    out = leaving_of(cut, rig.shot, whole, Choices())
+    out = way_out_of(cut, rig.shot, whole, Choices())
     assert out.trouble.startswith("HOW T1 CAME TO STAND HERE IS NOT KNOWN")
     assert not out.begin.approach
 
@@ -423,7 +423,7 @@ def test_a_way_out_does_not_start_from_another_place_than_was_proved() -> None:
     whole = rig.executor._control.status.job
     assert whole is not None
     cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
-    out = leaving_of(cut, rig.shot, whole, Choices())
+    out = way_out_of(cut, rig.shot, whole, Choices())
     job = make_job(Source("WAY OUT", WAY_OUT), replace(whole.setup, start=rig.shot.demand, begin=out.begin))
     report = prove(job.reading, job.setup, rig.machine)
     mdi(rig, "G91", "X.01F5")

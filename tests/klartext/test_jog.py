@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.compose.machine_files import load_machine, shipped_machine
-from app.jog.jog_speeds import Speeds, directions_of
+from app.jog.jog_speeds import JogSpeeds, directions_of
 from app.offsets.offset_values import Mode
 
 MILL, LATHE = shipped_machine("ac-table-mill"), load_machine()
@@ -32,7 +32,7 @@ def test_x_of_a_lathe_comes_towards_the_operator_and_y_of_a_mill_goes_away() -> 
 
 
 def test_a_slow_table_is_not_asked_for_more_than_it_can() -> None:
-    speeds, mode = Speeds(MILL, speed=3), Mode(metric=True)
+    speeds, mode = JogSpeeds(MILL, speed=3), Mode(metric=True)
     assert speeds.velocity("A", mode, rapid=True) == 60.0  # degrees/s: 3600 a minute
     assert speeds.velocity("A", mode, rapid=False) == 60.0
     assert speeds.velocity("C", mode, rapid=True) == 120.0

@@ -9,7 +9,7 @@ import pytest
 
 from app.desk.machine_status import status_of
 from app.desk.readouts import Readout, lamps_of
-from app.path.path_picture import sketched
+from app.path.path_picture import picture_of
 from app.working_plane.plane_drawing import ASPECTS, Camera, Figure, camera_for, figure
 from app.working_plane.plane_instant import Instant, at_line, plane_words, running
 from app.working_plane.plane_scene import Ink, Scene
@@ -26,7 +26,7 @@ NAMES = ("X", "Y", "Z", "A", "C")
 
 def scene_of(text: str) -> tuple[Scene, list[Block]]:
     blocks = run_file(text).blocks
-    scene = sketched(((block, 0.0, 1.0) for block in blocks), lambda _count: None).scene
+    scene = picture_of(((block, 0.0, 1.0) for block in blocks), lambda _count: None).scene
     assert scene is not None
     return scene, blocks
 
@@ -126,14 +126,14 @@ def test_the_plane_of_a_line(chamfers: tuple[Scene, list[Block]]) -> None:
 
 def test_a_plane_that_stays_shows_the_table_where_it_is_meant() -> None:
     ran = run("PLANE AXIAL A+30 C+20 STAY")
-    scene = sketched(((block, 0.0, 1.0) for block in ran.blocks), lambda _count: None).scene
+    scene = picture_of(((block, 0.0, 1.0) for block in ran.blocks), lambda _count: None).scene
     assert scene is not None
     here = at_line(scene, 3)
     assert (here.axes["A"], here.axes["C"]) == (30.0, 20.0)
 
 
 def test_programs_without_planes_have_no_scene() -> None:
-    assert sketched((), lambda _count: None).scene is None
+    assert picture_of((), lambda _count: None).scene is None
 
 
 # --- the figure ------------------------------------------------------------------------------------------
@@ -242,7 +242,7 @@ def test_the_feed_of_a_swivel_is_degrees(feed: str, shown: tuple[str, str]) -> N
 
 
 def test_a_mills_program_draws_nothing_on_a_lathes_picture(chamfers: tuple[Scene, list[Block]]) -> None:
-    picture = sketched(((block, 0.0, float(n)) for n, block in enumerate(chamfers[1])), lambda _count: None)
+    picture = picture_of(((block, 0.0, float(n)) for n, block in enumerate(chamfers[1])), lambda _count: None)
     assert len(picture.z) == 0
     cut = cut_of(chamfers[1], 2)
     assert picture.chord[cut.n - 1] == pytest.approx(130.0)  # chamfer 2 runs along X of the machine

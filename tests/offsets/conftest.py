@@ -14,7 +14,7 @@ from app.desk.program_loading import LoadingSteps, ProgramLoader, Proved
 from app.offsets.offset_book import OffsetBook
 from app.offsets.secondary_offsets import SecondaryOffsets
 from app.offsets.tool_offsets import ToolOffsets
-from app.path.path_picture import Sketch
+from app.path.path_picture import PictureBuilder
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.job_setup import Setup
@@ -74,7 +74,7 @@ def room(tmp_path: Path) -> Iterator[Room]:
         read,
         lambda source, block_delete: make_job(source, Setup(block_delete=block_delete)),
         lambda job, _watch: Proved(Proof(job.digest, ())),
-        lambda _job, _watch: Sketch().picture(),
+        lambda _job, _watch: PictureBuilder().picture(),
     )
     desk = Desk(
         post=lambda _command: None,

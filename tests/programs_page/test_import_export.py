@@ -19,7 +19,7 @@ from tests.programs_page.test_run_record import Kept
 class Keeping(Kept):
     """Versions are kept."""
 
-    def keep_text(self, program: str, text: bytes, why: str) -> None:
+    def save_version(self, program: str, text: bytes, why: str) -> None:
         self.told.append((program, text, why))
 
 

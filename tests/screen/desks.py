@@ -17,7 +17,7 @@ from app.desk.program_loading import LoadingSteps, ProgramLoader, Proved
 from app.editor.editor import Editor
 from app.editor.versions import Archive, NoArchive
 from app.offsets.offset_effect import Effect
-from app.path.path_picture import Picture, sketched
+from app.path.path_picture import Picture, picture_of
 from core.executor.job import Job
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
@@ -52,7 +52,7 @@ def desk_on(
 
     def draw(job: Job, watch: Watch) -> Picture:
         machine.blocks = list(timed_blocks(Timeline.of(job.source, job.setup, lathe)))
-        return sketched(machine.blocks, watch)
+        return picture_of(machine.blocks, watch)
 
     def renewed(job: Job) -> Job:
         setup = replace(job.setup, secondary=_secondary(built[0]))

@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 
 from app.path.measuring import Point, PointKind
 from app.path.path_aspects import Aspect, DrawnLeg, Tip
-from app.path.path_picture import Picture, Sketch
+from app.path.path_picture import Picture, PictureBuilder
 from app.path.path_view import PathView
 from app.screen.look import Look
 from app.screen.theme import DARK
@@ -33,7 +33,7 @@ SHAFT = [(10.0, 2.0), (5.0, 0.0), (5.0, -20.0), (8.0, -20.0)]  # (x, z)
 
 
 def picture(corners: list[tuple[float, float]], *more: Block) -> Picture:
-    sketch = Sketch()
+    sketch = PictureBuilder()
     pairs = list(itertools.pairwise(corners))
     for n, ((x0, z0), (x, z)) in enumerate(pairs, 1):
         kind = BlockKind.RAPID if n == 1 else BlockKind.FEED

@@ -13,7 +13,7 @@ from app.screen.look import Look
 from app.screen.main_window import MainWindow
 from app.screen.pictures import Stage as Lathe
 from app.screen.theme import DARK
-from app.searchto.searchto_model import SearchtoModel, Stage
+from app.searchto.searchto_model import SearchtoModel, SearchtoStage
 from app.searchto.searchto_view import SearchtoPage
 from core.executor.snapshot import Starts, State
 from tests.screen.lathe import Key, Operator
@@ -72,7 +72,7 @@ def confirmed(operator: Operator) -> None:
     operator.key(Key.Key_F10)
     model_of(operator).settle(10.0)
     operator.pause(0.05)
-    assert model_of(operator).stage is Stage.READY
+    assert model_of(operator).stage is SearchtoStage.READY
 
 
 def test_after_an_estop_the_part_is_finished_from_the_line_that_was_running(operator: Operator) -> None:
@@ -192,7 +192,7 @@ def test_coolant_and_the_way_are_the_operators_choice(operator: Operator) -> Non
     assert page.starts.trouble == ""
     confirmed(operator)
     operator.key(Key.Key_F5)  # another start is not the one that was proved
-    assert model_of(operator).stage is Stage.SHOWN
+    assert model_of(operator).stage is SearchtoStage.SHOWN
     assert operator.shot.prepared != ""
     operator.pause(0.05)
     assert operator.shot.prepared == ""
@@ -209,7 +209,7 @@ def test_the_collet_must_be_as_the_line_has_it(operator: Operator) -> None:
     assert page.starts.trouble.startswith("THE COLLET IS OPEN AND MUST BE CLOSED")
     operator.key(Key.Key_F10)
     assert operator.prompt().startswith("THE COLLET IS OPEN")
-    assert model_of(operator).stage is Stage.SHOWN
+    assert model_of(operator).stage is SearchtoStage.SHOWN
 
 
 def test_searchto_does_not_open_without_a_program_nor_while_one_runs(operator: Operator) -> None:
@@ -246,7 +246,7 @@ def test_a_program_that_is_read_anew_is_searched_anew(operator: Operator) -> Non
     desk.session.settled(30.0)
     operator.pause(0.1)
     page_of(operator)
-    assert model_of(operator).stage is Stage.CHOOSE
+    assert model_of(operator).stage is SearchtoStage.CHOOSE
     operator.palms()
     assert operator.shot.state is State.IDLE
 
@@ -265,7 +265,7 @@ def test_escape_goes_back_step_by_step(operator: Operator) -> None:
     operator.type("7")
     found(operator)
     operator.key(Key.Key_Escape)
-    assert model_of(operator).stage is Stage.CHOOSE
+    assert model_of(operator).stage is SearchtoStage.CHOOSE
     operator.key(Key.Key_Escape)
     assert operator.frame.page is operator.frame.automatic
 

@@ -26,7 +26,7 @@ from tests.screen.hands import Hands, Key
 )
 def test_an_interrupted_job_and_a_full_disk_stand_on_every_page(hands: Hands, page: str) -> None:
     hands.machine.now = replace(hands.machine.now, interrupted=broken_off())
-    hands.desk.unkept = lambda: "the disk is full"
+    hands.desk.not_kept = lambda: "the disk is full"
     hands.desk.waiting = lambda: "20 parts"
     hands.frame.go(page)
     hands.window.refresh()
@@ -40,7 +40,7 @@ def test_an_interrupted_job_and_a_full_disk_stand_on_every_page(hands: Hands, pa
     assert not rows.geometry().intersects(hands.frame.page.geometry())
     assert "NOT KEPT" in [lamp.word for lamp in hands.frame.strip._lamps]
     hands.machine.now = replace(hands.machine.now, interrupted=None)
-    hands.desk.unkept = str
+    hands.desk.not_kept = str
     hands.window.refresh()
     assert not rows.isVisible()
 
@@ -53,7 +53,7 @@ def test_no_target_slips_away_under_a_finger_that_jogs(hands: Hands) -> None:
     hands.desk.snapshot = lambda: replace(now, state=State.JOG)
     hands.window.refresh()
     stands = hands.frame.page.geometry()
-    hands.desk.unkept = lambda: "the disk is full"
+    hands.desk.not_kept = lambda: "the disk is full"
     hands.desk.snapshot = lambda: replace(now, state=State.IDLE)  # between two steps
     time[0] += 1.0
     hands.window.refresh()

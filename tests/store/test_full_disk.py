@@ -136,7 +136,7 @@ def test_a_control_that_comes_up_with_a_full_disk_keeps_its_parts_later(
     tick = threading.Event()
     while journal.trouble:
         tick.wait(0.01)
-    journal.keep_text("pin.nc", b"M30", "so that all is written")
+    journal.save_version("pin.nc", b"M30", "so that all is written")
     assert journal.parts("pin.nc") == 20
     journal.close()
 

@@ -10,7 +10,7 @@ import pytest
 
 from app.compose.machine_setup import read_machine, setup_for
 from app.path.face_and_side import face_point
-from app.path.path_picture import Picture, Sketch, sketched
+from app.path.path_picture import Picture, PictureBuilder, picture_of
 from app.path.polyline import CHORD_ERROR, Polyline, Stroke
 from core.geometry.virtual_mill import Face, PlaneMove, Side
 from core.interpreter.elementary_blocks import Block, Kind
@@ -24,7 +24,7 @@ PROGRAMS = Path(__file__).parents[2] / "programs"
 
 
 def drawn(*blocks: Block) -> Picture:
-    sketch = Sketch()
+    sketch = PictureBuilder()
     for number, block in enumerate(blocks, 1):
         sketch.add(block, float(number))
     return sketch.picture()
@@ -142,7 +142,7 @@ def test_programs_agree_with_the_transformation_of_the_executor(name: str) -> No
     lathe = read_machine(None)
     setup = setup_for(lathe, tools={1: ToolOffset()}, secondary={})
     blocks = list(timed_blocks(Timeline.of(load_source(PROGRAMS / f"{name}.nc"), setup, lathe)))
-    picture = sketched(blocks, lambda _count: None)
+    picture = picture_of(blocks, lambda _count: None)
     polyline = picture.side if name.startswith("side") else picture.face
     assert polyline is not None
     for number, (block, _start, _end) in enumerate(blocks):

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import pytest
 
 from app.compose.machine_files import load_machine
-from app.jog.held_jog import JogHold
-from app.jog.jog_speeds import CONTINUOUS, Speeds
+from app.jog.held_jog import HeldJog
+from app.jog.jog_speeds import CONTINUOUS, JogSpeeds
 from core.executor.commands import Command, Jog, JogStep, JogStop
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.modal_state import Modal
@@ -31,8 +31,8 @@ class Scene:
     state: State = State.IDLE
 
     def __post_init__(self) -> None:
-        speeds = Speeds(load_machine())
-        self.hold = JogHold(
+        speeds = JogSpeeds(load_machine())
+        self.hold = HeldJog(
             speeds,
             LEASE,
             self.posted.append,

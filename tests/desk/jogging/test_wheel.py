@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 import pytest
 
 from app.compose.machine_files import load_machine
-from app.jog.held_jog import JogHold
-from app.jog.jog_handwheel import WheelHold
-from app.jog.jog_speeds import CONTINUOUS, Speeds
+from app.jog.held_jog import HeldJog
+from app.jog.jog_handwheel import JogHandwheel
+from app.jog.jog_speeds import CONTINUOUS, JogSpeeds
 from core.executor.commands import Command, Jog, JogStop, Wheel, WheelOff
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.modal_state import Modal
@@ -46,8 +46,8 @@ class Scene:
             hardware=dataclasses.replace(machine.hardware, analog=wheel if self.there else {}),
         )
         post, say, clock = self.posted.append, self.said.append, lambda: self.t
-        self.hold = JogHold(Speeds(machine), LEASE, post, say, lambda: None, clock, lambda: self.why)
-        self.wheel = WheelHold(machine, self.hold, ("X", "Z", "C"), lambda: self.why)
+        self.hold = HeldJog(JogSpeeds(machine), LEASE, post, say, lambda: None, clock, lambda: self.why)
+        self.wheel = JogHandwheel(machine, self.hold, ("X", "Z", "C"), lambda: self.why)
         self.frames(0.1)
 
     def frames(self, seconds: float) -> None:

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from app.desk.persistence import NoPersistence
-from app.mdi.mdi_model import KEPT, KEY, LONGEST, Typing
+from app.mdi.mdi_model import KEPT, KEY, LONGEST, MdiLine
 from core.store.store_errors import StoreError
 
 
-def press(typing: Typing, keys: Iterable[str]) -> Typing:
+def press(typing: MdiLine, keys: Iterable[str]) -> MdiLine:
     for key in keys:
         assert typing.type(key)
     return typing
 
 
 def test_characters_go_in_at_the_cursor_and_are_taken_out_there() -> None:
-    typing = press(Typing(), ["X", "5", "Left", ".", "Right", "0"])
+    typing = press(MdiLine(), ["X", "5", "Left", ".", "Right", "0"])
     assert (typing.text, typing.at) == ("X.50", 4)
     press(typing, ["Back", "Left", "Left", "Delete"])
     assert (typing.text, typing.at) == ("X5", 1)
@@ -25,18 +25,18 @@ def test_characters_go_in_at_the_cursor_and_are_taken_out_there() -> None:
 
 
 def test_a_line_is_no_longer_than_the_screen_shows() -> None:
-    assert len(press(Typing(), ["X"] * (LONGEST + 5)).text) == LONGEST
+    assert len(press(MdiLine(), ["X"] * (LONGEST + 5)).text) == LONGEST
 
 
 def test_keys_that_mean_nothing_here_are_left_alone() -> None:
-    typing = Typing()
+    typing = MdiLine()
     assert not typing.type("Tab")
     assert not typing.type("F5")
     assert typing.text == ""
 
 
 def test_history_brings_lines_back_and_the_unfinished_one_too() -> None:
-    typing = Typing()
+    typing = MdiLine()
     for line in ("G90", "X1", "X2"):
         typing.put(line)
         typing.done()
@@ -49,7 +49,7 @@ def test_history_brings_lines_back_and_the_unfinished_one_too() -> None:
 
 
 def test_the_same_line_twice_is_kept_once_and_an_empty_one_never() -> None:
-    typing = Typing()
+    typing = MdiLine()
     for line in ("X1", "X1", "  ", "X2"):
         typing.put(line)
         typing.done()
@@ -58,16 +58,16 @@ def test_the_same_line_twice_is_kept_once_and_an_empty_one_never() -> None:
 
 def test_the_history_is_kept_and_what_is_none_is_forgotten() -> None:
     keep = NoPersistence()
-    typing = Typing(keep)
+    typing = MdiLine(keep)
     for number in range(KEPT + 3):
         typing.put(f"X{number}")
         typing.done()
-    again = Typing(keep)
+    again = MdiLine(keep)
     assert (len(again.history), again.history[0], again.history[-1]) == (KEPT, "X3", f"X{KEPT + 2}")
-    keep.keep_setting(KEY, {"X": 1})
-    assert Typing(keep).history == []
-    keep.keep_setting(KEY, ["X1", 7])
-    assert Typing(keep).history == ["X1"]
+    keep.save_setting(KEY, {"X": 1})
+    assert MdiLine(keep).history == []
+    keep.save_setting(KEY, ["X1", 7])
+    assert MdiLine(keep).history == ["X1"]
 
 
 def test_a_store_that_fails_takes_no_line_away() -> None:
@@ -75,10 +75,10 @@ def test_a_store_that_fails_takes_no_line_away() -> None:
         def setting(self, key: str) -> object:
             raise StoreError(f"{key} is gone")
 
-        def keep_setting(self, key: str, value: object) -> None:
+        def save_setting(self, key: str, value: object) -> None:
             raise StoreError(f"{key} cannot take {value}")
 
-    typing = Typing(Broken())
+    typing = MdiLine(Broken())
     typing.put("X1")
     typing.done()
     assert typing.history == ["X1"]

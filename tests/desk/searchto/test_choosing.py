@@ -8,8 +8,8 @@ import pytest
 
 from app.compose.workshop import rebuilt
 from app.desk.program_loading import Proved
-from app.searchto.searchto_cursor import Cursor
-from app.searchto.searchto_finder import Finder
+from app.searchto.searchto_cursor import LineCursor
+from app.searchto.searchto_finder import LineFinder
 from core.executor.job import Job, Proof, make_job
 from core.interpreter.restart.restart_lines import NoRestart, RestartPoint
 from core.language.source import Source
@@ -19,8 +19,8 @@ LINES = ("G90G94F300", "X1Z1(FACE)", "Z0", "X.5", "z.5(face again)", "M30")
 LIMIT = 10.0
 
 
-def typed(text: str, line: int = 1) -> Cursor:
-    cursor = Cursor(LINES, line)
+def typed(text: str, line: int = 1) -> LineCursor:
+    cursor = LineCursor(LINES, line)
     for key in text:
         assert cursor.type(key)
     return cursor
@@ -54,7 +54,7 @@ def test_a_text_that_is_nowhere_leaves_the_cursor_where_it_is() -> None:
 
 @pytest.mark.parametrize(("line", "there"), [(-5, 1), (0, 1), (4, 4), (99, 6)])
 def test_the_cursor_stays_in_the_program(line: int, there: int) -> None:
-    cursor = Cursor(LINES)
+    cursor = LineCursor(LINES)
     cursor.go(line)
     assert cursor.line == there
 
@@ -76,19 +76,21 @@ ANSWERS: list[object] = []
 
 
 @pytest.fixture
-def finder() -> Finder:
+def finder() -> LineFinder:
     ANSWERS.clear()
-    return Finder(rebuilt, lambda job, _watch: Proved(Proof(job.digest, ())), ANSWERS.append, ANSWERS.append)
+    return LineFinder(
+        rebuilt, lambda job, _watch: Proved(Proof(job.digest, ())), ANSWERS.append, ANSWERS.append
+    )
 
 
-def answer(finder: Finder) -> object:
+def answer(finder: LineFinder) -> object:
     finder.worker.settle(LIMIT)
     (found,) = ANSWERS
     ANSWERS.clear()
     return found
 
 
-def test_lines_are_found_one_after_the_other(finder: Finder) -> None:
+def test_lines_are_found_one_after_the_other(finder: LineFinder) -> None:
     part = job("\n".join(LINES) + "\n")
     finder.find(part, 4)
     assert isinstance(answer(finder), RestartPoint)
@@ -101,7 +103,7 @@ def test_lines_are_found_one_after_the_other(finder: Finder) -> None:
     finder.worker.close()
 
 
-def test_what_was_given_up_never_answers_and_the_next_line_is_found(finder: Finder) -> None:
+def test_what_was_given_up_never_answers_and_the_next_line_is_found(finder: LineFinder) -> None:
     long = job("G90G94F300\nX1Z1\nLS90000\nX1\nX2\nLF\nX1\nM30\n")
     finder.find(long, 7)
     finder.worker.give_up()
@@ -112,7 +114,7 @@ def test_what_was_given_up_never_answers_and_the_next_line_is_found(finder: Find
     finder.worker.close()
 
 
-def test_a_restart_is_proved_on_the_worker(finder: Finder) -> None:
+def test_a_restart_is_proved_on_the_worker(finder: LineFinder) -> None:
     asked: list[str] = []
 
     def prove(job: Job, _watch: object) -> Proved:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.searchto.searchto_plan import jog_words, leaving_of
+from app.searchto.searchto_plan import jog_words, way_out_of
 from core.executor.interrupted_job import CONTROL_LOST, InterruptedJob
 from core.executor.job import make_job
 from core.executor.snapshot import Snapshot
@@ -82,7 +82,7 @@ def test_the_feed_is_told_and_the_legs_are_in_the_frame_of_the_tool_that_stands_
     cut = StateRebuild(PART, setup(), lambda _count: None).cut
     row = next(n for n, line in zip(cut.n.tolist(), cut.line.tolist(), strict=True) if line == 7)
     snapshot, _ = interrupted(row)
-    out = leaving_of(cut, snapshot, make_job(PART, setup()), Choices())
+    out = way_out_of(cut, snapshot, make_job(PART, setup()), Choices())
     assert (out.trouble, out.feed) == ("", "20.00 in/min")
     assert [(leg.label, round(leg.x / INCH, 3), round(leg.z / INCH, 3)) for leg in out.legs] == [
         ("", 0.6, -0.3),
@@ -95,6 +95,6 @@ def test_the_feed_is_told_and_the_legs_are_in_the_frame_of_the_tool_that_stands_
 def test_a_note_of_a_second_ago_is_told_from_a_place_at_rest() -> None:
     cut = StateRebuild(PART, setup(), lambda _count: None).cut
     before, _ = interrupted(3, why=CONTROL_LOST, where=(0.75 * INCH, -0.1 * INCH, 30.0))
-    assert leaving_of(cut, before, make_job(PART, setup()), Choices()).trouble == ""
+    assert way_out_of(cut, before, make_job(PART, setup()), Choices()).trouble == ""
     moved, _ = interrupted(3, where=(0.75 * INCH, -0.1 * INCH, 30.0))
-    assert leaving_of(cut, moved, make_job(PART, setup()), Choices()).trouble
+    assert way_out_of(cut, moved, make_job(PART, setup()), Choices()).trouble
