@@ -1,13 +1,10 @@
-"""Diagnostics as they come up in a pass through a program, and what every interpreter reports of its pass."""
+"""Diagnostics as they come up in a pass through a program, and the errors that end one."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
-from typing import Protocol
 
-from core.interpreter.job_setup import ToolOffset
-from core.interpreter.modal_state import Modal
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 
 MOST_OF_A_KIND = 100
@@ -106,75 +103,3 @@ def refusal(line: int, column: int, code: str, message: str, hint: str = "") -> 
 def program_error(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
     """The exception that carries an error diagnostic."""
     return ProgramError(refusal(line, column, code, message, hint))
-
-
-MOST_BLOCKS = 5_000_000
-MOST_LINES = 10_000_000
-"""More of either is made by no program that anybody means to run."""
-
-DEEPEST_CALL = 16
-"""Subroutines that may call each other in a chain."""
-
-
-class ToolUse:
-    """Tool numbers asked for so far, in the order of first use, and those whose offset has never been set."""
-
-    def __init__(self) -> None:
-        self.used: list[int] = []
-        self.missing: list[int] = []
-
-    def offset(self, number: int, offsets: Mapping[int, ToolOffset]) -> ToolOffset | None:
-        """The offset of this tool, which is used from now on; None where it has never been set."""
-        if number not in self.used:
-            self.used.append(number)
-        if number not in offsets and number not in self.missing:
-            self.missing.append(number)
-        return offsets.get(number)
-
-
-class HasModal(Protocol):
-    """The state that the blocks of a pass leave behind."""
-
-    modal: Modal
-
-
-class PassReport:
-    """What every interpreter reports of its pass; all of it grows while blocks are taken."""
-
-    _state: HasModal  # each dialect has its own
-
-    def __init__(self, log: Log) -> None:
-        self._log = log
-        self._tools = ToolUse()
-        self._stopped = False  # an error has been met: no more blocks
-
-    @property
-    def diagnostics(self) -> list[Diagnostic]:
-        """All findings so far, those of reading the program first."""
-        return self._log.found
-
-    @property
-    def failed(self) -> bool:
-        """Whether there is an error among the findings so far."""
-        return bool(self._log.errors)
-
-    @property
-    def modal(self) -> Modal:
-        """The state after the last block that was taken."""
-        return self._state.modal
-
-    @property
-    def used_tools(self) -> list[int]:
-        """Tool numbers asked for so far, in the order of first use."""
-        return self._tools.used
-
-    @property
-    def missing_tools(self) -> list[int]:
-        """Those of them whose offset has never been set."""
-        return self._tools.missing
-
-    def _stop_endless(self, line: int, hint: str) -> None:
-        """A program that makes more than anybody runs ends at this line."""
-        self._stopped = True
-        text = f"The program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
-        self._log.add(refusal(line, 0, "too-many-blocks", text, hint))

@@ -2,93 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from typing import TYPE_CHECKING
 
-from core.interpreter.checkpoint import Checkpoint
-from core.interpreter.elementary_blocks import Block, Series
+from core.interpreter.interpretation import Interpretation, RefusedPass
 from core.interpreter.job_setup import Setup
-from core.interpreter.modal_state import Modal
-from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, Source
 
 if TYPE_CHECKING:
     from core.interpreter.omniturn.conditional_calls import Branching, Guide
+    from core.interpreter.omniturn.omniturn_interpreter import Interpreter as OmniTurnPass
     from core.interpreter.omniturn.omniturn_program import Program
 
 
-class RefusedPass:
-    """``core.interpreter.dialects.Interpretation`` of nothing."""
-
-    source_blocks = 0
-    used_tools: Sequence[int] = ()
-    missing_tools: Sequence[int] = ()
-
-    def __init__(self, why: str, hint: str) -> None:
-        self.modal = Modal()
-        self.diagnostics: Sequence[Diagnostic] = (
-            Diagnostic(0, 0, Severity.ERROR, "machine-kind", why, hint),
-        )
-
-    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
-        """None."""
-        del to_first_error
-        return iter(())
-
-
 _LATHE_AXES = 3
-
-
-class Interpretation(Protocol):
-    """One pass through a program, in whatever language. It raises nothing: see ``diagnostics``."""
-
-    @property
-    def source_blocks(self) -> int:
-        """Lines that hold more than a comment."""
-        ...
-
-    @property
-    def diagnostics(self) -> Sequence[Diagnostic]:
-        """All findings so far, those of reading the text first; grows while blocks are taken."""
-        ...
-
-    @property
-    def modal(self) -> Modal:
-        """The state after the last block that was taken."""
-        ...
-
-    @property
-    def used_tools(self) -> Sequence[int]:
-        """Tool numbers asked for so far, in the order of first use."""
-        ...
-
-    @property
-    def missing_tools(self) -> Sequence[int]:
-        """Those of them whose offset has never been set."""
-        ...
-
-    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
-        """The elementary blocks, made as they are asked for. To be called once."""
-        ...
-
-
-@runtime_checkable
-class MakesSeries(Protocol):
-    """An interpretation that can also hand on whole series of moves; the blocks are the same."""
-
-    def series(self) -> Iterator[Block | Series]:
-        """``blocks``, series of straight moves in one. To be called once, instead of it."""
-        ...
-
-
-class MdiPass(Interpretation, Protocol):
-    """One line of MDI."""
-
-    @property
-    def checkpoint(self) -> Checkpoint:
-        """What the next line inherits."""
-        ...
 
 
 PassFactory = Callable[[Setup], Interpretation]
@@ -113,7 +41,7 @@ class _OmniTurn:
         return Interpreter(self.program.for_one_pass(), setup)
 
 
-def line_alone(source: Source, setup: Setup) -> MdiPass:
+def line_alone(source: Source, setup: Setup) -> OmniTurnPass:
     """One line of MDI, beginning with what ``setup.begin`` says; MDI speaks OmniTurn alone."""
     from core.interpreter.omniturn.mdi_line import read_single
     from core.interpreter.omniturn.omniturn_interpreter import Interpreter
@@ -213,8 +141,3 @@ class ReadProgram:
 def interpretation(source: Source, setup: Setup) -> Interpretation:
     """One pass through a program that is read for it alone."""
     return ReadProgram(source, strict=setup.strict).begin(setup)
-
-
-def blocks_and_series(interpreter: Interpretation) -> Iterator[Block | Series]:
-    """The elementary blocks as whoever goes through a whole program takes them: in series where there are."""
-    return interpreter.series() if isinstance(interpreter, MakesSeries) else interpreter.blocks()

@@ -11,8 +11,9 @@ from itertools import chain
 from typing import NamedTuple
 
 from core.interpreter.actions import Action, Collet, Dwell, ProgramEnd, SpindleLock, SpindleRun, SpindleStop
-from core.interpreter.dialects import Interpretation, ReadProgram, blocks_and_series
+from core.interpreter.dialects import ReadProgram
 from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries
+from core.interpreter.interpretation import Interpretation
 from core.interpreter.job_setup import Setup
 from core.interpreter.path_sections import SectionEnds
 from core.language.diagnostics import Diagnostic, Severity
@@ -163,7 +164,7 @@ class Timeline:
         if ideal:
             limits = replace(limits, amax=(_AT_ONCE,) * len(limits.amax))
         self._planner = ChunkPlanner(limits, rpm_max=machine.spindle.rpm_max)
-        self._source = blocks_and_series(self.interpreter)
+        self._source = self.interpreter.series()
         self._back: Block | Series | None = None  # what ended a motion and is still to come
         self._moving = BlocksInMotion()
         self._ends = SectionEnds()

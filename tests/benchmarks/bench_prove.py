@@ -16,7 +16,7 @@ from functools import partial
 from pathlib import Path
 
 from app.compose.machine_setup import read_machine, setup_for
-from core.interpreter.dialects import blocks_and_series, interpretation
+from core.interpreter.dialects import interpretation
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.language.source import Source
 from core.proving.prove_program import prove
@@ -43,7 +43,7 @@ def loop(passes: int) -> str:
 
 def interpreted(source: Source, setup: Setup) -> None:
     """Go through all blocks, and do nothing with them."""
-    deque(blocks_and_series(interpretation(source, setup)), maxlen=0)
+    deque(interpretation(source, setup).series(), maxlen=0)
 
 
 def median_of(work: Callable[[], object]) -> float:

@@ -183,5 +183,5 @@ def test_a_program_of_the_lathes_own_language_runs_in_mm_there_and_is_warned(
     loaded = bench.desk.session.settled(60.0)
     assert [d.code for d in loaded.diagnostics] == ["units-unnamed"]
     assert loaded.job is not None
-    proved = bench.desk.attached(Editor).bench.workshop.make_job(loaded.job.source, False)
+    proved = bench.desk.attached(Editor).steps.make_job(loaded.job.source, False)
     assert proved.digest == loaded.job.digest

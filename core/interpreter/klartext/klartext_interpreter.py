@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from core.geometry.mill_kinematics import Kinematics
 from core.geometry.rotation_frames import Vector
 from core.interpreter.actions import ProgramEnd, ProgramStop
-from core.interpreter.diagnostic_log import MOST_BLOCKS, MOST_LINES, Log, PassReport
+from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block
+from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES, Interpretation
 from core.interpreter.job_setup import Setup
 from core.interpreter.klartext import m_functions, word_values
 from core.interpreter.klartext.klartext_program import Flow, Program
@@ -16,6 +17,7 @@ from core.interpreter.klartext.klartext_state import ORIGIN, SLIDES, State
 from core.interpreter.klartext.l_moves import move
 from core.interpreter.klartext.plane_functions import plane
 from core.interpreter.klartext.tool_call import tool_call
+from core.interpreter.modal_state import Modal
 from core.language.diagnostics import ProgramError
 from core.language.klartext.klartext_nodes import (
     Assign,
@@ -34,13 +36,8 @@ from core.language.klartext.klartext_nodes import (
 MOST_Q = 999_999_999.999999
 
 
-class Interpreter(PassReport):
-    """One pass through a program. Raises nothing at its user: what is wrong is in ``diagnostics``.
-
-    No block comes after an error, but the pass goes on as well as it can to find the other errors.
-    """
-
-    _state: State
+class Interpreter(Interpretation):
+    """One pass through a program."""
 
     def __init__(self, program: Program, setup: Setup, kinematics: Kinematics) -> None:
         super().__init__(Log(program.problems))
@@ -59,12 +56,13 @@ class Interpreter(PassReport):
         """Where everything stands after the last block that was taken."""
         return self._state
 
-    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
-        """The elementary blocks, made as they are asked for. To be called once.
+    @property
+    def modal(self) -> Modal:
+        """The state after the last block that was taken."""
+        return self._state.modal
 
-        At the first error the blocks end. What is left of the program is then still gone through for its
-        errors before the iterator ends, unless ``to_first_error`` (what runs a program wants no delay).
-        """
+    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+        """The elementary blocks, made as they are asked for. To be called once."""
         flow, lines = self._flow, self._program.lines
         left = MOST_LINES
         while flow.at < flow.end:

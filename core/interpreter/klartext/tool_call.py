@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from core.interpreter.actions import ProgramStop, SpindleRun, SpindleStop, ToolChange
-from core.interpreter.diagnostic_log import ToolUse
 from core.interpreter.elementary_blocks import Block
+from core.interpreter.interpretation import ToolUse
 from core.interpreter.klartext import word_values
 from core.interpreter.klartext.klartext_state import State
 from core.language.klartext import klartext_faults

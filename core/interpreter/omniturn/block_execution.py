@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from core.interpreter.diagnostic_log import ToolUse
 from core.interpreter.elementary_blocks import Block
+from core.interpreter.interpretation import ToolUse
 from core.interpreter.omniturn.c_axis import c_move, lock, positions
 from core.interpreter.omniturn.canned_cycles import blocks_of_moves, check_ready
 from core.interpreter.omniturn.coarse_feeds import coarse_line

@@ -6,8 +6,9 @@ from collections.abc import Hashable, Iterator
 from copy import copy
 from typing import Protocol
 
-from core.interpreter.diagnostic_log import Log, ToolUse
-from core.interpreter.elementary_blocks import Block, Series
+from core.interpreter.diagnostic_log import Log
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.interpretation import ToolUse
 from core.interpreter.job_setup import Setup
 from core.interpreter.omniturn.contour_modification import ContourModifier
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
@@ -15,7 +16,6 @@ from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_state import ContourState
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.program_size import takes_call, terminal
-from core.interpreter.omniturn.tools_and_offsets import warn_of_idle_shifts
 
 
 class Guide(Protocol):
@@ -128,10 +128,5 @@ class Branching(Interpreter):
     def _approach(self) -> Iterator[Block]:
         return iter(()) if self._approached else super()._approach()
 
-    def _pass(self) -> Iterator[Block | Series]:
-        if self._refused:
-            return
-        yield from self._lines()
-        if not self.merged:
-            yield from self._released(self._modifier.end())
-            warn_of_idle_shifts(self._state)
+    def _end(self) -> Iterator[Block]:
+        return iter(()) if self.merged else super()._end()

@@ -8,7 +8,7 @@ from copy import copy
 from typing import NamedTuple
 
 from core.interpreter.checkpoint import FlowLevel, FlowPlace
-from core.interpreter.diagnostic_log import DEEPEST_CALL
+from core.interpreter.interpretation import DEEPEST_CALL
 from core.interpreter.omniturn.omniturn_statement import UNREADABLE, Statement
 from core.language.diagnostics import Diagnostic, Severity
 

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 from core.interpreter.actions import AskInput, ProgramEnd
 from core.interpreter.checkpoint import Checkpoint
-from core.interpreter.diagnostic_log import MOST_BLOCKS, MOST_LINES, Log, PassReport, refusal
+from core.interpreter.diagnostic_log import Log, refusal
 from core.interpreter.elementary_blocks import Block, Series
+from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES, Interpretation
 from core.interpreter.job_setup import Setup
+from core.interpreter.modal_state import Modal
 from core.interpreter.omniturn.block_execution import execute
 from core.interpreter.omniturn.checkpoint_restore import approach_blocks, checkpoint_of, restore
 from core.interpreter.omniturn.coarse_feeds import looks_ahead
@@ -83,13 +85,8 @@ LONG = 5_000
 """Lines from which on moves are made in series where there is no loop either."""
 
 
-class Interpreter(PassReport):
-    """One pass through a program. Raises nothing at its user: what is wrong is in ``diagnostics``.
-
-    No block comes after an error, but the pass goes on as well as it can to find the other errors.
-    """
-
-    _state: State
+class Interpreter(Interpretation):
+    """One pass through a program."""
 
     def __init__(self, program: Program, setup: Setup) -> None:
         super().__init__(Log(program.diagnostics))
@@ -108,12 +105,13 @@ class Interpreter(PassReport):
         """Lines that hold more than a comment."""
         return self._program.blocks
 
-    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
-        """The elementary blocks, made as they are asked for. To be called once.
+    @property
+    def modal(self) -> Modal:
+        """The state after the last block that was taken."""
+        return self._state.modal
 
-        At the first error the blocks end. What is left of the program is then still gone through for its
-        errors before the iterator ends, unless ``to_first_error`` (what runs a program wants no delay).
-        """
+    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+        """The elementary blocks, made as they are asked for. To be called once."""
         for each in chain(self._approach(), self._pass()):
             if self._stopped:
                 if to_first_error:
@@ -144,6 +142,9 @@ class Interpreter(PassReport):
         if self._refused:
             return
         yield from self._lines()
+        yield from self._end()
+
+    def _end(self) -> Iterator[Block]:
         yield from self._released(self._modifier.end())
         warn_of_idle_shifts(self._state)
 

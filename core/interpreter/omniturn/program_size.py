@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
-from core.interpreter.diagnostic_log import DEEPEST_CALL, MOST_BLOCKS, MOST_LINES, refusal
+from core.interpreter.diagnostic_log import refusal
+from core.interpreter.interpretation import DEEPEST_CALL, MOST_BLOCKS, MOST_LINES
 from core.interpreter.omniturn.code_table import FLOW_CODES, Acts
 from core.interpreter.omniturn.loops_and_subroutines import call_target
 from core.interpreter.omniturn.omniturn_program import Program

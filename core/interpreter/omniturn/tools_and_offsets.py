@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from core.interpreter.actions import Preset, ToolChange, WorkShift
-from core.interpreter.diagnostic_log import ToolUse
 from core.interpreter.elementary_blocks import Block
+from core.interpreter.interpretation import ToolUse
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement

@@ -7,9 +7,11 @@ from dataclasses import replace
 from functools import cached_property
 
 from core.interpreter.actions import ProgramEnd, ProgramStop
-from core.interpreter.diagnostic_log import MOST_BLOCKS, MOST_LINES, Log, PassReport
+from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block
+from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES, Interpretation
 from core.interpreter.job_setup import Setup
+from core.interpreter.modal_state import Modal
 from core.interpreter.sinumerik.chamfers_and_rounds import Corners, corner_of
 from core.interpreter.sinumerik.linear_moves import feed_words, straight
 from core.interpreter.sinumerik.modes_and_offsets import leave_offsets, modes, programmed_offset
@@ -35,13 +37,8 @@ _BY_STATE = frozenset(
 )
 
 
-class Interpreter(PassReport):
-    """One pass through a program. Raises nothing at its user: what is wrong is in ``diagnostics``.
-
-    No block comes after an error, but the pass goes on to find the other errors.
-    """
-
-    _state: State
+class Interpreter(Interpretation):
+    """One pass through a program."""
 
     def __init__(self, source: Source, setup: Setup) -> None:
         super().__init__(Log())
@@ -58,6 +55,11 @@ class Interpreter(PassReport):
             bool(line.split(";", 1)[0].strip()) and HEADER.fullmatch(line) is None
             for line in self._source.lines
         )
+
+    @property
+    def modal(self) -> Modal:
+        """The state after the last block that was taken."""
+        return self._state.modal
 
     def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
         """The elementary blocks, made as they are asked for. To be called once."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from core.interpreter.diagnostic_log import DEEPEST_CALL
+from core.interpreter.interpretation import DEEPEST_CALL
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.sinumerik.sinumerik_alarms import refused

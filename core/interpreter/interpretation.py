@@ -1,0 +1,111 @@
+"""One pass through a program in any language: what every interpreter is asked for, and what it reports."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping
+
+from core.interpreter.diagnostic_log import Log, refusal
+from core.interpreter.elementary_blocks import Block, Series
+from core.interpreter.job_setup import ToolOffset
+from core.interpreter.modal_state import Modal
+from core.language.diagnostics import Diagnostic
+
+MOST_BLOCKS = 5_000_000
+MOST_LINES = 10_000_000
+"""More of either is made by no program that anybody means to run."""
+
+DEEPEST_CALL = 16
+"""Subroutines that may call each other in a chain."""
+
+
+class ToolUse:
+    """Tool numbers asked for so far, in the order of first use, and those whose offset has never been set."""
+
+    def __init__(self) -> None:
+        self.used: list[int] = []
+        self.missing: list[int] = []
+
+    def offset(self, number: int, offsets: Mapping[int, ToolOffset]) -> ToolOffset | None:
+        """The offset of this tool, which is used from now on; None where it has never been set."""
+        if number not in self.used:
+            self.used.append(number)
+        if number not in offsets and number not in self.missing:
+            self.missing.append(number)
+        return offsets.get(number)
+
+
+class Interpretation(ABC):
+    """One pass. It raises nothing at its user: what is wrong is in ``diagnostics``.
+
+    No block comes after an error, but the pass goes on as well as it can to find the other errors. All that
+    it reports grows while blocks are taken.
+    """
+
+    def __init__(self, log: Log) -> None:
+        self._log = log
+        self._tools = ToolUse()
+        self._stopped = False  # an error has been met: no more blocks
+
+    @abstractmethod
+    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+        """The elementary blocks, made as they are asked for. To be called once.
+
+        At the first error the blocks end. What is left of the program is then still gone through for its
+        errors before the iterator ends, unless ``to_first_error`` (what runs a program wants no delay).
+        """
+
+    def series(self) -> Iterator[Block | Series]:
+        """The same, for whoever goes through all of a program: straight moves in series where there are."""
+        return self.blocks()
+
+    @property
+    @abstractmethod
+    def source_blocks(self) -> int:
+        """Lines that hold more than a comment."""
+
+    @property
+    @abstractmethod
+    def modal(self) -> Modal:
+        """The state after the last block that was taken."""
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """All findings so far, those of reading the program first."""
+        return self._log.found
+
+    @property
+    def failed(self) -> bool:
+        """Whether there is an error among the findings so far."""
+        return bool(self._log.errors)
+
+    @property
+    def used_tools(self) -> list[int]:
+        """Tool numbers asked for so far, in the order of first use."""
+        return self._tools.used
+
+    @property
+    def missing_tools(self) -> list[int]:
+        """Those of them whose offset has never been set."""
+        return self._tools.missing
+
+    def _stop_endless(self, line: int, hint: str) -> None:
+        """A program that makes more than anybody runs ends at this line."""
+        self._stopped = True
+        text = f"The program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
+        self._log.add(refusal(line, 0, "too-many-blocks", text, hint))
+
+
+class RefusedPass(Interpretation):
+    """A program that this machine cannot run at all: one finding, and no block."""
+
+    source_blocks = 0
+    modal = Modal()
+
+    def __init__(self, why: str, hint: str) -> None:
+        super().__init__(Log([refusal(0, 0, "machine-kind", why, hint)]))
+
+    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+        """None."""
+        del to_first_error
+        return iter(())
