@@ -220,6 +220,8 @@ class PromptAnswers:
             elif event.kind == "uncounted":
                 self.say(f"NOT COUNTED AS A PART: {event.text}")
         if snapshot.start_refused != self._refused:
+            if self.notice == f"NO START: {self._refused}":
+                self.notice = ""  # it is not so any more
             self._refused = snapshot.start_refused
             if self._refused:
                 self.say(f"NO START: {self._refused}")

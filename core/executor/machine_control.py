@@ -55,6 +55,7 @@ class MachineControl:
         self.disturbance = OutputsWatch(context, self.program_run)
         self.announcement.sources += [self._spindle_starts, self.disturbance.starts]
         self._giving_up = False
+        self._hindered = ""  # by what a start was kept, a tick ago
 
     @property
     def state(self) -> State:
@@ -107,6 +108,14 @@ class MachineControl:
         if why:
             self._context.log("refused", why)
         return bool(why)
+
+    def _forget_refusal(self) -> None:
+        """What kept a start from the machine, and does so no longer, is not told any more."""
+        if self.status.start_refused:
+            now = start_conditions.hindrance(self._context, self.state)
+            if self._hindered == self.status.start_refused != now:
+                self.status.start_refused = ""
+            self._hindered = now
 
     def spindle_switch(self) -> None:
         """From OFF to AUTO by hand: between programs that starts the spindle, under one the palms do."""
@@ -186,6 +195,7 @@ class MachineControl:
     def go_on(self) -> None:
         """Whatever is under way. Raises AlarmError, MotionError, DriverError."""
         self._finish_stopping()
+        self._forget_refusal()
         self.program_run.look()
         if self.cycle is not None and self.state in CYCLE:
             if self._giving_up:

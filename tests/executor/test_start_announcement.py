@@ -336,3 +336,15 @@ def test_no_start_with_the_guard_open_and_none_by_closing_it() -> None:
     rig.sim.machine.set_input("guard", True)
     never_turns(rig, 1.0)
     assert rig.state is State.IDLE
+
+
+def test_a_refusal_ends_with_its_cause() -> None:
+    rig = guarded()
+    rig.sim.machine.set_input("guard", False)
+    rig.until(State.HOLD)
+    rig.post(CycleStart())
+    rig.run(0.5)
+    assert rig.shot.start_refused == "the guard is open: close it"
+    rig.sim.machine.set_input("guard", True)
+    rig.run(0.1)
+    assert rig.shot.start_refused == ""

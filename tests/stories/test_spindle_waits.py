@@ -80,3 +80,30 @@ def test_a_computer_that_was_away_in_a_cut_holds_and_the_palms_go_on(story: Stor
     operator.reaches("RUNNING", "WAITING")
     operator.key("h")
     operator.reaches("FEED HOLD")
+
+
+GUARDED = {"[interlocks]": "[interlocks]\nguard_stops = true"}
+
+
+def test_an_opened_guard_holds_and_closing_it_waits_for_the_palms(story: Story) -> None:
+    operator = story.begins(CUT, tools=TOOLS, changes=GUARDED)
+    operator.drives_on()
+    operator.cycle_start()
+    operator.until(lambda: "guard" in operator.machine["refused"], "refused with its reason")
+    operator.ask("break", name="set_input", values=["guard", True])
+    operator.during(0.5)
+    operator.starts()
+    operator.until(lambda: operator.machine["turning"] == 600, "the spindle")
+    operator.until(lambda: abs(operator.slides[1]) > 1.0, "the cut")
+    operator.ask("break", name="set_input", values=["guard", False])
+    operator.reaches("FEED HOLD")
+    operator.until(lambda: not turns(operator), "at rest")
+    stood = operator.rests()
+    operator.ask("break", name="set_input", values=["guard", True])
+    operator.until(lambda: SAID in operator.prompt, "the announcement")
+    operator.keeps(lambda: not turns(operator), 1.5, "the spindle stands")
+    assert operator.slides == stood
+    operator.cycle_start()
+    operator.until(lambda: operator.machine["turning"] == 600, "the spindle")
+    finished(operator)
+    assert any("604" in text for text in operator.events("stop"))
