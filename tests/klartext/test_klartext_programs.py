@@ -20,7 +20,7 @@ from core.language.klartext import read_line
 from core.language.klartext.canonical_text import written
 from tests.klartext.chamfers import AXIAL, POINTS, SYM_MINUS
 from tests.klartext.running import Ran, run, run_file
-from tests.klartext.test_frames import STANDS
+from tests.klartext.test_plane_frames import STANDS
 
 
 def machine(ran: Ran) -> np.ndarray:
