@@ -47,11 +47,7 @@ class SafetyRan:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Marks what takes long, and tells a story among other tests: it mostly waits, and they reckon."""
-    slow = {HERE / line for line in (HERE / "long.txt").read_text(encoding="utf-8").split("\n")[1:] if line}
-    for item in items:
-        if item.path in slow:
-            item.add_marker(pytest.mark.long)
+    """Tells a story among other tests: it mostly waits, and they reckon."""
     items[:] = _spread(items, HERE / "stories")
 
 

@@ -128,11 +128,6 @@ def test_the_map_names_only_what_is_there() -> None:
     assert sorted(path for path in named if not (HOUSE / path).exists()) == []
 
 
-def test_what_is_listed_as_long_is_there() -> None:
-    listed = (HOUSE / "tests" / "long.txt").read_text(encoding="utf-8").split("\n")[1:-1]
-    assert [name for name in listed if not (HOUSE / "tests" / name).is_file()] == []
-
-
 def test_every_room_is_on_the_map() -> None:
     text = MAP.read_text(encoding="utf-8")
     rooms = {path.parent.relative_to(HOUSE) for room in ROOMS for path in (HOUSE / room).rglob("*.py")}

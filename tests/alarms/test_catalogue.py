@@ -15,6 +15,8 @@ from core.alarms import CATALOGUE, SUBJECTS, Entry, Reaction, by_number
 from core.alarms.alarm_entry import Code, OwnCode
 from core.faults import FaultCode
 
+pytestmark = pytest.mark.long
+
 HOUSE = Path(__file__).parents[2]
 # Words of whoever wrote the control. An operator has slides, drives, blocks and keys.
 OURS = re.compile(r"\b(splice|queue|tick|commit|snapshot|exception|None|Error|executor|socket|ms)\b")

@@ -16,6 +16,8 @@ from core.language.source import Source
 from core.proving.prove_program import prove
 from tests.executor.rig import Rig
 
+pytestmark = pytest.mark.long
+
 FOLDER = Path(__file__).parents[2].parent / "shared" / "conformance" / "omniturn"
 NAMES = (
     "caxis-cross-drill",

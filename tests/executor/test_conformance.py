@@ -15,6 +15,8 @@ from core.language.source import Source
 from core.proving.prove_program import prove
 from tests.executor.rig import Rig
 
+pytestmark = pytest.mark.long
+
 FOLDER = Path(__file__).parents[2].parent / "shared" / "conformance" / "omniturn"
 RADIUS = 0.015 * 25.4
 NAMES = (

@@ -16,6 +16,8 @@ from drivers.clocks import RealClock
 from tests.executor.made import Maker
 from tests.executor.rig import INCH, Rig, unhomed_machine
 
+pytestmark = pytest.mark.long
+
 LONG = "G90G94F300\nX3Z-4\nX0Z0\nX3Z-4\nX0Z0\nM30\n"
 BUSY = "G90G94F300\nM03S1000\nM08\nM25\nX1\nG01F20Z-1\nG02X1.5Z-1.5I1.5K-1\nG04F1\nM13\nM12\nX0Z0\nM30\n"
 

@@ -13,6 +13,8 @@ from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
 from tests.executor.rig import INCH, TICK, Rig, off_line
 
+pytestmark = pytest.mark.long
+
 RAPID = "G90G94F300\nX3Z-4\nX0Z0\nM30\n"
 END = (3 * INCH, -4 * INCH)
 AMAX = 120 * INCH

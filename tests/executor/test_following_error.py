@@ -14,6 +14,8 @@ from core.executor.snapshot import State
 from core.ports import AxisSample
 from tests.executor.rig import Rig
 
+pytestmark = pytest.mark.long
+
 SLOW = "G90G94F300\nG01F2Z-4\nM30\n"  # .85 mm/s
 FEED = "G90G94F300\nG01F20Z-4\nM30\n"  # 8.5 mm/s
 RAPID = "G90G94F300\nX3Z-4\nX0Z0\nM30\n"

@@ -24,6 +24,8 @@ from tests.executor.rig import INCH, Rig
 from tests.executor.test_restart import PART, broken_off, restart
 from tests.interrupted import broken_off as made
 
+pytestmark = pytest.mark.long
+
 CUT = -50.8 - 0.3 * INCH  # machine Z in the middle of line 8
 
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 from tests.executor.model import ExecutorModel
+
+pytestmark = pytest.mark.long
 
 # The test class that hypothesis makes: the same examples at every run, by the suite's own profile.
 TestExecutorModel = ExecutorModel.TestCase

@@ -13,6 +13,8 @@ from core.executor.snapshot import Event, State
 from core.ports import MachinePorts
 from tests.executor.rig import Rig
 
+pytestmark = pytest.mark.long
+
 BUSY = "G90G94F300\nM03S1000\nM08\nM25\nX1\nG01F20Z-1\nG04F1\nM00\nX0Z0\nM30\n"
 ODD = [ValueError, SystemExit, GeneratorExit, MemoryError, ZeroDivisionError]
 CALLS = {

@@ -24,6 +24,8 @@ from core.executor.commands import (
 from core.executor.snapshot import State
 from tests.executor.rig import INCH, Rig
 
+pytestmark = pytest.mark.long
+
 PART = """G90G94F300
 M03S2000
 X1Z-.5

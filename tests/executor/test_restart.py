@@ -20,6 +20,8 @@ from tests.executor import lines
 from tests.executor.lines import TOOLS, mdi
 from tests.executor.rig import INCH, Rig
 
+pytestmark = pytest.mark.long
+
 PART = (
     "G90G94F300G72\nT1\nX1.2Z.2\nM03S900\nM08\nX.8\nG95F.005Z-.2\nZ-.4\nG94F300X1.2\nZ.2\nM09\nM05\n"
     "X2Z2\nM30\n"

@@ -20,6 +20,8 @@ from tests.executor.stepping import has_errors, stepped_through, steps_of
 from tests.interpreter.restart.test_everything import golden_setup
 from tests.worked import FOLDER
 
+pytestmark = pytest.mark.long
+
 ROOT = Path(__file__).parents[2]
 SAMPLES = ROOT / "resources" / "programs"
 LATHE = load_machine()

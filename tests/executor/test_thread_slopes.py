@@ -21,6 +21,8 @@ from core.ports import DriverError
 from drivers.clocks import StepClock
 from tests.executor.rig import INCH, CreepingClock, Rig
 
+pytestmark = pytest.mark.long
+
 TOOLS = {4: ToolOffset()}
 V, A = 127.0, 3048.0  # of the shipped lathe
 START, DEPTH, FIRST = 0.237, 0.231, 0.025  # in; two passes

@@ -18,6 +18,8 @@ from core.interpreter.job_setup import ToolOffset
 from core.motion.axis_limits import FloatArray
 from tests.executor.rig import INCH, CreepingClock, Rig
 
+pytestmark = pytest.mark.long
+
 TOOLS = {4: ToolOffset()}
 LEAD = 0.05  # in
 HEAD = "G90G94F300G73\nM03S600\nT4\nX.3Z.2\nX.237\n"

@@ -19,6 +19,8 @@ from tests.drivers.contract.rig import TICK, Rig
 from tests.drivers.contract.rigs import make
 from tests.executor.rig import Rig as Simulated
 
+pytestmark = pytest.mark.long
+
 CUT = "G90G94F300\nM03S600\nM08\nX.1\nG01F30Z-2\nM30\n"
 
 

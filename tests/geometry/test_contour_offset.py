@@ -14,6 +14,8 @@ from core.geometry.intersections import clearance, distance
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point
 from tests.geometry.contours import CONTOURS, arc, follow, polyline, sampled
 
+pytestmark = pytest.mark.long
+
 
 def test_the_left_of_a_way_outwards_is_away_from_the_spindle() -> None:
     assert offset_element(Line((1, 0), (5, 0)), 0.4) == Line((1, 0.4), (5, 0.4))

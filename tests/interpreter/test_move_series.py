@@ -27,6 +27,8 @@ from core.proving.prove_program import prove
 from tests.interpreter.mutation import SEEDS, mutated
 from tests.interpreter.programs import body, inches, lines, setup
 
+pytestmark = pytest.mark.long
+
 PROGRAMS = sorted((Path(__file__).parents[1] / "programs").glob("*.nc"))
 NEVER = 10**9
 

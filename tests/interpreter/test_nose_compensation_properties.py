@@ -16,6 +16,8 @@ from core.interpreter.elementary_blocks import Block, Kind
 from tests.geometry.contours import sampled
 from tests.interpreter.programs import INCH, Pass, lines, passed, setup
 
+pytestmark = pytest.mark.long
+
 _STEP = st.tuples(
     st.floats(0.02, 0.6),  # length, in
     st.floats(-2.0, 2.0),  # turn before it

@@ -19,6 +19,8 @@ from core.proving.prove_program import prove
 from tests.interpreter.mutation import mutated
 from tests.interpreter.programs import lines, passed, setup
 
+pytestmark = pytest.mark.long
+
 NUMBERS = st.sampled_from(["0", "1", "-1", ".5", "-.25", ".001", "2", "3.12345", "99", "300", "1000"])
 WORD = st.builds(str.__add__, st.sampled_from(list("XZIKRFSTDPC")), NUMBERS)
 G_CODES = [0, 1, 2, 3, 4, 10, 33, 40, 41, 42, 70, 71, 72, 73, 75, 76, 77, 90, 91, 92, 94, 95, 96, 97]

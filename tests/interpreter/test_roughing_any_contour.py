@@ -13,6 +13,8 @@ from core.interpreter.elementary_blocks import Block, Kind
 from tests.interpreter.programs import Pass, passed, setup
 from tests.interpreter.roughing import Bar, contour_of, nearest
 
+pytestmark = pytest.mark.long
+
 _STEP = st.tuples(
     st.floats(0.5, 8.0),  # way
     st.floats(1.0, 12.0),  # depth at its end

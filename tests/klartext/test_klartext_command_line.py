@@ -19,6 +19,8 @@ from tests.klartext.chamfers import AXIAL, POINTS
 from tests.klartext.running import TOOL, whole
 from tests.klartext.table import AC
 
+pytestmark = pytest.mark.long
+
 __all__ = ["home", "offsets", "turndesk"]
 MILL = ("--machine", "ac-table-mill")
 

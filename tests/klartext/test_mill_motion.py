@@ -19,6 +19,8 @@ from core.proving.setpoint_trace import setpoints
 from tests.klartext.chamfers import AXIAL, POINTS
 from tests.klartext.running import TOOL, whole
 
+pytestmark = pytest.mark.long
+
 DT = 0.001
 MILL = shipped_machine("ac-table-mill")
 Array = npt.NDArray[np.float64]

@@ -8,6 +8,8 @@ from app.compose.machine_files import parse_machine
 from core.table_schema import MachineFileError
 from tests.machine.spoil import Place, leaves, path_of, sample, with_value
 
+pytestmark = pytest.mark.long
+
 SAMPLES = (
     "spec",
     "gt75",

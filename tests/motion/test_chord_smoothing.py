@@ -20,6 +20,8 @@ from core.motion.motion_profile import Profile
 from core.motion.window_planner import ChunkPlanner
 from tests.motion.moves import LIMITS, A, T, arc, chords, line, polyline, programs, rounded_chords
 
+pytestmark = pytest.mark.long
+
 GRAIN = 0.00127  # mm: the step of the shipped lathe, .00005 in
 STEPPED = dataclasses.replace(LIMITS, grain=GRAIN)
 

@@ -23,6 +23,8 @@ from core.motion.motion_profile import Profile
 from core.motion.window_planner import ChunkPlanner
 from tests.motion.moves import LIMITS, arc, line, polyline
 
+pytestmark = pytest.mark.long
+
 STEPPED = dataclasses.replace(LIMITS, grain=0.00127)
 # mm: none, what is one point, what is hardly none, parts of a step, a step, chords, moves
 _WAYS = st.sampled_from([0.0, 0.0, 0.0, 1e-12, 5e-8, 1.2e-7, 1e-6, 1e-5, 4e-4, 0.00127, 0.02, 0.3, 5.0])

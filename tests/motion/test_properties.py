@@ -16,6 +16,8 @@ from core.motion.motion_plan import plan, reachable_backward, reachable_forward
 from core.motion.motion_profile import Profile
 from tests.motion.moves import LIMITS, A, T, V, backwards, programs
 
+pytestmark = pytest.mark.long
+
 SLACK = 1.0 + 1e-6  # rounding in the ramps of very short pieces
 
 few = settings(max_examples=60, deadline=None)

@@ -16,6 +16,8 @@ from core.motion.motion_path import PathBuilder, build_path
 from core.motion.motion_plan import plan
 from tests.motion.moves import LIMITS, A, T, arc, line, polyline, programs, rounded_chords
 
+pytestmark = pytest.mark.long
+
 few = settings(max_examples=60, deadline=None)
 moment = st.floats(0.0, 1.0)
 

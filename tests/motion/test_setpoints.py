@@ -18,6 +18,8 @@ from core.motion.motion_profile import SegmentArrays
 from core.ports import Segments
 from tests.motion.moves import LIMITS, A, T, arc, line, polyline, programs
 
+pytestmark = pytest.mark.long
+
 few = settings(max_examples=60, deadline=None)
 
 

@@ -18,6 +18,8 @@ from core.motion.motion_plan import plan
 from core.motion.window_planner import Chunk, ChunkPlanner, sample_positions
 from tests.motion.moves import LIMITS, A, chords, line, polyline, programs, rounded_chords
 
+pytestmark = pytest.mark.long
+
 
 def planned(blocks: list[Block], window: int) -> list[Chunk]:
     """All chunks of a program."""

@@ -19,6 +19,8 @@ from tests.interpreter.test_golden import PROGRAMS, circumstances
 from tests.screen.desks import SAMPLES
 from tests.worked import FOLDER
 
+pytestmark = pytest.mark.long
+
 MACHINE = load_machine(None)
 DT = 0.05
 R = 0.015 * 25.4

@@ -23,6 +23,8 @@ from core.proving.proof_report import Report
 from core.proving.prove_program import prove
 from tests.screen.desks import SAMPLES
 
+pytestmark = pytest.mark.long
+
 MACHINE = load_machine(None)
 HEAD = ("G90G94F300", "T1", "X.5Z.1")
 

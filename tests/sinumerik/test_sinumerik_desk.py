@@ -20,6 +20,8 @@ from core.executor.snapshot import Snapshot, State
 from core.store.store_rows import Kind
 from drivers.clocks import StepClock
 
+pytestmark = pytest.mark.long
+
 MAIN = """\
 N10 G54 G0 X40 Z2 C0
 N20 S900 M3

@@ -18,6 +18,8 @@ from tests.interpreter.restart.again import all_of, begun, of_each_line, told
 from tests.interpreter.test_golden import circumstances
 from tests.worked import FOLDER
 
+pytestmark = pytest.mark.long
+
 ROOT = Path(__file__).parents[3]
 GOLDEN = sorted(path for path in (ROOT / "tests" / "programs").glob("*.nc") if "refuse" not in path.name)
 WORKED = sorted(FOLDER.glob("*.nc")) if FOLDER.is_dir() else []

@@ -24,6 +24,8 @@ from tests.interpreter.programs import ALL_TOOLS, OUTPUTS, setup
 from tests.interpreter.restart.again import of_each_line
 from tests.interpreter.restart.test_everything import GOLDEN, SAMPLES, WORKED, golden_setup
 
+pytestmark = pytest.mark.long
+
 Points = npt.NDArray[np.float64]
 STEP, NEAR, SAME = 0.03, 0.02, 0.004  # mm
 CHIP = 1.1  # mm: so near to where the tool has been its edge has cut
