@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from drivers.lookalikes.grblhal_slides import PeerBlock, Place, Shape, circle, straight
-
-if TYPE_CHECKING:
-    from drivers.lookalikes.grblhal_firmware import Firmware
+from drivers.lookalikes.grblhal_state import ControllerState
 
 # --- The look-alike's modal state, and the words that change it.
 
@@ -72,7 +69,7 @@ _AXES = {"": 7, "X": 1, "Y": 2, "Z": 4}
 _BLOCKING = frozenset(("$X", "$J", "$H", "$HX", "$HY", "$HZ"))  # refused behind a critical alarm
 
 
-def identity(m: Firmware) -> list[str]:
+def identity(m: ControllerState) -> list[str]:
     """What ``$I`` tells; auxiliary ports only where there are any."""
     quirks = m.quirks
     lathe = "LATHE," if m.registers.lathe else ""
@@ -91,8 +88,8 @@ def identity(m: Firmware) -> list[str]:
     ]
 
 
-def answer(m: Firmware, line: str) -> int | None:
-    """Carry a line out: its error, 0 for none; None where the answer comes later."""
+def answer(m: ControllerState, line: str, modes: str) -> int | None:
+    """Carry a line out: its error, 0 for none; None where the answer comes later. ``$G`` tells ``modes``."""
     command = line.partition("=")[0]
     if m.blocking and (command in _BLOCKING):
         return 79
@@ -100,7 +97,7 @@ def answer(m: Firmware, line: str) -> int | None:
         return _home(m, command.removeprefix("$H"))
     if command == "$X":
         return _unlock(m)
-    told = _told(m, line)
+    told = _told(m, line, modes)
     if told:
         m.say("".join(f"{text}\r\n" for text in told))
         return 0
@@ -111,15 +108,15 @@ def answer(m: Firmware, line: str) -> int | None:
     return m.registers.store(int(found[1]), found[2]) if idle else 8
 
 
-def _told(m: Firmware, line: str) -> list[str]:
+def _told(m: ControllerState, line: str, modes: str) -> list[str]:
     if line == "$I":
         return identity(m)
     if line == "$$":
         return m.registers.told()
-    return [m.program.told()] if line == "$G" else []
+    return [modes] if line == "$G" else []
 
 
-def _unlock(m: Firmware) -> int:
+def _unlock(m: ControllerState) -> int:
     if not m.alarm:
         return 0
     if "E" in m.pins:
@@ -131,7 +128,7 @@ def _unlock(m: Firmware) -> int:
     return 0
 
 
-def _home(m: Firmware, letter: str) -> int | None:
+def _home(m: ControllerState, letter: str) -> int | None:
     flags = int(m.registers[22])
     if letter not in _AXES:
         return 3
@@ -150,9 +147,9 @@ __all__ = ["Modes", "Program"]
 class Program:
     """Carries lines out in order, as far as planner and standstills allow."""
 
-    def __init__(self, firmware: Firmware) -> None:
-        self._m = firmware
-        self.modes = Modes(radius="G7" if firmware.quirks.diameter else "G8")
+    def __init__(self, machine: ControllerState) -> None:
+        self._m = machine
+        self.modes = Modes(radius="G7" if machine.quirks.diameter else "G8")
         self.offset = [0.0, 0.0, 0.0]  # G54
         self.executed: list[str] = []  # lines that were carried out
         self.end: Place = (0.0, 0.0)  # where the planner's last block ends
@@ -196,7 +193,7 @@ class Program:
             self.error = self._jogged(line[3:])
             machine.answer(self.error)
         elif line.startswith("$"):
-            error = answer(machine, line)
+            error = answer(machine, line, self.told())
             self.error = error or 0
             if error is not None:
                 machine.answer(error)
