@@ -16,17 +16,27 @@ from drivers.grblhal.grblhal_dialogue import Ask, Runner, Script, Stream
 from drivers.grblhal.grblhal_report import Identity, Report, read_report
 from drivers.grblhal.grblhal_wire import Wire, WireLostError
 
-# --- What the reports of one controller have told, and whether a new one can be true.
-
-
+_LINE = 1024  # bytes; the controller sends no longer line
+_RUNNING, _RESTING, _ASKING = 0.1, 0.2, 0.05  # s between two questions for a report
+_SILENT = 1.0  # s without a report
+_INDEX = 8.0  # s in which a thread may wait for its index: no report, no answer
+_UNANSWERED = 2.0  # s for the answer to a line while the controller does nothing
+_GARBAGE, _WITHIN = 3, 10.0  # unknown lines within s, while nothing is under way
+_SETTING = re.compile(r"\$\d+=.*")
+_ANSWER = re.compile(r"error:(\d+)")
+_ALARM = re.compile(r"ALARM:(\d+)")
+_IDLERS = frozenset(("Check", "Sleep", "Tool"))  # states in which it runs no program of ours
 _LEAP = 1.0  # mm beyond what the slides can do between two reports
 _HOMING, _HOMED = 22, 1  # setting, and the bit of it that switches homing on
 
 
-class Known:
-    """Kept from report to report: each carries only a part."""
+class Controller:
+    """One wire, what is asked of its other end, and what that has told.
 
-    def __init__(self, config: GrblConfig, clock: Clock) -> None:
+    Reports carry only a part each: what they have told is kept from one to the next.
+    """
+
+    def __init__(self, config: GrblConfig, wire: Wire, clock: Clock) -> None:
         self.config = config
         self.clock = clock
         self.identity: Identity | None = None
@@ -43,6 +53,171 @@ class Known:
         self.accessories: tuple[float, str] | None = None  # when they were told, and what is on
         self.diameter: bool | None = None
         self.most_free = 0  # blocks of its planner when that is empty
+        self.stream = Stream(self._write)
+        self.banners = 0  # how many resets have been told
+        self.fault: Fault | str = ""
+        self.lost = False  # for good: start the control again
+        self.alarm = 0
+        self.trusted = True  # the position
+        self.ready = False  # modes verified, nothing wrong
+        self.index_wait = False  # a thread pass is under way: no report may come for seconds
+        self.on_report: Callable[[Report], None] = lambda _: None
+        self.on_void: Callable[[], None] = lambda: None
+        self.runner = Runner()
+        self.expected = False  # a reset of our own
+        self.doubtful = False  # something damaged has been heard: look at all of it
+        self.asked_at: float | None = None  # the oldest question for a report that is open
+        self.answered_at = 0.0
+        self._garbage: deque[float] = deque()
+        self._wire = wire
+        self._inbox = b""
+        self._next_question = 0.0
+        self._sees_overrides = False
+        self._halted = False
+
+    def send(self, line: str, ticket: int = 0) -> Ask:
+        """A line for the controller; its answer comes with later pumps."""
+        return self.stream.send(line, self.clock.now(), ticket)
+
+    def run(self, script: Script, doing: str = "") -> None:
+        """Begin a script; one that is under way is given up."""
+        self.ready, self.expected = False, False
+        self.runner.begin(script, doing, self.clock.now())
+        self._advance()
+
+    @property
+    def doing(self) -> str:
+        """What the present script is for."""
+        return self.runner.doing
+
+    def expect_reset(self) -> None:
+        """The next banner is that of a reset of our own."""
+        self.expected = True
+
+    def see_overrides(self, on: bool) -> None:
+        """Ask plainly: a full report leaves the overrides out when it carries the offsets, as it does."""
+        self._sees_overrides = on
+
+    def question(self, *, full: bool = False) -> None:
+        """Ask for a status report; a full one takes no turn of a plain one that is wanted."""
+        self.realtime(grblhal_codes.FULL if full else grblhal_codes.STATUS)
+        now = self.clock.now()
+        self.asked_at = now if self.asked_at is None else self.asked_at
+        if not (full and self._sees_overrides):
+            self._next_question = now + self._interval()
+
+    def pump(self) -> None:
+        """Read, go on, watch. Never waits, never raises."""
+        if self.lost:
+            return
+        try:
+            self._read()
+            self._advance()
+            self.stream.pump(self.clock.now())
+            self._ask()
+            self._watch()
+        except WireLostError as error:
+            self._gone(error)
+
+    def halt(self) -> None:
+        """From any thread, when nobody pumps any more: hold or end the jog; asked again, reset at rest.
+
+        Bytes that bypass every buffer, straight to the wire: a reset ends spindle and coolant.
+        """
+        self._wire.write(
+            bytes([grblhal_codes.RESET] if self._halted else [grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD])
+        )
+        self._halted = True
+
+    def close(self) -> None:
+        """Let the wire go."""
+        self._wire.close()
+
+    # --- what it is in -------------------------------------------------------------------------------
+
+    @property
+    def busy(self) -> bool:
+        """Whether a script is under way."""
+        return self.runner.busy
+
+    @property
+    def state(self) -> str:
+        """As the last report says it; nothing before the first."""
+        return self.report.state if self.report is not None else ""
+
+    @property
+    def hindrance(self) -> str:
+        """Why nothing may be begun now; empty when it may."""
+        if self.fault:
+            return self.fault
+        if self.alarm == grblhal_codes.HOMING_REQUIRED and not self.busy:
+            return "the controller has to be homed first"
+        if self.busy or not self.ready:
+            return "the controller's modes are being verified"
+        return ""
+
+    def realtime(self, *codes_: int) -> None:
+        """Bytes that bypass every buffer."""
+        self._write(bytes(codes_))
+
+    def fail(self, why: str, code: FaultCode) -> None:
+        """Something is wrong: no more lines, what moves comes to rest, and the operator has to clear it.
+
+        A jog knows no feed hold, and everything else no jog cancel.
+        """
+        if not self.fault:
+            self.fault = Fault(why, code)
+        self.ready = False
+        self.stream.waiting.clear()
+        if not self.lost and self.report is not None and self.report.moves and self.alarm == 0:
+            self.realtime(grblhal_codes.JOG_CANCEL if self.report.state == "Jog" else grblhal_codes.HOLD)
+
+    def void(self) -> None:
+        """Nothing that was handed over counts any more."""
+        self.stream.void()
+        self.index_wait = False
+        self.on_void()
+
+    def hear(self, line: str) -> None:
+        """One whole line. What begins with ``[`` and is not known is somebody else's."""
+        if line.startswith("<"):
+            self._reported(read_report(line), line)
+        elif line == "ok" or _ANSWER.fullmatch(line):
+            self._answer(0 if line == "ok" else int(line[6:]))
+        elif alarm := _ALARM.fullmatch(line):
+            self.alarmed(int(alarm[1]))
+        elif line.startswith("[") and line.endswith("]"):
+            self._told(line)
+        elif _SETTING.fullmatch(line):
+            self.stream.told(line)
+        elif line.lower().startswith("grbl"):
+            self._restarted()
+        elif line and not line.startswith((">", "$")):
+            self.damaged(line)
+
+    def alarmed(self, number: int) -> None:
+        """The controller has locked itself."""
+        self.alarm = number
+        self.trusted = self.trusted and number not in grblhal_codes.LOST
+        self.void()
+        if number != grblhal_codes.HOMING_REQUIRED:
+            self.fail(grblhal_codes.alarm_text(number), grblhal_codes.alarm_code(number))
+        self.ready = False
+
+    def damaged(self, line: str) -> None:
+        """A line that means nothing may have been an answer: counters are never set right by guessing."""
+        now = self.clock.now()
+        self._garbage.append(now)
+        while self._garbage[0] < now - _WITHIN:
+            self._garbage.popleft()
+        moving = self.report is not None and self.report.moves
+        if self.stream.stale or (self.busy and self.identity is None):
+            return
+        if moving or not self.stream.quiet or len(self._garbage) >= _GARBAGE:
+            self.fail(f"the line to the controller is disturbed: {line!r} is no answer", "controller-silent")
+            self.doubtful = True
+
+    # --- what its reports have told ------------------------------------------------------------------
 
     def keep(self, report: Report) -> None:
         """Take over what a report carries."""
@@ -112,123 +287,7 @@ class Known:
         raw = zip(self.letters, report.position or (), strict=False)
         return {letter: place - self.origin.get(letter, 0.0) for letter, place in raw}
 
-
-# --- What the controller says, line by line: sorted, believed or not, and what follows from it.
-
-
-_GARBAGE, _WITHIN = 3, 10.0  # unknown lines within s, while nothing is under way
-_SETTING = re.compile(r"\$\d+=.*")
-_ANSWER = re.compile(r"error:(\d+)")
-_ALARM = re.compile(r"ALARM:(\d+)")
-_IDLERS = frozenset(("Check", "Sleep", "Tool"))  # states in which it runs no program of ours
-
-
-class Hearing(Known):
-    """The receiving half of the conversation. ``write`` puts bytes on the wire."""
-
-    def __init__(self, config: GrblConfig, clock: Clock, write: Callable[[bytes], None]) -> None:
-        super().__init__(config, clock)
-        self.write = write
-        self.stream = Stream(write)
-        self.banners = 0  # how many resets have been told
-        self.fault: Fault | str = ""
-        self.lost = False  # for good: start the control again
-        self.alarm = 0
-        self.trusted = True  # the position
-        self.ready = False  # modes verified, nothing wrong
-        self.index_wait = False  # a thread pass is under way: no report may come for seconds
-        self.on_report: Callable[[Report], None] = lambda _: None
-        self.on_void: Callable[[], None] = lambda: None
-        self.runner = Runner()
-        self.expected = False  # a reset of our own
-        self.doubtful = False  # something damaged has been heard: look at all of it
-        self.asked_at: float | None = None  # the oldest question for a report that is open
-        self.answered_at = 0.0
-        self._garbage: deque[float] = deque()
-
-    @property
-    def busy(self) -> bool:
-        """Whether a script is under way."""
-        return self.runner.busy
-
-    @property
-    def state(self) -> str:
-        """As the last report says it; nothing before the first."""
-        return self.report.state if self.report is not None else ""
-
-    @property
-    def hindrance(self) -> str:
-        """Why nothing may be begun now; empty when it may."""
-        if self.fault:
-            return self.fault
-        if self.alarm == grblhal_codes.HOMING_REQUIRED and not self.busy:
-            return "the controller has to be homed first"
-        if self.busy or not self.ready:
-            return "the controller's modes are being verified"
-        return ""
-
-    def realtime(self, *codes_: int) -> None:
-        """Bytes that bypass every buffer."""
-        self.write(bytes(codes_))
-
-    def fail(self, why: str, code: FaultCode) -> None:
-        """Something is wrong: no more lines, what moves comes to rest, and the operator has to clear it.
-
-        A jog knows no feed hold, and everything else no jog cancel.
-        """
-        if not self.fault:
-            self.fault = Fault(why, code)
-        self.ready = False
-        self.stream.waiting.clear()
-        if not self.lost and self.report is not None and self.report.moves and self.alarm == 0:
-            self.realtime(grblhal_codes.JOG_CANCEL if self.report.state == "Jog" else grblhal_codes.HOLD)
-
-    def void(self) -> None:
-        """Nothing that was handed over counts any more."""
-        self.stream.void()
-        self.index_wait = False
-        self.on_void()
-
-    def hear(self, line: str) -> None:
-        """One whole line. What begins with ``[`` and is not known is somebody else's."""
-        if line.startswith("<"):
-            self._reported(read_report(line), line)
-        elif line == "ok" or _ANSWER.fullmatch(line):
-            self._answer(0 if line == "ok" else int(line[6:]))
-        elif alarm := _ALARM.fullmatch(line):
-            self.alarmed(int(alarm[1]))
-        elif line.startswith("[") and line.endswith("]"):
-            self._told(line)
-        elif _SETTING.fullmatch(line):
-            self.stream.told(line)
-        elif line.lower().startswith("grbl"):
-            self._restarted()
-        elif line and not line.startswith((">", "$")):
-            self.damaged(line)
-
-    def alarmed(self, number: int) -> None:
-        """The controller has locked itself."""
-        self.alarm = number
-        self.trusted = self.trusted and number not in grblhal_codes.LOST
-        self.void()
-        if number != grblhal_codes.HOMING_REQUIRED:
-            self.fail(grblhal_codes.alarm_text(number), grblhal_codes.alarm_code(number))
-        self.ready = False
-
-    def damaged(self, line: str) -> None:
-        """A line that means nothing may have been an answer: counters are never set right by guessing."""
-        now = self.clock.now()
-        self._garbage.append(now)
-        while self._garbage[0] < now - _WITHIN:
-            self._garbage.popleft()
-        moving = self.report is not None and self.report.moves
-        if self.stream.stale or (self.busy and self.identity is None):
-            return
-        if moving or not self.stream.quiet or len(self._garbage) >= _GARBAGE:
-            self.fail(f"the line to the controller is disturbed: {line!r} is no answer", "controller-silent")
-            self.doubtful = True
-
-    # --- inside -------------------------------------------------------------------------------------------
+    # --- lines that have come ------------------------------------------------------------------------
 
     def _told(self, line: str) -> None:
         if self.stream.stale and line.startswith("[GC:"):
@@ -286,84 +345,7 @@ class Hearing(Known):
                 "controller-modes",
             )
 
-
-_LINE = 1024  # bytes; the controller sends no longer line
-_RUNNING, _RESTING, _ASKING = 0.1, 0.2, 0.05  # s between two questions for a report
-_SILENT = 1.0  # s without a report
-_INDEX = 8.0  # s in which a thread may wait for its index: no report, no answer
-_UNANSWERED = 2.0  # s for the answer to a line while the controller does nothing
-
-
-class Controller(Hearing):
-    """One wire and what is known of its other end."""
-
-    def __init__(self, config: GrblConfig, wire: Wire, clock: Clock) -> None:
-        super().__init__(config, clock, self._write)
-        self._wire = wire
-        self._inbox = b""
-        self._next_question = 0.0
-        self._sees_overrides = False
-        self._halted = False
-
-    def send(self, line: str, ticket: int = 0) -> Ask:
-        """A line for the controller; its answer comes with later pumps."""
-        return self.stream.send(line, self.clock.now(), ticket)
-
-    def run(self, script: Script, doing: str = "") -> None:
-        """Begin a script; one that is under way is given up."""
-        self.ready, self.expected = False, False
-        self.runner.begin(script, doing, self.clock.now())
-        self._advance()
-
-    @property
-    def doing(self) -> str:
-        """What the present script is for."""
-        return self.runner.doing
-
-    def expect_reset(self) -> None:
-        """The next banner is that of a reset of our own."""
-        self.expected = True
-
-    def see_overrides(self, on: bool) -> None:
-        """Ask plainly: a full report leaves the overrides out when it carries the offsets, as it does."""
-        self._sees_overrides = on
-
-    def question(self, *, full: bool = False) -> None:
-        """Ask for a status report; a full one takes no turn of a plain one that is wanted."""
-        self.realtime(grblhal_codes.FULL if full else grblhal_codes.STATUS)
-        now = self.clock.now()
-        self.asked_at = now if self.asked_at is None else self.asked_at
-        if not (full and self._sees_overrides):
-            self._next_question = now + self._interval()
-
-    def pump(self) -> None:
-        """Read, go on, watch. Never waits, never raises."""
-        if self.lost:
-            return
-        try:
-            self._read()
-            self._advance()
-            self.stream.pump(self.clock.now())
-            self._ask()
-            self._watch()
-        except WireLostError as error:
-            self._gone(error)
-
-    def halt(self) -> None:
-        """From any thread, when nobody pumps any more: hold or end the jog; asked again, reset at rest.
-
-        Bytes that bypass every buffer, straight to the wire: a reset ends spindle and coolant.
-        """
-        self._wire.write(
-            bytes([grblhal_codes.RESET] if self._halted else [grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD])
-        )
-        self._halted = True
-
-    def close(self) -> None:
-        """Let the wire go."""
-        self._wire.close()
-
-    # --- inside -------------------------------------------------------------------------------------------
+    # --- the wire, and what is watched ---------------------------------------------------------------
 
     def _write(self, data: bytes) -> None:
         if self.lost or not data:
