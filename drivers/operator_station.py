@@ -6,6 +6,7 @@ import dataclasses
 import random
 import threading
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 
 from core.ports import Clock, Station, StationState
 
@@ -111,31 +112,14 @@ class Panel:
 _WINDOW, _PULSE = 0.5, 0.1  # s, of the two-hand relay that the screen stands for
 
 
-class PanelStation:
-    """Hands on one side, ``core.ports.Station`` on the other; any thread may call.
+class StationHands:
+    """What an operator does at a panel; every method may be called from any thread.
 
-    ``estop`` reads the real E-stop where the machine has an input for it; it is pressed when either is.
-    ``wired`` is a station of which there is only a handwheel: it counts on.
+    ``lock`` is that of whoever reads the panel.
     """
 
-    def __init__(self, clock: Clock, estop: Callable[[], bool], wired: Station | None = None) -> None:
-        self._clock = clock
-        self._estop = estop
-        self._wired = wired
-        self._lock = threading.Lock()
-        self._panel = Panel(_WINDOW, _PULSE, seed=0)
-
-    def snapshot(self) -> StationState:
-        """The station now."""
-        with self._lock:
-            state = self._panel.state(self._clock.now())
-        wired = self._wired.snapshot() if self._wired is not None else StationState()
-        return dataclasses.replace(
-            state,
-            estop=state.estop or self._estop(),
-            handwheel=state.handwheel + wired.handwheel,
-            age=max(state.age, wired.age),
-        )
+    def __init__(self, panel: Panel, lock: AbstractContextManager[object], clock: Clock) -> None:
+        self._panel, self._lock, self._clock = panel, lock, clock
 
     def press_left(self) -> None:
         """Left palm button down."""
@@ -153,6 +137,13 @@ class PanelStation:
         """Right palm button up."""
         self._palm("right", down=False)
 
+    def press_start(self) -> None:
+        """Both palms down together and up again."""
+        self.press_left()
+        self.press_right()
+        self.release_left()
+        self.release_right()
+
     def press_hold(self) -> None:
         """Feed hold button down."""
         with self._lock:
@@ -162,16 +153,6 @@ class PanelStation:
         """Feed hold button up."""
         with self._lock:
             self._panel.hold(False, self._clock.now())
-
-    def press_estop(self) -> None:
-        """The screen's E-stop: the control stops everything it can. It is no safety device."""
-        with self._lock:
-            self._panel.estop = True
-
-    def release_estop(self) -> None:
-        """Free again."""
-        with self._lock:
-            self._panel.estop = False
 
     def set_spindle_auto(self, auto: bool) -> None:
         """Spindle AUTO/OFF."""
@@ -200,3 +181,38 @@ class PanelStation:
                 relay.press(which, now)
             else:
                 relay.release(which, now)
+
+
+class PanelStation(StationHands):
+    """Hands on one side, ``core.ports.Station`` on the other; any thread may call.
+
+    ``estop`` reads the real E-stop where the machine has an input for it; it is pressed when either is.
+    ``wired`` is a station of which there is only a handwheel: it counts on.
+    """
+
+    def __init__(self, clock: Clock, estop: Callable[[], bool], wired: Station | None = None) -> None:
+        super().__init__(Panel(_WINDOW, _PULSE, seed=0), threading.Lock(), clock)
+        self._estop = estop
+        self._wired = wired
+
+    def snapshot(self) -> StationState:
+        """The station now."""
+        with self._lock:
+            state = self._panel.state(self._clock.now())
+        wired = self._wired.snapshot() if self._wired is not None else StationState()
+        return dataclasses.replace(
+            state,
+            estop=state.estop or self._estop(),
+            handwheel=state.handwheel + wired.handwheel,
+            age=max(state.age, wired.age),
+        )
+
+    def press_estop(self) -> None:
+        """The screen's E-stop: the control stops everything it can. It is no safety device."""
+        with self._lock:
+            self._panel.estop = True
+
+    def release_estop(self) -> None:
+        """Free again."""
+        with self._lock:
+            self._panel.estop = False

@@ -157,9 +157,12 @@ class CanEncoder:
 
 
 class MeasuredSpindle:
-    """``core.ports.Spindle`` of a bus that measures and turns nothing: an inverter takes its place."""
+    """``core.ports.Spindle`` of a bus that turns nothing, and measures where it has an encoder.
 
-    def __init__(self, encoder: CanEncoder) -> None:
+    An inverter takes its place.
+    """
+
+    def __init__(self, encoder: CanEncoder | None) -> None:
         self._encoder = encoder
 
     def run(self, rpm: float) -> None:
@@ -171,13 +174,13 @@ class MeasuredSpindle:
         """Nothing is turned here."""
 
     def speed(self) -> float:
-        """rpm, signed."""
-        return self._encoder.speed()
+        """rpm, signed; 0 where nothing measures it."""
+        return self._encoder.speed() if self._encoder is not None else 0.0
 
     def angle(self) -> tuple[float, float] | None:
-        """(time, turns); None before the first answer."""
-        return self._encoder.angle()
+        """(time, turns); None without an encoder, and before its first answer."""
+        return self._encoder.angle() if self._encoder is not None else None
 
     def fault(self) -> str:
-        """Why it is not to be believed."""
-        return self._encoder.fault()
+        """Why the encoder is not to be believed."""
+        return self._encoder.fault() if self._encoder is not None else ""

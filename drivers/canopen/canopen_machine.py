@@ -10,7 +10,7 @@ from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_encoder import CanEncoder, MeasuredSpindle
 from drivers.canopen.canopen_objects import DriveState
-from drivers.canopen.canopen_spindle import CanopenSpindle, NoSpindle
+from drivers.canopen.canopen_spindle import CanopenSpindle
 from drivers.canopen.canopen_terminals import CanopenIO
 from drivers.canopen.cia402_drives import Drive402
 from drivers.canopen.spindle_as_c import SpindleC
@@ -58,8 +58,7 @@ class CanopenMachine:
 
     @property
     def _turning(self) -> Spindle:
-        measured = MeasuredSpindle(self.encoder) if self.encoder is not None else None
-        return self.spindle or measured or NoSpindle()
+        return self.spindle or MeasuredSpindle(self.encoder)
 
     @property
     def ports(self) -> MachinePorts:

@@ -139,27 +139,3 @@ class CanopenSpindle:
     def fault(self) -> str:
         """What is wrong with it; empty when well."""
         return self._bus.trouble or (self.drive.trouble and Fault(self.drive.trouble, "spindle"))
-
-
-class NoSpindle:
-    """A bus without a spindle drive: another driver may take its place."""
-
-    def run(self, rpm: float) -> None:
-        """There is nothing to turn. Raises DriverError, unless asked to stop."""
-        if rpm:
-            raise DriverError("there is no spindle drive on this bus; see spindle.driver", "spindle-off")
-
-    def coast(self) -> None:
-        """It does not turn."""
-
-    def speed(self) -> float:
-        """It does not turn."""
-        return 0.0
-
-    def angle(self) -> tuple[float, float] | None:
-        """It has no encoder."""
-        return None
-
-    def fault(self) -> str:
-        """Nothing that could be wrong."""
-        return ""

@@ -9,17 +9,9 @@ import numpy as np
 
 from core.ports import DriverError, Fault, Segments
 from drivers.canopen import canopen_objects as od
-from drivers.canopen.canopen_config import AxisConfig
 from drivers.canopen.canopen_objects import AT_ONCE, BIT_12, CSP, NEW, PP
-from drivers.canopen.cia402_drives import Drive402
+from drivers.canopen.cia402_drives import DrivenAxis
 from drivers.setpoint_queue import SetpointQueue
-
-
-class Fed(Protocol):
-    """One axis with its drive; an axis without one has none."""
-
-    config: AxisConfig
-    drive: Drive402
 
 
 class Follower(Protocol):
@@ -62,7 +54,7 @@ class CspFollower:
     mode = CSP
 
     def __init__(
-        self, axes: Sequence[Fed], indices: Sequence[int], queue: SetpointQueue, period: float
+        self, axes: Sequence[DrivenAxis], indices: Sequence[int], queue: SetpointQueue, period: float
     ) -> None:
         self._axes = axes
         self._indices = indices
@@ -113,7 +105,7 @@ class ProfiledFollower:
 
     mode = PP
 
-    def __init__(self, axes: Sequence[Fed], indices: Sequence[int], queue: SetpointQueue) -> None:
+    def __init__(self, axes: Sequence[DrivenAxis], indices: Sequence[int], queue: SetpointQueue) -> None:
         self._axes = axes
         self._indices = indices
         self._queue = queue

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from core.ports import Fault, Segments, at_rest
 from drivers.canopen.canopen_objects import BIT_12, IP, NEW
-from drivers.canopen.position_modes import Fed
+from drivers.canopen.cia402_drives import DrivenAxis
 from drivers.setpoint_queue import SetpointQueue
 
 # --- From setpoints to PVT records: points of the path in counts, times in whole milliseconds.
@@ -106,7 +106,12 @@ class PvtFollower:
     mode = IP
 
     def __init__(
-        self, axes: Sequence[Fed], indices: Sequence[int], queue: SetpointQueue, ahead: float, record: float
+        self,
+        axes: Sequence[DrivenAxis],
+        indices: Sequence[int],
+        queue: SetpointQueue,
+        ahead: float,
+        record: float,
     ) -> None:
         self._axes = axes
         self._indices = indices  # of these axes in the queue

@@ -8,48 +8,15 @@ from core.ports import DriverError
 from drivers.lookalikes.plant import Plant
 from drivers.lookalikes.plant_config import PlannedFault
 from drivers.lookalikes.servo_axis import Servo
+from drivers.operator_station import StationHands
 
 
-class SimMachine:
+class SimMachine(StationHands):
     """Buttons of the station and faults of the machine; every method may be called from any thread."""
 
     def __init__(self, plant: Plant) -> None:
+        super().__init__(plant.panel, plant.lock, plant.clock)
         self._plant = plant
-
-    # --- the operator's hands -----------------------------------------------------------------------------
-
-    def press_left(self) -> None:
-        """Left palm button down."""
-        self._palm("left", down=True)
-
-    def release_left(self) -> None:
-        """Left palm button up."""
-        self._palm("left", down=False)
-
-    def press_right(self) -> None:
-        """Right palm button down."""
-        self._palm("right", down=True)
-
-    def release_right(self) -> None:
-        """Right palm button up."""
-        self._palm("right", down=False)
-
-    def press_start(self) -> None:
-        """Both palms down together and up again."""
-        self.press_left()
-        self.press_right()
-        self.release_left()
-        self.release_right()
-
-    def press_hold(self) -> None:
-        """Feed hold button down."""
-        with self._plant.lock:
-            self._plant.panel.hold(True, self._plant.clock.now())
-
-    def release_hold(self) -> None:
-        """Feed hold button up."""
-        with self._plant.lock:
-            self._plant.panel.hold(False, self._plant.clock.now())
 
     def press_estop(self) -> None:
         """Hit the E-stop: it latches."""
@@ -60,26 +27,6 @@ class SimMachine:
         with self._plant.lock:
             self._plant.advance()
             self._plant.panel.estop = False
-
-    def set_spindle_auto(self, auto: bool) -> None:
-        """Spindle AUTO/OFF."""
-        with self._plant.lock:
-            self._plant.panel.spindle_auto = auto
-
-    def set_spindle_pot(self, fraction: float) -> None:
-        """Spindle override pot, 0…1."""
-        with self._plant.lock:
-            self._plant.panel.spindle_pot = min(max(fraction, 0.0), 1.0)
-
-    def set_feed_pot(self, fraction: float) -> None:
-        """Feed override pot, 0…1.5."""
-        with self._plant.lock:
-            self._plant.panel.feed_pot = min(max(fraction, 0.0), 1.5)
-
-    def turn_handwheel(self, counts: int) -> None:
-        """Turn the handwheel on by so many counts, signed."""
-        with self._plant.lock:
-            self._plant.panel.handwheel += counts
 
     def set_input(self, name: str, on: bool) -> None:
         """Make an input of the machine file true or false; raises DriverError for an unknown name."""
@@ -188,14 +135,6 @@ class SimMachine:
         with self._plant.lock:
             self._plant.advance()
             return self._plant.spindle.speed
-
-    def _palm(self, which: str, *, down: bool) -> None:
-        with self._plant.lock:
-            relay, now = self._plant.panel.relay, self._plant.clock.now()
-            if down:
-                relay.press(which, now)
-            else:
-                relay.release(which, now)
 
     def _servo(self, axis: str) -> Servo:
         return self._plant.servos[self._plant.names.index(axis)]
