@@ -130,36 +130,28 @@ class AutomaticPage(Page):
 
     def key_actions(self) -> KeyActions:
         """What the page itself does, by key."""
+        looked_at = self._looked_at
         return {
             "F2": self.ask_file,
             "F3": self._edit,
             "F4": self.desk.next_readout,
-            "F5": self._fit,
-            "F6": partial(self._go, page_table.SEARCHTO),
-            "F8": partial(self._go, page_table.TOOLS),
-            "F9": partial(self._go, page_table.SECCMP),
-            "F10": partial(self._go, page_table.SPECIAL),
-            "Zoom in": lambda: self._looked_at.zoom(1),
-            "Zoom out": lambda: self._looked_at.zoom(-1),
+            "F5": looked_at.fit,
+            "F6": partial(self.host.go, page_table.SEARCHTO),
+            "F8": partial(self.host.go, page_table.TOOLS),
+            "F9": partial(self.host.go, page_table.SECCMP),
+            "F10": partial(self.host.go, page_table.SPECIAL),
+            "Zoom in": partial(looked_at.zoom, 1),
+            "Zoom out": partial(looked_at.zoom, -1),
             "Measure": self.path.measure,
-            "View": self._next_view,
-            "Pan left": lambda: self._looked_at.pan(-1, 0),
-            "Pan right": lambda: self._looked_at.pan(1, 0),
-            "Pan up": lambda: self._looked_at.pan(0, -1),
-            "Pan down": lambda: self._looked_at.pan(0, 1),
+            "View": looked_at.next_view,
+            "Pan left": partial(looked_at.pan, -1, 0),
+            "Pan right": partial(looked_at.pan, 1, 0),
+            "Pan up": partial(looked_at.pan, 0, -1),
+            "Pan down": partial(looked_at.pan, 0, 1),
             "Page up": lambda: self.listing.look_at(-self.listing.rows),
             "Page down": lambda: self.listing.look_at(self.listing.rows),
             "Follow": self.listing.follow,
         }
-
-    def _fit(self) -> None:
-        self._looked_at.fit()
-
-    def _next_view(self) -> None:
-        self._looked_at.next_view()
-
-    def _go(self, name: str) -> None:
-        self.host.go(name)
 
     def _edit(self) -> None:
         """The program on the desk, or whatever name stands in the question for a file."""
@@ -168,12 +160,12 @@ class AutomaticPage(Page):
             self.desk.say(NONE_NAMED)
         elif (editor := self.desk.attached(Editor)) is not None:
             editor.wanted = wanted
-            self._go(page_table.EDITOR)
+            self.host.go(page_table.EDITOR)
 
     def ask_file(self) -> None:
         """``FILE TO BE PROCESSED``, unless a program is under way; asked already, the list of programs."""
         if self.files.isVisible():
-            self._go(page_table.PROGRAMS)
+            self.host.go(page_table.PROGRAMS)
         elif self.desk.may_choose():
             self.host.clear_away()
             self.files.ask()

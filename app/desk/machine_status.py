@@ -140,7 +140,7 @@ def _message(snapshot: Snapshot) -> str:
     return snapshot.message or "PROGRAM STOP"
 
 
-# --- Whether the executor still speaks: figures that stand still look exactly like a machine that does.
+# --- whether the control is silent --------------------------------------------------------------------
 
 
 SILENT_AFTER = 1.0  # seconds without another snapshot; the executor makes one every 10 ms

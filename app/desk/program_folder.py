@@ -77,7 +77,7 @@ def _programs(folder: Path) -> Iterator[Path]:
         yield path
 
 
-# --- The file of the program on the desk: whether the disk still holds the text that was read and proved.
+# --- the file on the disk -----------------------------------------------------------------------------
 
 
 LOOK = 2.0  # seconds between two looks at the disk

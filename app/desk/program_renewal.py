@@ -19,7 +19,7 @@ from core.executor.commands import Command, Renew, UseOffsets
 from core.executor.job import Job, outdated
 from core.executor.snapshot import Snapshot, State
 
-# --- The program under way with the offsets of now: proved and drawn while the old one runs.
+# --- while the program runs ---------------------------------------------------------------------------
 
 
 @dataclass(slots=True)

@@ -142,7 +142,7 @@ def _progress(loaded: Loaded) -> str:
     return f"{loaded.phase.value} {loaded.name}{count}"
 
 
-# --- What the desk answers on the prompt line: to the last key, to a refused start, to a disk that fails.
+# --- answers and questions ----------------------------------------------------------------------------
 
 
 HEARD = 100  # events that wait for the next frame; older ones are in the log

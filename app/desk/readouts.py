@@ -11,7 +11,7 @@ from app.desk.translation import tr
 from core.executor.snapshot import Snapshot
 from core.interpreter.working_plane import Swivel
 
-# --- The lit words: the switches of a run, and what is on at the machine.
+# --- lit words ----------------------------------------------------------------------------------------
 
 
 TURNING = 1.0  # rpm above which a spindle is said to turn
@@ -81,7 +81,7 @@ def _collet_lamp(snapshot: Snapshot) -> Lamp:
     return Lamp("COLLET OPEN", lit=True, warn=True)
 
 
-# --- The figures of a mill: in the working plane, to go along its axes, and from home.
+# --- figures of a mill --------------------------------------------------------------------------------
 
 
 ANGLE_PLACES = 3  # the display step of a rotary table
@@ -251,7 +251,7 @@ def _doubled(name: str, value: float, diameter: bool) -> float:
     return 2 * value if name == "X" and diameter else value
 
 
-# --- Feed and spindle as the operator reads them: programmed or commanded, measured, and the overrides.
+# --- feed and spindle ---------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)

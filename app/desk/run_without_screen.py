@@ -4,36 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 from core.executor.commands import Command, CycleStart, EnableDrives, FeedHold, Home, LoadJob, SetSwitch
+from core.executor.executor import Executor
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Snapshot, State
+from core.ports import Clock
 
 TICK = 0.01  # s between two looks at the machine
 PATIENCE = 60.0  # s of machine time after which a wait for an input is given up
 HOMING = 120.0  # s of machine time for all axes; ten inches at a slow 6 in/min are 100
 _PRESSES = 10  # of Cycle Start at one stop, .2 s apart
 UNDER_WAY = frozenset(State) - {State.IDLE, State.DISABLED, State.ESTOP, State.FAULT}
-
-
-class Runner(Protocol):
-    """The executor, as far as a run without a screen needs it."""
-
-    @property
-    def snapshot(self) -> Snapshot: ...
-
-    def post(self, command: Command) -> None: ...
-
-    def tick(self) -> None: ...
-
-
-class Ticks(Protocol):
-    """The clock that the run moves on, or waits for."""
-
-    def now(self) -> float: ...
-
-    def sleep_until(self, t: float) -> None: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,8 +33,8 @@ class HeadlessRun:
 
     def __init__(
         self,
-        executor: Runner,
-        clock: Ticks,
+        executor: Executor,
+        clock: Clock,
         say: Callable[[str], None],
         progress: Callable[[float], None],
         palms: Callable[[], None] | None = None,

@@ -8,7 +8,7 @@ from typing import Protocol
 
 from app.desk.prompt_line import BOTH_UP, ONE_PALM
 
-# --- The simulated operator station as the desk handles it, and its two palm buttons under two hands.
+# --- palm buttons and pots ----------------------------------------------------------------------------
 
 
 TOGETHER = 0.5  # seconds within which the second palm button must follow the first

@@ -30,7 +30,7 @@ def tr(text: str) -> str:
     return text if translate is None else translate(text) or text
 
 
-# --- A catalogue of texts: whole sentences, and sentences with values in them. No Qt.
+# --- the catalogue of texts ---------------------------------------------------------------------------
 
 
 Find = Callable[[str], str]  # the translation of a whole text; empty: it has none

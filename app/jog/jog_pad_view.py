@@ -20,7 +20,7 @@ from app.screen.look import CENTRE, LEFT, Look, put
 from app.screen.panel import Control, FingerPanel
 from core.executor.snapshot import Snapshot
 
-# --- What is drawn on the targets of the Jog page: the arrow of a direction, and the middle of the cross.
+# --- arrows and the middle ----------------------------------------------------------------------------
 
 
 def draw_arrow(painter: QPainter, look: Look, box: QRectF, to: tuple[int, int], colour: str) -> None:
@@ -46,7 +46,7 @@ def draw_middle(painter: QPainter, look: Look, box: QRectF, words: tuple[str, st
     put(painter, box, CENTRE, figure)
 
 
-# --- A row of words to touch, one of them chosen.
+# --- rows of tiles ------------------------------------------------------------------------------------
 
 
 NAME = 8.4  # units: width of the row's name
@@ -110,7 +110,7 @@ def _tile(painter: QPainter, look: Look, box: QRectF, word: str, tiles: Tiles, n
     put(painter, box, CENTRE, word)
 
 
-# --- A handwheel that is drawn: a finger goes round it, or the mouse's wheel turns it.
+# --- the drawn handwheel ------------------------------------------------------------------------------
 
 
 CLICK = 3.6  # degrees: a hundred clicks a turn

@@ -87,7 +87,7 @@ def _short(step: float) -> str:
     return f"{step:.4f}".rstrip("0").rstrip(".").removeprefix("0")
 
 
-# --- Which ways there are to jog on a machine: keys, and where the targets stand under fingers.
+# --- directions ---------------------------------------------------------------------------------------
 
 
 Arrow = tuple[int, int]  # right and down, as the operator sees the machine; (0, 0): none

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QApplication, QWidget
@@ -113,13 +115,10 @@ class JogPage(Page):
             "F4": self.desk.next_readout,
             "F5": lambda: model.ask(TOUCH_X),
             "F6": lambda: model.ask(TOUCH_Z),
-            "F8": lambda: self._go(page_table.TOOLS),
-            "F9": lambda: self._go(page_table.SECCMP),
+            "F8": partial(self.host.go, page_table.TOOLS),
+            "F9": partial(self.host.go, page_table.SECCMP),
             "F10": model.tool.undo,
         }
-
-    def _go(self, name: str) -> None:
-        self.host.go(name)
 
     def typed(self, key: str) -> bool:
         """An entry, the answer to the home key, or a letter that asks something of the tool."""

@@ -18,7 +18,7 @@ from core.executor.snapshot import CYCLE, Snapshot, Starts, State
 from core.language.diagnostics import Diagnostic, Severity
 from core.store.store_errors import StoreError
 
-# --- What MDI says of a line besides what proving says, and what the prompt line asks for next.
+# --- prompt and findings ------------------------------------------------------------------------------
 
 
 def prompt(start: str, *, busy: bool, wrong: bool, ready: bool) -> str:
@@ -42,7 +42,7 @@ def never_set(job: Job, proved: Proved) -> tuple[Diagnostic, ...]:
     )
 
 
-# --- The line that is being typed, and the lines typed before it.
+# --- the line and its history -------------------------------------------------------------------------
 
 
 KEY = "mdi"

@@ -23,7 +23,7 @@ from core.executor.snapshot import CYCLE, Snapshot, Starts
 from core.interpreter.checkpoint import Checkpoint
 from core.language.diagnostics import Diagnostic, Severity
 
-# --- The line that is typed: large, with its cursor, and under it what is wrong, marked where it is.
+# --- the line -----------------------------------------------------------------------------------------
 
 
 Shown = tuple[str, int, tuple[Diagnostic, ...], bool]
@@ -96,7 +96,7 @@ class LinePanel(Panel):
             painter.setPen(look.colour("soft"))
 
 
-# --- The lines typed before, newest at the bottom as they were typed; a finger takes one up again.
+# --- history ------------------------------------------------------------------------------------------
 
 
 ROW = 3.4  # units
@@ -139,7 +139,7 @@ class HistoryPanel(Panel):
             put(painter, empty, LEFT, tr("No line was run yet."))
 
 
-# --- What is in force, one row for each group of codes.
+# --- what is in force ---------------------------------------------------------------------------------
 
 
 SHARE = 0.4  # of a row for its label
@@ -195,16 +195,13 @@ class MdiPage(Page):
     def key_actions(self) -> KeyActions:
         """Keys of this page alone."""
         return {
-            "F2": lambda: self._go(page_table.AUTOMATIC),
+            "F2": partial(self.host.go, page_table.AUTOMATIC),
             "F4": self.desk.next_readout,
             "F5": self.desk.enable,
             "F6": self.desk.reset,
             "F8": self.model.stop_spindle,
-            "F9": lambda: self._go(page_table.SECCMP),
+            "F9": partial(self.host.go, page_table.SECCMP),
         }
-
-    def _go(self, name: str) -> None:
-        self.host.go(name)
 
     def _recall(self, back: int) -> None:
         if self.model.has_keyboard:

@@ -15,7 +15,7 @@ from app.desk import formats
 from app.desk.translation import tr
 from app.path.polyline import SAME, Bounds, Floats, Polyline, Stroke
 
-# --- Points that one measures from, and the words of measuring.
+# --- points -------------------------------------------------------------------------------------------
 
 
 class PointKind(IntEnum):
@@ -160,7 +160,7 @@ def point_at(polyline: Polyline, z: float, x: float, within: float) -> int | Non
     return int(index[at]) + 1 if off[at] <= within else None
 
 
-# --- What lies between two points of a picture, in the words and units of the program.
+# --- between two points -------------------------------------------------------------------------------
 
 
 Row = tuple[str, str]
@@ -226,7 +226,7 @@ def _straight(right: float, across: float, metric: bool, to: str) -> list[Row]:
     ]
 
 
-# --- Where two pictures of one program differ most: a thousandth is not seen at any usual scale.
+# --- two pictures compared ----------------------------------------------------------------------------
 
 
 class Apart(NamedTuple):

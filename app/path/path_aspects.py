@@ -68,7 +68,7 @@ def views_of(picture: Picture) -> list[View]:
     return [*both, *((aspect,) for aspect in more), (Aspect.PATH,)]
 
 
-# --- The way by which the tool goes back to a place in the middle of a program, leg by leg.
+# --- legs of an approach ------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)

@@ -116,7 +116,7 @@ def bounds_of(z: Floats, x: Floats, stroke: npt.NDArray[np.uint8]) -> Bounds:
     return float(z.min()), float(z.max()), float(x.min()), float(x.max())
 
 
-# --- Arcs and the ways of a mill as chords that nobody can tell from them on a screen.
+# --- arcs as chords -----------------------------------------------------------------------------------
 
 
 CHORD_ERROR = 0.004  # mm: half a pixel at 125 pixels to the millimetre

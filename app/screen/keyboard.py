@@ -29,7 +29,7 @@ from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
 
 from app.screen.event_times import EventTimes
 
-# --- Keys and mouse buttons that are really down, asked of the X server; and its repeats told from presses.
+# --- the X server -------------------------------------------------------------------------------------
 
 
 _BUTTONS = 0x1F00  # of the pointer's mask: five buttons

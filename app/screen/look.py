@@ -151,7 +151,7 @@ def dress(palette: Palette) -> None:
     QApplication.setPalette(colours)
 
 
-# --- Small drawn signs: fonts of a bare system lack them, and a shape says what a colour alone may not.
+# --- signs of states ----------------------------------------------------------------------------------
 
 
 def draw_sign(painter: QPainter, box: QRectF, tone: Tone, colour: QColor) -> None:

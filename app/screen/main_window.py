@@ -299,9 +299,7 @@ class MainWindow(QWidget):
             self.refresh()
             event.ignore()
             return
-        if frame is not None and not (
-            frame.page.leave() and (self._meant or frame.desk.may_close(self._close))
-        ):
+        if frame is not None and not (frame.page.leave() and self._may_close(frame)):
             self.refresh()
             event.ignore()
             return

@@ -48,7 +48,7 @@ from app.desk.program_loading import Loaded
 from app.screen.look import Look
 from core.executor.snapshot import Snapshot
 
-KeyActions = Mapping[str, Callable[[], None]]
+KeyActions = Mapping[str, Callable[[], object]]  # by the name of the key; what they answer is not used
 
 
 @dataclass(frozen=True, slots=True)

@@ -91,7 +91,7 @@ class Panel(QWidget):
         put(painter, patch.adjusted(0.6 * u, 0, 0, 0), LEFT, title)
 
 
-# --- A panel under several fingers at once: each touch holds the control it went down on until it comes up.
+# --- several fingers at once --------------------------------------------------------------------------
 
 
 MOUSE = -1  # the pointer's place among the touches

@@ -184,7 +184,7 @@ def _z(desk: Desk) -> float:
     return snapshot.actual[1] - snapshot.offset[1]
 
 
-# --- What is pictured of each page: the keys that lead to it, and whether the machine stands or runs.
+# --- what is pictured ---------------------------------------------------------------------------------
 
 
 SETTLE = 0.5  # seconds for workers to read, prove and draw

@@ -69,7 +69,8 @@ class PositionPanel(Panel):
         painter.setFont(look.font(5.6 * share, bold=True))
         put(painter, QRectF(1.8 * u, row.y(), 5.6 * u, row.height()), LEFT, axis.name)
         if axis.mark:
-            self._mark(painter, QRectF(7.2 * u, row.center().y() - 2.8 * u, 5.2 * u, 5.6 * u), axis.mark)
+            box = QRectF(7.4 * u, row.center().y() - 2.6 * u, 4.8 * u, 5.2 * u)
+            draw_mark(painter, look, box, axis.mark, 4.6, 0.4)
         painter.setPen(look.colour("text" if axis.homed else "soft"))
         painter.setFont(look.font(7.0 * share, bold=True))
         put(painter, QRectF(12.6 * u, row.y(), 39.0 * u, row.height()), RIGHT, axis.value)
@@ -87,18 +88,19 @@ class PositionPanel(Panel):
         few = self._view is None or len(self._view.axes) <= LATHE_ROWS
         return 1.0 if few else min(1.0, row.height() / (ROOMY * self.look.u))
 
-    def _mark(self, painter: QPainter, box: QRectF, mark: str) -> None:
-        look, u = self.look, self.look.u
-        filled = mark == "Ø"
-        painter.setPen(look.pen("mark", 0.4))
-        painter.setBrush(look.colour("mark") if filled else Qt.BrushStyle.NoBrush)
-        painter.drawRect(box.adjusted(0.2 * u, 0.2 * u, -0.2 * u, -0.2 * u))
-        painter.setPen(look.colour("on_mark" if filled else "mark"))
-        painter.setFont(look.font(4.6, bold=True))
-        put(painter, box, CENTRE, mark)
+
+def draw_mark(painter: QPainter, look: Look, box: QRectF, mark: str, size: float, line: float) -> None:
+    """X as a diameter has a filled Ø, as a radius a hollow R; letter and line in units."""
+    filled = mark == "Ø"
+    painter.setPen(look.pen("mark", line))
+    painter.setBrush(look.colour("mark") if filled else Qt.BrushStyle.NoBrush)
+    painter.drawRect(box)
+    painter.setPen(look.colour("on_mark" if filled else "mark"))
+    painter.setFont(look.font(size, bold=True))
+    put(painter, box, CENTRE, mark)
 
 
-# --- Feed, spindle, tool and times: small instruments of one shape.
+# --- feed, spindle, tool and times --------------------------------------------------------------------
 
 
 class Gauge(Panel):
@@ -235,7 +237,7 @@ class TimesGauge(Gauge):
             put(painter, at.adjusted(0, room.height() * 0.36, 0, 0), CENTRE, text)
 
 
-# --- Position, feed, spindle and tool in one low row, above every page that has them not large.
+# --- all in one low row -------------------------------------------------------------------------------
 
 
 LATHE_COLUMNS = 3  # X, Z and C; a mill has more
@@ -285,12 +287,7 @@ class HeadLine(Panel):
         put(painter, QRectF(at.x(), at.y(), 3 * u, at.height()), LEFT, axis.name)
         if axis.mark:
             box = QRectF(at.x() + 2.8 * u, at.center().y() - 1.5 * u, 3.0 * u, 3.0 * u)
-            painter.setPen(look.pen("mark", 0.25))
-            painter.setBrush(look.colour("mark") if axis.mark == "Ø" else Qt.BrushStyle.NoBrush)
-            painter.drawRect(box)
-            painter.setPen(look.colour("on_mark" if axis.mark == "Ø" else "mark"))
-            painter.setFont(look.font(2.4, bold=True))
-            put(painter, box, CENTRE, axis.mark)
+            draw_mark(painter, look, box, axis.mark, 2.4, 0.25)
         painter.setPen(look.colour("text" if axis.homed else "alarm"))
         room = at.adjusted((6.4 if axis.mark else 3.2) * u, 0, 0, 0)
         painter.setFont(look.fit(axis.value, 3.4, room.width(), bold=True))
@@ -320,7 +317,7 @@ class HeadLine(Panel):
             x += wide
 
 
-# --- What of the run stays in sight on pages other than Automatic: comment, line and block, parts, times.
+# --- the run in one low row ---------------------------------------------------------------------------
 
 
 Times = Sequence[tuple[str, str]]

@@ -189,13 +189,10 @@ class FunctionKeys(Panel):
             painter.setPen(look.colour("text"))
             painter.setFont(look.fit(label, 2.1, box.width() - u, bold=True))
             put(painter, QRectF(box.x(), box.y() + 3.0 * u, box.width(), 3.2 * u), CENTRE, label)
-            self.place(box, self._presser(number))
-
-    def _presser(self, number: int) -> Callable[[], None]:
-        return lambda: self._press(number)
+            self.place(box, partial(self._press, number))
 
 
-# --- The lit words: modes with the keys that switch them, what is on, and the two keys that make ready again.
+# --- lit words ----------------------------------------------------------------------------------------
 
 
 class LampStrip(Panel):
@@ -221,7 +218,7 @@ class LampStrip(Panel):
             box = QRectF(number * wide, 0, wide - gap, self.height())
             self._lamp(painter, box, lamp)
             if lamp.key:
-                self.place(box, self._presser(lamp.key))
+                self.place(box, partial(self._press, lamp.key))
 
     def _lamp(self, painter: QPainter, box: QRectF, lamp: Lamp) -> None:
         look, u = self.look, self.look.u
@@ -248,11 +245,8 @@ class LampStrip(Panel):
             painter.setFont(look.fit(word, 1.75, room.width(), bold=True))
             put(painter, QRectF(room.x(), room.y() + number * high, room.width(), high), CENTRE, word)
 
-    def _presser(self, key: str) -> Callable[[], None]:
-        return lambda: self._press(key)
 
-
-# --- What must stay in sight on every page until somebody has done something: rows under the lamps.
+# --- notices that stay --------------------------------------------------------------------------------
 
 
 NOTICE_ROW, NOTICE_KEY = 5.0, 17.0  # units: height of a row, width of a key
@@ -326,4 +320,4 @@ class NoticeRows(Panel):
         painter.setPen(look.colour("text"))
         painter.setFont(look.fit(tr(label), 1.8, box.width() - 4.4 * u, bold=True))
         put(painter, box.adjusted(3.8 * u, 0, -0.4 * u, 0), CENTRE, label)
-        self.place(box, lambda: self._press(name))
+        self.place(box, partial(self._press, name))

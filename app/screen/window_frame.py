@@ -19,7 +19,7 @@ from app.desk.translation import tr
 from app.screen import page_table
 from app.screen.alarm_panels import AlarmList, Notice
 from app.screen.look import Look
-from app.screen.page_base import Host, Page
+from app.screen.page_base import Host, KeyActions, Page
 from app.screen.page_table import make_page
 from app.screen.readout_panels import (
     FeedGauge,
@@ -103,25 +103,22 @@ class Frame(QWidget):
         self.window().setFocus()
         page.opened()
 
-    def key_actions(self) -> dict[str, Callable[[], None]]:
+    def key_actions(self) -> KeyActions:
         """What keys do here: those of the page, before those of the frame."""
         return {
-            "F1": partial(self._go, page_table.MENU),
+            "F1": partial(self.go, page_table.MENU),
             "F7": self.toggle_log,
             **self.page.key_actions(),
             **(self._log_keys() if self.log.isVisible() else {}),
         }
 
-    def _log_keys(self) -> dict[str, Callable[[], None]]:
+    def _log_keys(self) -> KeyActions:
         """Keys that look through the log while it lies over the page."""
         log = self.log
         return {
             "Page up": lambda: log.look_at(-log.rows),
             "Page down": lambda: log.look_at(log.rows),
         }
-
-    def _go(self, name: str) -> None:
-        self.go(name)
 
     def toggle_log(self) -> None:
         """The log of alarms over the page, or away again."""

@@ -28,7 +28,7 @@ from core.interpreter.restart.restart_approach import (
 from core.interpreter.restart.restart_lines import Called, Interruption, LoopPass, RestartPoint
 from core.interpreter.restart.restart_retract import Retract, ToolPlace
 
-# --- The tool that stands in the part: the way out of it, or in words how the operator takes it out by hand.
+# --- the way out of the part --------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)

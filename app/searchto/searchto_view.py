@@ -26,7 +26,7 @@ from app.searchto.searchto_plan import Plan, WayOut
 from app.searchto.searchto_state_view import PASS_AFTER, PASS_BEFORE, NearestGood, StatePanel, StateShown
 from core.executor.snapshot import Snapshot
 
-# --- What is typed to find a line.
+# --- line or text -------------------------------------------------------------------------------------
 
 
 class SearchEntryPanel(Panel):
@@ -58,7 +58,7 @@ class SearchEntryPanel(Panel):
         draw_entry(painter, look, box.adjusted(0.8 * u, 0, -0.8 * u, 0), self.text)
 
 
-# --- What will start, how the tool comes in, and what is still to be confirmed.
+# --- what will start ----------------------------------------------------------------------------------
 
 
 ROW = 2.7  # units

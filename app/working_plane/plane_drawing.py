@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from app.working_plane.plane_instant import Instant
     from core.geometry.mill_kinematics import Kinematics, Place
 
-# --- From the machine's space to the picture: a parallel projection from a chosen side.
+# --- camera -------------------------------------------------------------------------------------------
 
 
 FloatArray = npt.NDArray[np.float64]
@@ -98,7 +98,7 @@ class Camera:
         return np.asarray(found)
 
 
-# --- Shapes of the view in space, in the machine's millimetres: the blank, the table under it, outlines.
+# --- blank and table ----------------------------------------------------------------------------------
 
 
 _ROUND = 48  # corners of what is round
