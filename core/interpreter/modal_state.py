@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from core.geometry.surface_speed import surface_rpm
 from core.geometry.virtual_mill import Face, Side
+from core.interpreter import units
 
 
 class Mill(NamedTuple):
@@ -68,6 +69,19 @@ class Modal(NamedTuple):
     zero_z: float = 0.0
     wraps_c: bool = False  # C counts 0..<360 in this program: its display does too
     mill: Mill | None = None  # between (~PLXC) or (~PLZC) and (END)
+
+    def length_text(self, mm: float) -> str:
+        """A length as the program's reader knows it, in the unit in force."""
+        return units.length(mm, metric=self.metric)
+
+    def feed_text(self, value: float, *, per_rev: bool) -> str:
+        """A feed, mm/s or mm/rev, as the program's reader knows it, in the unit in force."""
+        return units.feed(value, per_rev=per_rev, metric=self.metric)
+
+    @property
+    def css_speed(self) -> float | None:
+        """The constant surface speed in force, mm/s; None under G97."""
+        return self.surface_speed if self.css else None
 
     def surface_rpm_at(self, x: float, highest: float) -> float:
         """Signed speed, rpm, at radius ``x`` (mm) under constant surface speed, within its limits.

@@ -102,7 +102,7 @@ def test_the_page_is_written_from_the_table() -> None:
 def wait_in_turns(state: State, made: Statement) -> Iterator[Block]:
     """G05F2: waits for two turns of the spindle."""
     seconds = (made.value("F") or 0.0) * 60.0 / state.modal.rpm
-    yield state.action(made.line, made.part("move"), Dwell(seconds), state.rpm)
+    yield state.action(made.line, made.part("move"), Dwell(seconds))
 
 
 TRIAL = Code(

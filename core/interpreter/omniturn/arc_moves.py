@@ -11,7 +11,6 @@ from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.feeds import check_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.omniturn.spindle_speed import rpm_at
 from core.interpreter.omniturn.straight_moves import check_tool, go, on_step, warn_of_title_rapid
 
 _TOLERANCE = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)
@@ -48,8 +47,8 @@ def _block(state: State, made: Statement, start: Point, centre: Point, *, clockw
         n=state.blocks, line=made.line, kind=Kind.ARC, text=made.part("move"),
         x0=start[0], z0=start[1], c0=state.c, x=state.x, z=state.z, c=state.c,
         offset_x=state.offset_x, offset_z=state.offset_z, modal=modal,
-        feed=state.feed, per_rev=state.per_rev, rpm=rpm_at(state, state.x),
-        css=modal.surface_speed if modal.css else None,
+        feed=state.feed, per_rev=state.per_rev, rpm=state.rpm_at(state.x),
+        css=modal.css_speed,
         cx=centre[0], cz=centre[1], clockwise=clockwise,
     )  # fmt: skip
 
@@ -67,8 +66,7 @@ def _centre_by_radius(state: State, made: Statement, start: Point, *, clockwise:
         text = "The arc by R ends where it starts."
         raise made.refuse("R", "arc-no-chord", text, "A full circle takes I and K.")
     if chord > 2 * radius + _TOLERANCE:
-        metric = state.modal.metric
-        shown, half = units.length(radius, metric=metric), units.length(chord / 2, metric=metric)
+        shown, half = state.modal.length_text(radius), state.modal.length_text(chord / 2)
         text = f"R is {shown}, and the ends are so far apart that it takes {half} at least."
         raise made.refuse("R", "arc-radius", text, "Correct R or the end point.")
     return centre_from_radius(start, (state.x, state.z), radius, clockwise=clockwise)
@@ -98,15 +96,14 @@ def _check_mode(state: State, made: Statement) -> None:
 
 
 def _check_radii(state: State, made: Statement, first: float, last: float) -> None:
-    metric = state.modal.metric
     if first <= _SAME:
         text = "The centre of the arc is its start point."
         raise made.refuse("", "arc-no-radius", text, "Correct I and K.")
     if abs(first - last) <= _TOLERANCE:
         return
     text = (
-        f"The arc's radius is {units.length(first, metric=metric)} at its start"
-        f" and {units.length(last, metric=metric)} at its end."
+        f"The arc's radius is {state.modal.length_text(first)} at its start"
+        f" and {state.modal.length_text(last)} at its end."
     )
     if state.modal.diameter or not state.absolute:
         hint = "I and K are distances from the start here."

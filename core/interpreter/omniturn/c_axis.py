@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import copysign, hypot
 
-from core.interpreter import units
 from core.interpreter.actions import SpindleLock
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.dwell import expect_arrival, warn_of_short_dwell
@@ -39,7 +38,7 @@ def lock(state: State, made: Statement) -> Iterator[Block]:
     rpm = speed_of_c(state, made)
     modal = state.modal
     state.adopt(modal._replace(spindle=0, c_locked=True, c_rpm=rpm))
-    yield state.action(made.line, made.part("m"), SpindleLock(orient=made.m == 19), 0.0)
+    yield state.action(made.line, made.part("m"), SpindleLock(orient=made.m == 19))
     if made.m == 19:
         yield from _to_zero(state, made)
 
@@ -157,7 +156,7 @@ def _check_turns(state: State, made: Statement, word: Word, way: float, turn: fl
         raise made.refuse(word, "c-too-little", text, hint)
     speed = feed * modal.c_rpm / 60.0
     if speed > limits.max_feed * (1.0 + 1e-9):
-        shown = units.feed(speed, per_rev=False, metric=modal.metric)
-        most = units.feed(limits.max_feed, per_rev=False, metric=modal.metric)
+        shown = modal.feed_text(speed, per_rev=False)
+        most = modal.feed_text(limits.max_feed, per_rev=False)
         text = f"At {modal.c_rpm:g} rpm of C this feed is {shown}; {most} is the most."
         raise made.refuse(0, "feed-over-speed", text, "Lower F or S.")

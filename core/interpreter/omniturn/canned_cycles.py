@@ -13,7 +13,6 @@ from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.feeds import check_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.omniturn.spindle_speed import rpm_at
 from core.interpreter.omniturn.straight_moves import on_step
 
 LIFT = 0.02 * units.MM_PER_INCH
@@ -128,7 +127,7 @@ def _block(state: State, made: Statement, move: Move) -> Block:
         x0=x0, z0=z0, c0=state.c, x=move.x, z=move.z, c=state.c,
         offset_x=state.offset_x, offset_z=state.offset_z, modal=modal,
         feed=state.feed if move.rapid is None else move.rapid, per_rev=feeds and state.per_rev,
-        rpm=rpm_at(state, move.x), css=modal.surface_speed if modal.css else None,
+        rpm=state.rpm_at(move.x), css=modal.css_speed,
         cx=cx, cz=cz, clockwise=move.clockwise,
     )  # fmt: skip
 

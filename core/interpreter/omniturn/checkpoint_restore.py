@@ -9,7 +9,6 @@ from core.interpreter.actions import SpindleRun, SpindleStop
 from core.interpreter.checkpoint import Begin, Checkpoint, CTurn, FunctionStep, Leg
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.omniturn_state import State
-from core.interpreter.omniturn.spindle_speed import rpm_at
 
 
 def checkpoint_of(state: State) -> Checkpoint:
@@ -73,7 +72,7 @@ def approach_blocks(state: State, begin: Begin) -> Iterator[Block]:
             case FunctionStep():
                 action = step.action
                 if isinstance(action, SpindleRun | SpindleStop):
-                    turning = rpm_at(state, at[0]) if isinstance(action, SpindleRun) else 0.0
+                    turning = state.rpm_at(at[0]) if isinstance(action, SpindleRun) else 0.0
         rpm = copysign(feed / 6.0, at[2] - c0) if kind is Kind.ROTATE else turning
         css = modal.surface_speed if modal.css and turning else None
         yield Block(

@@ -69,10 +69,9 @@ def _check_change(state: State, made: Statement, code: int) -> None:
         return
     x, z = state.coarse_at
     if max(abs(state.x + state.offset_x - x), abs(state.z + state.offset_z - z)) > _SAME:
-        metric = state.modal.metric
         place = (
-            units.length(x - state.offset_x, metric=metric),
-            units.length(z - state.offset_z, metric=metric),
+            state.modal.length_text(x - state.offset_x),
+            state.modal.length_text(z - state.offset_z),
         )
         state.adopt(state.modal._replace(coarse=0))  # so that the rest is judged as it was meant
         text = f"G36 stands elsewhere than its G35, which was at radius {place[0]}, Z {place[1]}."
@@ -88,7 +87,6 @@ def _check_preset(state: State, made: Statement, code: int, ahead: Sequence[Read
         raise made.refuse(1, "coarse-preset", text, hint)
     x, z = (line.value("X") or 0.0) * state.scale_x, (line.value("Z") or 0.0) * state.scale_z
     if max(abs(x - state.px), abs(z - state.pz)) > _SAME or line.modal:
-        metric = state.modal.metric
-        here = units.length(state.px, metric=metric), units.length(state.pz, metric=metric)
+        here = state.modal.length_text(state.px), state.modal.length_text(state.pz)
         text = f"The G92 behind G{code} says another place than radius {here[0]}, Z {here[1]}."
         raise line.refuse("X", "coarse-preset", text, hint)

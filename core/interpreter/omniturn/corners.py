@@ -158,12 +158,11 @@ class Corners:
         yield from self._pass_on(moved_along(after, rest, self._max_rpm), corner)
 
     def _too_large(self, held: _Held, after: Block, problem: CornerTooLargeError) -> ProgramError:
-        metric = held.block.modal.metric
         of = held.block if problem.first else after
-        left = units.length(Line((of.x0, of.z0), (of.x, of.z)).length, metric=metric)
+        left = held.block.modal.length_text(Line((of.x0, of.z0), (of.x, of.z)).length)
         if not problem.needed:
             return _refused(held, "corner-too-large", f"the move on line {of.line} has no length")
-        needed = units.length(problem.needed, metric=metric)
+        needed = held.block.modal.length_text(problem.needed)
         return _refused(
             held,
             "corner-too-large",

@@ -60,10 +60,9 @@ def _depth(state: State, made: Statement) -> float:
         raise made.refuse("Z", "word-missing", text, "Add Z.")
     depth = z + (state.dz if state.absolute else state.z)
     if depth >= state.z:
-        metric = state.modal.metric
         text = (
-            f"The bottom of the hole at {units.length(depth, metric=metric)} is not beyond the start point"
-            f" at {units.length(state.z, metric=metric)}."
+            f"The bottom of the hole at {state.modal.length_text(depth)} is not beyond the start point"
+            f" at {state.modal.length_text(state.z)}."
         )
         raise made.refuse("Z", "cycle-depth", text, "Correct Z, or start farther out.")
     return depth
@@ -88,7 +87,7 @@ def _rate(state: State, made: Statement) -> float:
         return min(_RETRACT_RATE, most)
     rate = value * units.per_unit(metric=state.modal.metric) / 60
     if not 0 < rate <= most * (1 + 1e-9):
-        shown = units.feed(most, per_rev=False, metric=state.modal.metric)
+        shown = state.modal.feed_text(most, per_rev=False)
         text = f"{made.words['L'].text}: the rate of the retract goes from over 0 to {shown}."
         raise made.refuse("L", "cycle-rate", text, "Correct L.")
     return rate

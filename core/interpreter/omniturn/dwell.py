@@ -10,7 +10,6 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.omniturn.code_table import G_CODES
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.omniturn.spindle_speed import rpm_at
 
 _SHORTEST, _LONGEST = G_CODES[4].bounds["F"]  # s
 _DONE = 1e-9  # s, degrees
@@ -26,7 +25,7 @@ def dwell(state: State, made: Statement) -> Iterator[Block]:
         text = f"A dwell of {seconds:g} s is out of range: 0.1 s to an hour."
         raise made.refuse("F", "dwell-range", text, "Correct F.")
     _shorten_arrival(state, seconds)
-    yield state.action(made.line, made.part("move"), Dwell(seconds), rpm_at(state, state.x))
+    yield state.action(made.line, made.part("move"), Dwell(seconds))
 
 
 def expect_arrival(state: State, line: int, column: int, turn: float) -> None:

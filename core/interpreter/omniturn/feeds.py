@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 from core.interpreter import units
 from core.interpreter.diagnostic_log import program_error
+from core.interpreter.modal_state import Modal
 from core.interpreter.omniturn.coarse_feeds import MOST_PER_REV
 from core.interpreter.omniturn.dwell import warn_of_short_dwell
 from core.interpreter.omniturn.omniturn_state import HIGH_FEED, State
 from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
-from core.interpreter.omniturn.spindle_speed import rpm_at
 from core.language.omniturn import Word
 
 _LEAST = 0.00005 * units.MM_PER_INCH  # per minute or per revolution
@@ -93,13 +93,16 @@ def _feed(state: State, made: Statement, word: Word, *, first: bool) -> None:
             state.modal._replace(feed=within, rapid=False, cut_feed=within, cut_per_rev=modal.per_rev)
         )
     if not least / _ROUNDING <= feed <= most * _ROUNDING:
-        low = units.feed(least, per_rev=modal.per_rev, metric=modal.metric)
-        high = units.feed(most, per_rev=modal.per_rev, metric=modal.metric)
-        shown = units.feed(feed, per_rev=modal.per_rev, metric=modal.metric)
-        message = f"Feed {shown} is out of range: {low} to {high}."
+        message = out_of_range(modal, feed, least, most)
         otherwise = "Lower F." if feed > most else "Raise F."
         hint = "Look for a lost decimal point, or G94 for G95." if modal.per_rev else otherwise
         raise made.refuse(word, "feed-range", message, hint)
+
+
+def out_of_range(modal: Modal, feed: float, least: float, most: float) -> str:
+    """The sentence for a feed that is none, as G94 or G95 counts it."""
+    low, high, shown = (modal.feed_text(each, per_rev=modal.per_rev) for each in (least, most, feed))
+    return f"Feed {shown} is out of range: {low} to {high}."
 
 
 def warn_of_crash_feed(state: State, made: Statement, ahead: Sequence[ReadyLine]) -> None:
@@ -109,7 +112,7 @@ def warn_of_crash_feed(state: State, made: Statement, ahead: Sequence[ReadyLine]
         return
     if modal.feed <= HIGH_FEED or _taps(modal.spindle, ahead):
         return
-    shown = units.feed(modal.feed, per_rev=True, metric=modal.metric)
+    shown = modal.feed_text(modal.feed, per_rev=True)
     hint = "Look for a lost decimal point."
     state.log.warn(made.line, word.column, "feed-high", f"Feed {shown} is very high for cutting.", hint)
 
@@ -141,9 +144,9 @@ def check_move(state: State, line: int, x0: float, x: float, length: float) -> N
         text = "G96 is active and no S has given a surface speed."
         _once(state, line, "surface-speed-missing", text, "Write S beside G96.")
         return
-    rpm = max(abs(rpm_at(state, x0)), abs(rpm_at(state, x)))
+    rpm = max(abs(state.rpm_at(x0)), abs(state.rpm_at(x)))
     if x0 * x < 0:  # over the centre
-        rpm = max(rpm, abs(rpm_at(state, 0.0)))
+        rpm = max(rpm, abs(state.rpm_at(0.0)))
     if not rpm:
         why = "a feed per revolution" if modal.per_rev else "constant surface speed"
         text = f"The spindle stands, and the move runs at {why}."
@@ -152,13 +155,13 @@ def check_move(state: State, line: int, x0: float, x: float, length: float) -> N
     speed = modal.feed * rpm / 60 if modal.per_rev else modal.feed
     most = state.setup.limits.max_feed
     if speed > most * _ROUNDING:
-        limit = units.feed(most, per_rev=False, metric=modal.metric)
+        limit = modal.feed_text(most, per_rev=False)
         if modal.per_rev:
-            shown = units.feed(modal.feed, per_rev=True, metric=modal.metric)
-            most_per_rev = units.feed(most * 60 / rpm, per_rev=True, metric=modal.metric)
+            shown = modal.feed_text(modal.feed, per_rev=True)
+            most_per_rev = modal.feed_text(most * 60 / rpm, per_rev=True)
             message = f"Feed {shown} is over {most_per_rev} at {rpm:.0f} rpm, which is {limit}."
         else:
-            shown = units.feed(speed, per_rev=False, metric=modal.metric)
+            shown = modal.feed_text(speed, per_rev=False)
             message = f"Feed {shown} is over {limit}."
         raise program_error(line, 0, "feed-over-speed", message, "Lower F or S.")
     _warn_slow(state, line, length, speed)
@@ -176,6 +179,6 @@ def _warn_slow(state: State, line: int, length: float, speed: float) -> None:
     if length > state.slow_length:
         seconds = length / speed
         modal = state.modal
-        shown = units.feed(modal.feed or 0.0, per_rev=modal.per_rev, metric=modal.metric)
+        shown = modal.feed_text(modal.feed or 0.0, per_rev=modal.per_rev)
         text = f"This move takes {seconds:.0f} s at {shown}."
         state.log.warn(line, 0, "feed-low", text, "Look at F and at G94/G95.")

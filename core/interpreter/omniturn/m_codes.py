@@ -21,7 +21,6 @@ from core.interpreter.omniturn.code_table import Acts, carry_out
 from core.interpreter.omniturn.dwell import warn_of_short_dwell
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.omniturn.spindle_speed import rpm_at
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.omniturn import other_controls
 
@@ -80,7 +79,7 @@ def program_end(state: State, made: Statement) -> Iterator[Block]:
     """M30 resets the M functions, M02 leaves them."""
     reset = made.m == 30
     warn_of_short_dwell(state)
-    state.stay(after_end(state.modal, abs(rpm_at(state, state.x)), reset=reset))
+    state.stay(after_end(state.modal, abs(state.rpm_at(state.x)), reset=reset))
     yield _done(state, made, ProgramEnd(reset=reset))
 
 
@@ -103,7 +102,7 @@ def _unknown(state: State, made: Statement) -> Diagnostic:
 
 
 def _done(state: State, made: Statement, action: Action) -> Block:
-    return state.action(made.line, made.part("m"), action, rpm_at(state, state.x))
+    return state.action(made.line, made.part("m"), action)
 
 
 def _machine_output(state: State, made: Statement, *, on: bool) -> Iterator[Block]:

@@ -11,7 +11,6 @@ from typing import NamedTuple
 from core.geometry.contour_offset import NEARER, WINDOW, GougeError, Offset, Piece
 from core.geometry.intersections import clearance, distance
 from core.geometry.lines_and_arcs import SAME_POINT, Element, Line, Point
-from core.interpreter import units
 from core.interpreter.actions import ToolChange
 from core.interpreter.adjusted_moves import element_of, inserted_after, moved_along, standstill_at
 from core.interpreter.diagnostic_log import Log, program_error
@@ -53,14 +52,14 @@ def check_distance(lead: ApproachOrDeparture, free: Point, corner: Point, log: L
 
     ``corner`` is where the contour begins or ends. Raises ProgramError.
     """
-    metric, radius = lead.block.modal.metric, lead.radius
-    nose = units.length(radius, metric=metric)
+    radius = lead.radius
+    nose = lead.block.modal.length_text(radius)
     if dist(free, corner) < radius - SAME_POINT:
-        length = units.length(dist(free, corner), metric=metric)
+        length = lead.block.modal.length_text(dist(free, corner))
         text = f"The {lead.name} is {length} long, less than the nose radius {nose}."
         raise lead.refused("-short", text, "Move farther off the part.")
     off = min(distance(element, free) for element in lead.contour)
-    shown = units.length(off, metric=metric)
+    shown = lead.block.modal.length_text(off)
     text = f"The {lead.name} {'ends' if lead.departs else 'starts'} {shown} off the part"
     hint = "Keep twice the nose radius off the part."
     if off < radius - SAME_POINT:
@@ -253,7 +252,7 @@ class Compensation:
 
     def _gouge(self, problem: GougeError) -> ProgramError:
         block = self._moves[problem.index].block
-        nose = units.length(self.radius, metric=block.modal.metric)
+        nose = block.modal.length_text(self.radius)
         text = f"{self._name} with a nose radius of {nose} cannot follow this move: {problem.why}."
         return _refused(block, "comp-gouge", text, "Take a smaller nose, or change the contour.")
 

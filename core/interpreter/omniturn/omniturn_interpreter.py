@@ -24,7 +24,6 @@ from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import PLANE, UNREADABLE, ReadyLine, Statement, statement
 from core.interpreter.omniturn.program_size import refuse_too_large, takes_call, terminal
-from core.interpreter.omniturn.spindle_speed import rpm_at
 from core.interpreter.omniturn.straight_moves import go, on_step, plain_move
 from core.interpreter.omniturn.tools_and_offsets import warn_of_idle_shifts
 from core.language.diagnostics import ProgramError
@@ -249,7 +248,7 @@ class Interpreter(Interpretation):
         state = self._state
         if made.asks:
             asked = AskInput(terminal(made))
-            yield from self._modified(state.action(made.line, made.text, asked, rpm_at(state, state.x)))
+            yield from self._modified(state.action(made.line, made.text, asked))
             if not self._takes(made):
                 return
         self._flow.call(made)

@@ -145,7 +145,14 @@ class State:
         self.x, self.z = x - self.offset_x, z - self.offset_z
         self.px, self.pz = self.x - self.dx, self.z - self.dz
 
-    def action(self, line: int, text: str, action: Action, rpm: float) -> Block:
+    def rpm_at(self, x: float) -> float:
+        """Commanded speed with the tip at radius ``x`` (mm); signed, 0 with the spindle stopped."""
+        modal = self.modal
+        if not modal.css or not modal.spindle:
+            return self.rpm
+        return modal.surface_rpm_at(x, self.setup.limits.max_rpm)
+
+    def action(self, line: int, text: str, action: Action) -> Block:
         """A block in which no axis moves."""
         self.blocks += 1
         return Block(
@@ -156,7 +163,7 @@ class State:
             x0=self.x, z0=self.z, c0=self.c, x=self.x, z=self.z, c=self.c,
             offset_x=self.offset_x, offset_z=self.offset_z,
             modal=self.modal,
-            rpm=rpm,
-            css=self.modal.surface_speed if self.modal.css else None,
+            rpm=self.rpm_at(self.x),
+            css=self.modal.css_speed,
             action=action,
         )  # fmt: skip

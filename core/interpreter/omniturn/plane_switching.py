@@ -14,6 +14,7 @@ from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Mill
 from core.interpreter.omniturn.c_axis import rotation
 from core.interpreter.omniturn.dwell import warn_of_short_dwell
+from core.interpreter.omniturn.feeds import out_of_range
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import mill_step
@@ -53,7 +54,9 @@ def _target(state: State, made: Statement, mill: Mill) -> Spot:
     x, y = plane_length(state, made, "X", mill.x), plane_length(state, made, "Y", mill.y)
     z = plane_length(state, made, "Z", mill.z * 2 if side else mill.z)
     if side and z < 0.0:
-        text = f"Z{plane_shown(state, z)} lies beyond the centre: Z is the diameter that the tip touches."
+        text = (
+            f"Z{state.modal.length_text(z)} lies beyond the centre: Z is the diameter that the tip touches."
+        )
         raise plane_refusal(made, "plane-side", text, "Correct Z.", "Z")
     return x, y, z / 2 if side else z
 
@@ -63,7 +66,7 @@ def _arc(state: State, made: Statement, line: PlaneMove) -> PlaneMove:
     centre = plane_length(state, made, "I", 0.0), plane_length(state, made, "J", 0.0)
     first, last = dist(line.start[:2], centre), dist(line.end[:2], centre)
     if first <= _SAME_PLANE_MOVES or abs(first - last) > _TOLERANCE:
-        begin, end = plane_shown(state, first), plane_shown(state, last)
+        begin, end = state.modal.length_text(first), state.modal.length_text(last)
         text = f"The arc's radius is {begin} at its start and {end} at its end."
         hint = "I and J are the centre's coordinates."
         raise plane_refusal(made, "arc-radius", text, hint, "G")
@@ -77,7 +80,7 @@ def _legs(state: State, made: Statement, whole: PlaneMove) -> list[PlaneMove]:
     share = whole.nearest()
     rho, h = whole.rho(share), abs(whole.frame.h)
     if rho < h - _SAME_PLANE_MOVES:
-        near, least = plane_shown(state, rho), plane_shown(state, h)
+        near, least = state.modal.length_text(rho), state.modal.length_text(h)
         text = f"The way comes within {near} of the axis; with this H the tool reaches {least}."
         raise plane_refusal(made, "plane-reach", text, "The tool's centre line stands H beside the axis.")
     if rho > CENTRE or whole.length <= CENTRE:
@@ -140,11 +143,6 @@ def plane_length(state: State, made: Statement, letter: str, default: float) -> 
     return default if word is None else mill_step(state, made.line, word)
 
 
-def plane_shown(state: State, mm: float) -> str:
-    """A length of the mill as the program's reader knows it."""
-    return units.length(mm, metric=state.modal.metric)
-
-
 def plane_refusal(made: Statement, code: str, text: str, hint: str, letter: str = "") -> ProgramError:
     """An error of a plane's line, at the column of its word where one is to blame."""
     assert made.plane is not None
@@ -193,7 +191,9 @@ def _enter(state: State, made: Statement, name: str) -> None:
         text = f"The T on line {state.tool_line} has not been moved to X and Z."
         raise plane_refusal(made, "tool-first-move", text, "Move there before the plane.")
     if state.px > -_SAME:
-        text = f"(~{name}) needs the tool on the negative X side, and X is {plane_shown(state, state.px)}."
+        text = (
+            f"(~{name}) needs the tool on the negative X side, and X is {state.modal.length_text(state.px)}."
+        )
         raise plane_refusal(made, "plane-side", text, "Move to X- before it.")
     if name == "PLXC":
         mill = Mill(Face(state.c), -state.px, 0.0, state.pz)
@@ -217,7 +217,7 @@ def _diameter(state: State, made: Statement, mill: Mill) -> None:
     if isinstance(mill.frame, Face):
         raise plane_refusal(made, "plane-word", "D belongs to (~PLZC).", "Take it out.", "D")
     if abs(mill.y) > _SAME:
-        text = f"D comes where Y is {plane_shown(state, mill.y)}: it would move Y."
+        text = f"D comes where Y is {state.modal.length_text(mill.y)}: it would move Y."
         raise plane_refusal(made, "plane-d-late", text, "Write it where Y is 0.", "D")
     diameter = plane_length(state, made, "D", 0.0)
     if diameter <= 0.0:
@@ -240,8 +240,5 @@ def _feed(state: State, made: Statement) -> None:
     )
     state.reported.discard("feed-missing")
     if not _LEAST_FEED * (1 - 1e-9) <= feed <= most * (1 + 1e-9):
-        low = units.feed(_LEAST_FEED, per_rev=False, metric=modal.metric)
-        high = units.feed(most, per_rev=False, metric=modal.metric)
-        shown = units.feed(feed, per_rev=False, metric=modal.metric)
-        text = f"Feed {shown} is out of range: {low} to {high}."
+        text = out_of_range(modal, feed, _LEAST_FEED, most)
         raise plane_refusal(made, "feed-range", text, "Correct F.", "F")

@@ -13,14 +13,6 @@ from core.interpreter.units import FEET_PER_MINUTE, METRES_PER_MINUTE
 _FASTEST_SURFACE = 100_000.0  # mm/s; ten times what any tool stands
 
 
-def rpm_at(state: State, x: float) -> float:
-    """Commanded speed with the tip at radius ``x`` (mm); signed, 0 with the spindle stopped."""
-    modal = state.modal
-    if not modal.css or not modal.spindle:
-        return state.rpm
-    return modal.surface_rpm_at(x, state.setup.limits.max_rpm)
-
-
 def spindle_modes(state: State, made: Statement) -> None:
     """G96, G97, G76 and G77 of a line; S next to G76 or G77 is theirs."""
     modal = state.modal
@@ -28,7 +20,7 @@ def spindle_modes(state: State, made: Statement) -> None:
         state.adopt(state.modal._replace(css=True))
     elif 97 in made.modal and modal.css:
         # The drive goes on at the speed it has; jumping back to an old S would be a surprise.
-        rpm = abs(rpm_at(state, state.x)) if modal.spindle else modal.rpm
+        rpm = abs(state.rpm_at(state.x)) if modal.spindle else modal.rpm
         state.adopt(state.modal._replace(css=False, rpm=rpm))
     if 76 in made.modal:
         state.adopt(state.modal._replace(css_min=_limit(made, 76)))
@@ -85,9 +77,9 @@ def run_block(state: State, made: Statement) -> Iterator[Block]:
     elif "S" not in made.words or made.m == 5 or not state.modal.spindle or made.s_is_limit:
         return
     state.reported.discard("spindle-stopped")
-    rpm = rpm_at(state, state.x)
-    surface = state.modal.surface_speed if state.modal.css else None
-    yield state.action(made.line, made.part("spindle"), SpindleRun(rpm, surface), rpm)
+    rpm = state.rpm_at(state.x)
+    surface = state.modal.css_speed
+    yield state.action(made.line, made.part("spindle"), SpindleRun(rpm, surface))
 
 
 def _check_start(state: State, made: Statement) -> None:
@@ -106,4 +98,4 @@ def _check_start(state: State, made: Statement) -> None:
 def stop_block(state: State, made: Statement) -> Iterator[Block]:
     """M05."""
     state.adopt(state.modal._replace(spindle=0, c_locked=False, c_rpm=None))
-    yield state.action(made.line, made.part("m"), SpindleStop(), 0.0)
+    yield state.action(made.line, made.part("m"), SpindleStop())

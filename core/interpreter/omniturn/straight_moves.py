@@ -10,7 +10,6 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.omniturn.feeds import check_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import PlainMove, Statement
-from core.interpreter.omniturn.spindle_speed import rpm_at
 from core.language.omniturn import Word, lex_line
 
 _COARSE = (0.00005, 0.00025, 0.0005)  # inches of radius, by G36, G35, G35F2
@@ -70,7 +69,7 @@ def line_to(state: State, line: int, text: str, x: float | None, z: float | None
         check_move(state, line, x0, x1, hypot(x1 - x0, z1 - z0))
         warn_of_title_rapid(state, line)
         modal = state.modal
-        rpm, surface_speed = rpm_at(state, x1), modal.surface_speed if modal.css else None
+        rpm, surface_speed = state.rpm_at(x1), modal.css_speed
         # G95's limit depends on a speed that only constant surface speed changes from move to move.
         state.fast = not modal.css and not modal.coarse and not state.reported and not state.contour.active
     state.blocks = n = state.blocks + 1

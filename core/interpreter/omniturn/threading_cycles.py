@@ -9,13 +9,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import ceil, copysign, radians, tan
 
-from core.interpreter import units
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.coarse_feeds import MOST_PER_REV
 from core.interpreter.omniturn.code_table import G_CODES
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.omniturn.spindle_speed import rpm_at
 from core.interpreter.omniturn.straight_moves import check_tool, on_step
 
 # --- words, and what has to be right before a thread may be cut
@@ -108,7 +106,7 @@ def _lead(state: State, made: Statement) -> float:
         raise made.refuse("F", "thread-lead-missing", text, hint)
     lead *= state.scale_z
     if not 0 < lead <= MOST_PER_REV[coarse] * _ROUNDING:
-        most = units.feed(MOST_PER_REV[coarse], per_rev=True, metric=state.modal.metric)
+        most = state.modal.feed_text(MOST_PER_REV[coarse], per_rev=True)
         text = f"{made.words['K'].text}: the lead must be above 0 and at most {most}."
         hint = ("G35 allows more.", "G35F2 allows more.", "Correct K.")[coarse if lead > 0 else 2]
         raise made.refuse("K", "thread-lead-range", text, hint)
@@ -123,14 +121,14 @@ def _check_spindle(state: State, made: Statement, lead: float) -> None:
     if modal.nose_comp != 40:
         text = f"G{modal.nose_comp} is active, and a thread is cut without nose compensation."
         raise made.refuse("", "thread-under-comp", text, "Write G40 before it.")
-    rpm = abs(rpm_at(state, state.x))
+    rpm = abs(state.rpm_at(state.x))
     if not rpm:
         text = "The spindle stands, and a thread is cut by its turns."
         raise made.refuse("", "spindle-stopped", text, "Start it with M03 or M04.")
     speed, most = lead * rpm / 60, state.setup.limits.max_feed
     if speed > most * _ROUNDING:
-        shown = units.feed(speed, per_rev=False, metric=modal.metric)
-        limit = units.feed(most, per_rev=False, metric=modal.metric)
+        shown = modal.feed_text(speed, per_rev=False)
+        limit = modal.feed_text(most, per_rev=False)
         text = f"At {rpm:.0f} rpm this lead is {shown}; {limit} is the most."
         raise made.refuse("K", "feed-over-speed", text, "Lower S.")
 
@@ -153,8 +151,7 @@ def _depth(state: State, made: Statement) -> tuple[float, float]:
     if x is None:
         raise made.refuse("", "word-missing", "X of the last pass is missing.", "Write X.")
     x1 = (x if state.absolute else state.px + x) + state.dx
-    metric = state.modal.metric
-    here = f"the tool stands at radius {units.length(state.x, metric=metric)}"
+    here = f"the tool stands at radius {state.modal.length_text(state.x)}"
     if abs(x1 - state.x) <= _NEAR:
         text = f"{made.words['X'].text} leaves nothing to cut: {here}."
         raise made.refuse("X", "thread-side", text, "Start at the depth of the first pass.")
@@ -222,7 +219,7 @@ class _Cutter:
         self._at = state.x, state.z
         self._like = Block(
             0, made.line, Kind.RAPID, made.part("move"), state.x, state.z, state.c, state.x, state.z, state.c,
-            state.offset_x, state.offset_z, state.modal, rpm=rpm_at(state, state.x),
+            state.offset_x, state.offset_z, state.modal, rpm=state.rpm_at(state.x),
         )  # fmt: skip
 
     def blocks(self) -> Iterator[Block]:
@@ -251,7 +248,7 @@ class _Cutter:
             yield self._block(x, z, Kind.RAPID, self._state.modal.rapid_rate, self._text("G00", x, z))
 
     def _cut(self, x: float, z: float, what: str) -> Block:
-        lead = units.feed(self._thread.lead, per_rev=True, metric=self._state.modal.metric).split()[0]
+        lead = self._state.modal.feed_text(self._thread.lead, per_rev=True).split()[0]
         return self._block(
             x, z, Kind.THREAD, self._thread.lead, f"{self._text('G33', x, z)}K{lead} {what}", per_rev=True
         )
@@ -278,14 +275,13 @@ def _warn(state: State, made: Statement, thread: Thread) -> None:
         text = f"The thread takes {thread.passes} passes."
         hint = "A larger I takes fewer; look at I and at the X where the tool starts."
         state.log.warn(made.line, made.code_column, "thread-passes", text, hint)
-    speed = thread.lead * abs(rpm_at(state, state.x)) / 60
+    speed = thread.lead * abs(state.rpm_at(state.x)) / 60
     needed = speed**2 / (2 * state.setup.limits.slide_accel)
     run_up = _run_up(thread)
     if run_up < needed:
-        metric = state.modal.metric
         text = (
-            f"The run-up is {units.length(max(run_up, 0.0), metric=metric)}; the slide needs "
-            f"{units.length(needed, metric=metric)} to reach the speed of the lead."
+            f"The run-up is {state.modal.length_text(max(run_up, 0.0))}; the slide needs "
+            f"{state.modal.length_text(needed)} to reach the speed of the lead."
         )
         state.log.warn(made.line, made.code_column, "thread-run-up", text, "Start farther away, or lower S.")
 

@@ -10,7 +10,6 @@ from core.interpreter.interpretation import ToolUse
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.omniturn.spindle_speed import rpm_at
 from core.interpreter.omniturn.straight_moves import on_step
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.omniturn import Word
@@ -69,7 +68,7 @@ def tool_change(state: State, made: Statement, word: Word, use: ToolUse) -> Bloc
     state.tool_line = made.line if number else 0
     state.fast = False  # the same tool again changes no word, and yet the next move has to be looked at
     secondary(state, made)
-    return state.action(made.line, made.part("tool"), ToolChange(number), rpm_at(state, state.x))
+    return state.action(made.line, made.part("tool"), ToolChange(number))
 
 
 def secondary(state: State, made: Statement) -> None:
@@ -97,7 +96,7 @@ def work_shift(state: State, made: Statement) -> Iterator[Block]:
         modal._replace(pending_shift_x=modal.pending_shift_x + x, pending_shift_z=modal.pending_shift_z + z)
     )
     state.pending_shift.setdefault(made.line, False)
-    yield state.action(made.line, made.part("frame"), WorkShift(x, z), rpm_at(state, state.x))
+    yield state.action(made.line, made.part("frame"), WorkShift(x, z))
 
 
 def preset(state: State, made: Statement) -> Iterator[Block]:
@@ -113,7 +112,7 @@ def preset(state: State, made: Statement) -> Iterator[Block]:
         )
     )
     state.tool_line = 0
-    yield state.action(made.line, made.part("frame"), Preset(x, z), rpm_at(state, state.x))
+    yield state.action(made.line, made.part("frame"), Preset(x, z))
 
 
 def warn_of_idle_shifts(state: State) -> None:
