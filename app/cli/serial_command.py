@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeVar
 from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from app.cli.progress_bar import Progress
 from app.programs.whole_file import FileError
-from app.transfer.serial_line import Carrying
+from app.transfer.serial_line import Transfer
 from core.ports import DriverError
 
 if TYPE_CHECKING:
@@ -126,6 +126,7 @@ def _settings(args: argparse.Namespace, machine: Machine) -> DncModel:
     from dataclasses import replace
 
     from app.compose.program_transfer import PLAIN
+    from core.machine.serial_table import DncModel
 
     model = machine.hardware.table(DncModel) or PLAIN
     names = ("port", "baud", "bits", "parity", "stop", "flow", "wrap", "dc_codes", "wait", "leader")
@@ -168,13 +169,12 @@ def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> 
 
 def _store(args: argparse.Namespace, received: Received) -> int:
     from app.desk.data_folder import data_folder
-    from app.programs.whole_file import FileError
-    from app.transfer.serial_line import free_name, stored
+    from app.transfer.serial_line import free_name, store_new
 
     out = Path(args.out) if args.out else None
     folder = out.parent if out else data_folder() / "programs"
     try:
-        path = stored(received.text, folder, out.name if out else free_name(folder, received.name))
+        path = store_new(received.text, folder, out.name if out else free_name(folder, received.name))
     except FileError as error:
         sys.stderr.write(f"turndesk: {error}\n")
         return EXIT_ERRORS
@@ -200,7 +200,7 @@ T = TypeVar("T")
 _LOOK = 0.1  # s
 
 
-def carry(transfer: Carrying[T], what: str) -> T | None:
+def carry(transfer: Transfer[T], what: str) -> T | None:
     """What it answers; None when it came to nothing, which has then been said in one sentence."""
     with ThreadPoolExecutor(1, thread_name_prefix="serial") as pool, Progress(what) as progress:
         future = pool.submit(transfer.run)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from app.desk.data_folder import data_folder
 from app.offsets.offset_book import OffsetBook
-from app.programs.run_record import tell_cut_off
+from app.programs.run_record import note_cut_off_runs
 from core.executor.interrupted_job import InterruptedJob, of_plain, plain
 from core.executor.snapshot import Event
 from core.language.source import Source
@@ -44,7 +44,7 @@ class Journal:
         self.left: InterruptedJob | None = None  # what the last one has left
         try:
             self._store = Store.open(folder)
-            tell_cut_off(self._store)
+            note_cut_off_runs(self._store)
             self.left = self._noted = of_plain(self._store.setting(UNDER_WAY))
         except StoreError as error:
             self._trouble = str(error)

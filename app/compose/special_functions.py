@@ -34,8 +34,8 @@ from core.machine.serial_table import DncModel
 MakeFunction = Callable[[Desk, Machine, Persistence, Latest], SpecialFunction]
 
 
-def _keeping(desk: Desk, _machine: Machine, keep: Persistence, worker: Latest) -> SpecialFunction:
-    backup = BackupAndRestore(desk, keep, worker, data_folder() / "backups")
+def _backup(desk: Desk, _machine: Machine, persistence: Persistence, worker: Latest) -> SpecialFunction:
+    backup = BackupAndRestore(desk, persistence, worker, data_folder() / "backups")
 
     def restored() -> None:
         desk.settings.reload()
@@ -46,12 +46,12 @@ def _keeping(desk: Desk, _machine: Machine, keep: Persistence, worker: Latest) -
 
 
 def _transfer(
-    desk: Desk, machine: Machine, keep: Persistence, workshop: LoadingSteps, own: Path
+    desk: Desk, machine: Machine, persistence: Persistence, workshop: LoadingSteps, own: Path
 ) -> SpecialFunction:
     """RS-232, at first as [dnc] of the machine file says. What comes in is proved as an import is."""
     ending = {"mill": ".h"}.get(machine.kind, ".nc")
     lines = SerialLines(proving(workshop), ending)
-    return SerialTransfer(desk, keep, lines, machine.hardware.table(DncModel) or PLAIN, own)
+    return SerialTransfer(desk, persistence, lines, machine.hardware.table(DncModel) or PLAIN, own)
 
 
 # One line for each special function, in the order of the list; one whose hardware is not there has none.
@@ -60,32 +60,32 @@ ITEMS: tuple[MakeFunction, ...] = (
     lambda desk, _machine, _keep, _worker: PartsCounterFunction(desk),
     lambda desk, machine, _keep, _worker: InputsOutputs(desk, machine),
     lambda desk, machine, _keep, _worker: DriveStatus(desk, machine),
-    lambda desk, _machine, keep, worker: LoggedEvents(desk, keep, worker),
-    _keeping,
+    lambda desk, _machine, persistence, worker: LoggedEvents(desk, persistence, worker),
+    _backup,
     lambda desk, _machine, _keep, _worker: ScreenPreferences(desk),
     lambda desk, _machine, _keep, _worker: MachineFileAcceptance(desk, desk.changes),
 )
 
 
 def furnish(
-    desk: Desk, machine: Machine, keep: Persistence, workshop: LoadingSteps, own: Path | None = None
+    desk: Desk, machine: Machine, persistence: Persistence, workshop: LoadingSteps, own: Path | None = None
 ) -> None:
     """Give the desk what it remembers, and the pages that show it.
 
     ``workshop`` keeps nothing of what it proves; ``own`` is the operator's folder.
     """
-    desk.settings = SettingsBook(keep)
-    desk.counter = PartCounter(keep)
-    desk.record = RunRecord(keep)
+    desk.settings = SettingsBook(persistence)
+    desk.counter = PartCounter(persistence)
+    desk.record = RunRecord(persistence)
     worker = Latest("editing-special")
     own = own or data_folder() / "programs"
-    functions = [make(desk, machine, keep, worker) for make in ITEMS]
-    functions.append(_transfer(desk, machine, keep, workshop, own))
+    functions = [make(desk, machine, persistence, worker) for make in ITEMS]
+    functions.append(_transfer(desk, machine, persistence, workshop, own))
     desk.attach(SpecialFunctions(functions, worker))
-    desk.attach(_files(desk, keep, workshop, own))
+    desk.attach(_files(desk, persistence, workshop, own))
 
 
-def _files(desk: Desk, keep: Persistence, workshop: LoadingSteps, own: Path) -> ProgramList:
+def _files(desk: Desk, persistence: Persistence, workshop: LoadingSteps, own: Path) -> ProgramList:
     """The list of programs; what comes in is proved with the offsets of that moment."""
 
     def check(path: Path) -> str:
@@ -93,9 +93,9 @@ def _files(desk: Desk, keep: Persistence, workshop: LoadingSteps, own: Path) -> 
         proved = workshop.prove(job, lambda _count: None)
         errors = proved.proof.errors
         result = f"{len(errors)} ERRORS: {errors[0]}" if errors else "PROVED"
-        keep.program_proved(path.name, result, None if errors else proved.proof.cycle_time)
+        persistence.program_proved(path.name, result, None if errors else proved.proof.cycle_time)
         return errors[0] if errors else ""
 
     worker = Latest("editing-programs")
-    transfer = ImportExport(desk, own, keep, worker, check, FolderChooser(Path.home()))
-    return ProgramList(desk, own, keep, worker, Preview(workshop), transfer)
+    transfer = ImportExport(desk, own, persistence, worker, check, FolderChooser(Path.home()))
+    return ProgramList(desk, own, persistence, worker, Preview(workshop), transfer)

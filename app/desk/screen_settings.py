@@ -48,7 +48,7 @@ CHOICES: Mapping[str, tuple[object, ...]] = {
 class SettingsBook:
     """The choices in force. A value that is kept but no choice any more is forgotten, not obeyed."""
 
-    keep: Persistence = field(default_factory=NoPersistence)
+    persistence: Persistence = field(default_factory=NoPersistence)
     now: Settings = field(init=False)
 
     def __post_init__(self) -> None:
@@ -57,7 +57,7 @@ class SettingsBook:
     def reload(self) -> None:
         """Read what is kept; where that cannot be read the screen still has settings."""
         try:
-            kept = self.keep.setting(KEY)
+            kept = self.persistence.setting(KEY)
         except StoreError:
             kept = None
         found = kept if isinstance(kept, dict) else {}
@@ -69,7 +69,7 @@ class SettingsBook:
         if not _is_choice(name, value):
             raise ValueError(f"{name} cannot be {value!r}")
         self.now = replace(self.now, **{name: value})  # type: ignore[arg-type]
-        self.keep.save_setting(KEY, asdict(self.now))
+        self.persistence.save_setting(KEY, asdict(self.now))
 
     def following(self, name: str) -> object:
         """The choice after the present one."""

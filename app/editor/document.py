@@ -45,15 +45,15 @@ class Document:
 
     def encoded(self, text: str) -> bytes:
         """``text`` as it goes to the disk, with the line ends that the file has."""
-        return ended(text).replace("\n", self.line_end).encode("utf-8", "replace")
+        return with_last_line_ended(text).replace("\n", self.line_end).encode("utf-8", "replace")
 
 
-def ended(text: str) -> str:
+def with_last_line_ended(text: str) -> str:
     """The text with its last line ended, as it is saved and proved: nobody need press Return for that."""
     return text if text.endswith("\n") or not text else text + "\n"
 
 
-def opened(path: Path, samples: Path) -> Document:
+def open_document(path: Path, samples: Path) -> Document:
     """The document of a file. Raises SourceError when it is no program text, TooLongError when too much."""
     text = _text(path)
     if text.count("\n") >= MOST_LINES:
@@ -75,7 +75,7 @@ def _text(path: Path) -> str:
         raise
 
 
-def created(folder: Path, typed: str) -> Document:
+def new_document(folder: Path, typed: str) -> Document:
     """A new and empty document of this name. Raises NameRefusedError with a sentence."""
     return Document(folder / program_name(typed), fresh=True)
 

@@ -19,7 +19,15 @@ from app.desk.prompt_line import UNDER_WAY
 from app.desk.readouts import TURNING
 from app.desk.translation import tr
 from app.editor import editor_messages as messages
-from app.editor.document import CHANGED, Document, NameRefusedError, created, ended, opened, save_document
+from app.editor.document import (
+    CHANGED,
+    Document,
+    NameRefusedError,
+    new_document,
+    open_document,
+    save_document,
+    with_last_line_ended,
+)
 from app.editor.drafts import Drafts
 from app.editor.live_proof import LiveProof
 from app.editor.versions import Archive
@@ -104,7 +112,7 @@ class Editor:
         self.clear()
         self.block_delete = block_delete
         self.stage = Stage.READING
-        self.worker.queue(lambda: opened(path, self.samples), self._opened, self._not_opened)
+        self.worker.queue(lambda: open_document(path, self.samples), self._opened, self._not_opened)
 
     def offer(self, typed: str) -> None:
         """A name that no program has: ask whether it shall be a new one."""
@@ -117,7 +125,7 @@ class Editor:
         if self.stage is not Stage.OFFERED:
             return
         try:
-            document = created(self.programs, self._offered)
+            document = new_document(self.programs, self._offered)
         except NameRefusedError as error:
             self.notice = f"{error}; ESC"
             return
@@ -158,7 +166,7 @@ class Editor:
 
     def changed(self, text: str) -> None:
         """This is in the field now: have it proved."""
-        self.proof.submit(self.name, ended(text), self.block_delete)
+        self.proof.submit(self.name, with_last_line_ended(text), self.block_delete)
         if self.document is not None:
             self.drafts.look(self.document, text)
 
@@ -198,7 +206,7 @@ class Editor:
         if document is None or self.stage is not Stage.NAMING:
             return False
         try:
-            path = created(self.programs, typed).path
+            path = new_document(self.programs, typed).path
         except NameRefusedError as error:
             self.notice = str(error)
             return False

@@ -54,7 +54,7 @@ KEPT = 100  # lines
 class MdiLine:
     """One line with a cursor; arrows up and down go through the history, as in every shell."""
 
-    keep: Persistence = field(default_factory=NoPersistence)
+    persistence: Persistence = field(default_factory=NoPersistence)
     text: str = ""
     at: int = 0  # the cursor stands before this character
     history: list[str] = field(default_factory=list)  # oldest first
@@ -67,7 +67,7 @@ class MdiLine:
     def reload(self) -> None:
         """Read the history that is kept; what is no list of lines is forgotten."""
         try:
-            kept = self.keep.setting(KEY)
+            kept = self.persistence.setting(KEY)
         except StoreError:
             kept = None
         lines = kept if isinstance(kept, list) else []
@@ -110,7 +110,7 @@ class MdiLine:
         if self.text.strip() and (not self.history or self.history[-1] != self.text):
             self.history = [*self.history, self.text][-KEPT:]
             with suppress(StoreError):  # the desk says by itself that nothing is kept
-                self.keep.save_setting(KEY, self.history)
+                self.persistence.save_setting(KEY, self.history)
         self.put("")
         self.back, self._draft = 0, ""
 

@@ -27,7 +27,7 @@ BUSY = "STILL AT IT: WAIT UNTIL IT IS DONE"
 COPY, RENAME = "NAME OF THE COPY?", "NEW NAME?"
 
 
-def good_name(name: str, like: Path) -> str:
+def checked_name(name: str, like: Path) -> str:
     """``name`` with the ending of ``like`` where it has none. Raises FileError for what names no program."""
     name = name.strip()
     if not name:
@@ -43,7 +43,7 @@ def good_name(name: str, like: Path) -> str:
     return name
 
 
-def taken(folder: Path, name: str) -> str:
+def same_name_in(folder: Path, name: str) -> str:
     """The file of this name, in any case of letters; empty when there is none."""
     try:
         names = [path.name for path in folder.iterdir()]
@@ -52,24 +52,24 @@ def taken(folder: Path, name: str) -> str:
     return next((other for other in names if other.lower() == name.lower()), "")
 
 
-def copied(source: Path, folder: Path, name: str) -> str:
+def copy_program(source: Path, folder: Path, name: str) -> str:
     """A copy in the operator's folder; its name. Raises FileError."""
-    name = good_name(name, source)
+    name = checked_name(name, source)
     _free(folder, name)
     write_whole(folder / name, _read(source))
     return name
 
 
-def renamed(source: Path, name: str, keep: Persistence) -> str:
+def rename_program(source: Path, name: str, persistence: Persistence) -> str:
     """Another name; versions, count and record go along. Raises FileError."""
-    name = good_name(name, source)
+    name = checked_name(name, source)
     if name == source.name:
         raise FileError(f"{name} IS ITS NAME ALREADY")
     if name.lower() != source.name.lower():
         _free(source.parent, name)
     try:
         source.rename(source.with_name(name))
-        keep.renamed(source.name, name)
+        persistence.renamed(source.name, name)
     except OSError as error:
         raise FileError(f"{source.name} CANNOT BE RENAMED: {error.strerror}") from error
     except StoreError as error:
@@ -77,10 +77,10 @@ def renamed(source: Path, name: str, keep: Persistence) -> str:
     return name
 
 
-def deleted(path: Path, keep: Persistence) -> str:
+def delete_program(path: Path, persistence: Persistence) -> str:
     """The file goes, its text stays as a version. Raises FileError, and then the file is still there."""
     try:
-        keep.save_version(path.name, _read(path), "deleted")
+        persistence.save_version(path.name, _read(path), "deleted")
         path.unlink()
     except StoreError as error:
         raise FileError(f"NOT DELETED, BECAUSE ITS TEXT CANNOT BE KEPT: {error}") from error
@@ -90,7 +90,7 @@ def deleted(path: Path, keep: Persistence) -> str:
 
 
 def _free(folder: Path, name: str) -> None:
-    if other := taken(folder, name):
+    if other := same_name_in(folder, name):
         raise FileError(f"{other} IS THERE ALREADY; TAKE ANOTHER NAME")
 
 
@@ -107,7 +107,7 @@ class CopyRenameDelete:
 
     desk: Desk
     own: Path
-    keep: Persistence
+    persistence: Persistence
     worker: Latest
     here: Callable[[], Program | None]
     changed: Callable[[str], None]
@@ -144,9 +144,9 @@ class CopyRenameDelete:
         if here is None:
             self.question = ""
         elif question == COPY:
-            self._change(lambda: copied(here.path, self.own, name), "{name} IS THERE NOW")
+            self._change(lambda: copy_program(here.path, self.own, name), "{name} IS THERE NOW")
         else:
-            self._change(lambda: renamed(here.path, name, self.keep), "ITS NAME IS {name} NOW")
+            self._change(lambda: rename_program(here.path, name, self.persistence), "ITS NAME IS {name} NOW")
 
     def delete(self) -> None:
         """The marked program, after asking; its text stays among the versions."""
@@ -161,7 +161,9 @@ class CopyRenameDelete:
         if self._fixed(program):  # it was started meanwhile
             self.desk.say(self._fixed(program))
             return
-        self._change(lambda: deleted(program.path, self.keep), "{name} IS DELETED; ITS VERSIONS ARE KEPT")
+        self._change(
+            lambda: delete_program(program.path, self.persistence), "{name} IS DELETED; ITS VERSIONS ARE KEPT"
+        )
 
     def _change(self, work: Callable[[], str], words: str) -> None:
         if self.worker.busy:

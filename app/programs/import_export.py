@@ -16,7 +16,7 @@ from app.desk.latest import Latest
 from app.desk.persistence import Persistence
 from app.desk.sheet import STEPS, Key, Sheet
 from app.desk.translation import tr
-from app.programs.copy_rename_delete import BUSY, good_name, taken
+from app.programs.copy_rename_delete import BUSY, checked_name, same_name_in
 from app.programs.folder_chooser import FolderChooser, chooser_sheet
 from app.programs.whole_file import FileError, present, settle, write_out, write_whole
 from core.language.source import SourceError, load_source
@@ -40,35 +40,35 @@ class Carried:
     findings: tuple[str, ...] = ()
 
 
-def imported(
-    sources: Sequence[Path], folder: Path, keep: Persistence, check: Check, *, replace: bool
+def import_programs(
+    sources: Sequence[Path], folder: Path, persistence: Persistence, check: Check, *, replace: bool
 ) -> Carried:
     """Programs into the operator's folder, each proved. Raises FileError.
 
     Nothing is written as long as one stands there that differs and ``replace`` is not allowed.
     """
-    texts = {good_name(path.name, path): _program(path) for path in sources}
+    texts = {checked_name(path.name, path): _program(path) for path in sources}
     differing = _differing(texts, folder)
     if differing and not replace:
         return Carried(differing=differing)
     found = []
     for name, text in texts.items():
-        target = folder / (taken(folder, name) or name)
-        _keep_old(target, keep, text)
+        target = folder / (same_name_in(folder, name) or name)
+        _keep_old(target, persistence, text)
         write_whole(target, text)
         if trouble := check(target):
             found.append(f"{target.name}: {trouble}")
     return Carried(tuple(texts), (), tuple(found))
 
 
-def exported(sources: Sequence[Path], folder: Path, *, replace: bool) -> Carried:
+def export_programs(sources: Sequence[Path], folder: Path, *, replace: bool) -> Carried:
     """Programs to a folder or stick, whole and on the medium when this comes back. Raises FileError."""
     texts = {path.name: _bytes(path) for path in sources}
     differing = _differing(texts, folder)
     if differing and not replace:
         return Carried(differing=differing)
     for name, text in texts.items():
-        write_out(folder / (taken(folder, name) or name), text)
+        write_out(folder / (same_name_in(folder, name) or name), text)
     settle(folder)
     return Carried(tuple(texts))
 
@@ -96,17 +96,17 @@ def _differing(texts: dict[str, bytes], folder: Path) -> tuple[str, ...]:
     """The names that stand in the folder with another text."""
     found = []
     for name, text in texts.items():
-        other = taken(folder, name)
+        other = same_name_in(folder, name)
         if other and _bytes(folder / other) != text:
             found.append(other)
     return tuple(found)
 
 
-def _keep_old(target: Path, keep: Persistence, text: bytes) -> None:
+def _keep_old(target: Path, persistence: Persistence, text: bytes) -> None:
     try:
         old = present(target)
         if old is not None and old != text:
-            keep.save_version(target.name, old, "replaced by an import")
+            persistence.save_version(target.name, old, "replaced by an import")
     except (StoreError, FileError) as error:
         raise FileError(f"{target.name} IS NOT REPLACED, BECAUSE ITS TEXT CANNOT BE KEPT: {error}") from error
 
@@ -124,7 +124,7 @@ class ImportExport:
 
     desk: Desk
     own: Path
-    keep: Persistence
+    persistence: Persistence
     worker: Latest
     check: Check
     chooser: FolderChooser
@@ -239,11 +239,13 @@ class ImportExport:
         self._at = at
         self.desk.say("COPYING: LEAVE THE STICK WHERE IT IS")
         if self.out:
-            self.worker.queue(lambda: exported(paths, at, replace=replace), self._done, self._failed)
+            self.worker.queue(lambda: export_programs(paths, at, replace=replace), self._done, self._failed)
         else:
-            own, keep, check = self.own, self.keep, self.check
+            own, persistence, check = self.own, self.persistence, self.check
             self.worker.queue(
-                lambda: imported(paths, own, keep, check, replace=replace), self._done, self._failed
+                lambda: import_programs(paths, own, persistence, check, replace=replace),
+                self._done,
+                self._failed,
             )
 
     def _done(self, carried: Carried) -> None:

@@ -53,11 +53,11 @@ class Preview:
         return self.wanted is not None and self.wanted not in self._made
 
     def _begin(self, program: Program) -> None:
-        keep = partial(self._keep, program.key)
+        done = partial(self._keep, program.key)
         if program.size > LARGEST:
-            keep("TOO LARGE FOR A PREVIEW")
+            done("TOO LARGE FOR A PREVIEW")
         else:
-            self._worker.ask(partial(self._draw, program), keep, keep)
+            self._worker.ask(partial(self._draw, program), done, done)
 
     def _draw(self, program: Program, watch: Watch) -> Picture:
         source = self.workshop.read(program.path)

@@ -16,7 +16,7 @@ from app.desk.sheet import STEPS, Entry, Key, Row, Sheet
 from app.programs.copy_rename_delete import COPY, NONE, RENAME, CopyRenameDelete
 from app.programs.import_export import ImportExport
 from app.programs.preview import Preview
-from app.programs.program_rows import ORDERS, Program, day, local, programs, sorted_by
+from app.programs.program_rows import ORDERS, Program, list_programs, minute_of, minute_of_file, sorted_by
 from core.executor.snapshot import State
 
 
@@ -26,7 +26,7 @@ class ProgramList:
 
     desk: Desk
     own: Path
-    keep: Persistence
+    persistence: Persistence
     worker: Latest
     preview: Preview
     transfer: ImportExport
@@ -41,7 +41,7 @@ class ProgramList:
     def __post_init__(self) -> None:
         self.transfer.finished = self.look_again
         self.changer = CopyRenameDelete(
-            self.desk, self.own, self.keep, self.worker, lambda: self.here, self._changed
+            self.desk, self.own, self.persistence, self.worker, lambda: self.here, self._changed
         )
 
     @property
@@ -63,7 +63,7 @@ class ProgramList:
 
     def look_again(self) -> None:
         """Read the folders again; the answer comes with a later frame."""
-        work = partial(programs, self.desk.shelf, self.own, self.keep)
+        work = partial(list_programs, self.desk.shelf, self.own, self.persistence)
         self.worker.queue(work, self._found, self.desk.refuse)
 
     def look(self) -> None:
@@ -75,12 +75,12 @@ class ProgramList:
         self._after, self.all = "", found
         self._narrow(name)
 
-    def _narrow(self, keep: str = "") -> None:
+    def _narrow(self, mark: str = "") -> None:
         part = self.find.text.strip().lower()
         found = [program for program in self.all if part in program.name.lower()]
         self.shown = sorted_by(self.order, found)
         names = [program.name for program in self.shown]
-        self.marked = names.index(keep) if keep in names else 0
+        self.marked = names.index(mark) if mark in names else 0
 
     @property
     def here(self) -> Program | None:
@@ -227,7 +227,7 @@ def sheet_of(model: ProgramList) -> Sheet:
 def _row(program: Program) -> Row:
     run = program.run
     best = formats.duration(run.best) if run.best is not None else formats.NOTHING
-    cells = (program.name, day(program.changed), local(run.started), str(run.parts), best)
+    cells = (program.name, minute_of_file(program.changed), minute_of(run.started), str(run.parts), best)
     good = run.proof == "PROVED"
     lit = None if not run.proof else good
     return Row(cells, lit, Tone.RUN if good else Tone.ALARM)
@@ -239,12 +239,15 @@ def details_of(program: Program) -> tuple[Detail, ...]:
     return (
         ("SIZE", formats.file_size(program.size)),
         ("WHERE", "SAMPLE" if program.sample else "OWN PROGRAM"),
-        ("LAST RUN", f"{local(run.started)}  ·  {run.outcome}" if run.outcome else local(run.started)),
+        (
+            "LAST RUN",
+            f"{minute_of(run.started)}  ·  {run.outcome}" if run.outcome else minute_of(run.started),
+        ),
         ("PARTS", str(run.parts)),
         ("BEST CYCLE", _time(run.best)),
         ("LAST CYCLE", _time(run.latest)),
         ("PLANNED", _time(run.planned)),
-        ("LAST PROOF", f"{run.proof}  ·  {local(run.proved)}" if run.proof else "NEVER PROVED"),
+        ("LAST PROOF", f"{run.proof}  ·  {minute_of(run.proved)}" if run.proof else "NEVER PROVED"),
     )
 
 

@@ -31,9 +31,9 @@ class Program:
         return str(self.path), self.changed, self.size
 
 
-def programs(shelf: ProgramFolders, own: Path, keep: Persistence) -> tuple[Program, ...]:
+def list_programs(shelf: ProgramFolders, own: Path, persistence: Persistence) -> tuple[Program, ...]:
     """All programs of the shelf. Takes its time; raises StoreError when the store cannot be read."""
-    runs = {row.program: row for row in keep.runs()}
+    runs = {row.program: row for row in persistence.runs()}
     return tuple(
         Program(entry.name, entry.path, status.st_size, status.st_mtime, entry.path.parent != own, run)
         for entry in shelf.entries()
@@ -70,11 +70,11 @@ def sorted_by(order: str, found: Sequence[Program]) -> tuple[Program, ...]:
     return tuple(sorted(found, key=ORDERS[order]))
 
 
-def local(at: str | None) -> str:
+def minute_of(at: str | None) -> str:
     """A time of the store as a clock on the wall shows it; a dash where there is none."""
     return formats.local_time(at, seconds=False) if at else formats.NOTHING
 
 
-def day(seconds: float) -> str:
+def minute_of_file(seconds: float) -> str:
     """The time of a file in the same way."""
     return datetime.fromtimestamp(seconds).strftime("%Y-%m-%d %H:%M")

@@ -23,7 +23,7 @@ _SETTLED = frozenset({Phase.READY, Phase.REFUSED, Phase.UNREADABLE})
 class RunRecord:
     """Looks at every snapshot; posts what has happened to the store and never waits for it."""
 
-    keep: Persistence = field(default_factory=NoPersistence)
+    persistence: Persistence = field(default_factory=NoPersistence)
     running: str = ""  # the program under way
     _parts: int | None = None
     _ends: int = 0
@@ -42,9 +42,9 @@ class RunRecord:
         parts, self._parts = self._parts, snapshot.parts
         name = Path(snapshot.program).name
         if parts is not None and snapshot.parts > parts and name:
-            self.keep.cycle_finished(name, snapshot.last_cycle)
+            self.persistence.cycle_finished(name, snapshot.last_cycle)
             if not self.running:
-                self.keep.run_started(name)
+                self.persistence.run_started(name)
             self._end(name, COMPLETE)
         elif parts is not None and snapshot.ends > self._ends and self.running:
             self._end(name, UNCOUNTED)
@@ -54,13 +54,13 @@ class RunRecord:
         under_way = snapshot.state in _RUNNING and snapshot.block > 0 and snapshot.lines == self._lines
         if under_way and not self.running and name:
             self.running = name
-            self.keep.run_started(name)
+            self.persistence.run_started(name)
         elif self.running and snapshot.state not in _RUNNING:
             self._end(self.running, _outcome(snapshot))
 
     def _end(self, name: str, outcome: str) -> None:
         self.running = ""
-        self.keep.run_ended(name, outcome)
+        self.persistence.run_ended(name, outcome)
 
     def _proof(self, loaded: Loaded) -> None:
         if loaded is self._loaded:
@@ -70,13 +70,13 @@ class RunRecord:
             return
         errors = len(loaded.errors)
         if loaded.phase is Phase.UNREADABLE:
-            self.keep.program_proved(loaded.path.name, "UNREADABLE", None)
+            self.persistence.program_proved(loaded.path.name, "UNREADABLE", None)
         elif loaded.phase is Phase.REFUSED:
             first = loaded.errors[0].message if errors else ""
-            self.keep.program_proved(loaded.path.name, f"{max(errors, 1)} ERRORS: {first}", None)
+            self.persistence.program_proved(loaded.path.name, f"{max(errors, 1)} ERRORS: {first}", None)
         else:
             planned = loaded.proof.cycle_time if loaded.proof else None
-            self.keep.program_proved(loaded.path.name, "PROVED", planned)
+            self.persistence.program_proved(loaded.path.name, "PROVED", planned)
 
 
 def _outcome(snapshot: Snapshot) -> str:
@@ -87,7 +87,7 @@ def _outcome(snapshot: Snapshot) -> str:
     return GIVEN_UP
 
 
-def tell_cut_off(store: Store) -> None:
+def note_cut_off_runs(store: Store) -> None:
     """At the start, when nothing runs yet: a run without an end is one that the control did not outlive."""
     told = store.runs_cut_off(CUT_OFF, ": the control ended in the middle of its last run")
     with suppress(StoreError):  # a disk that is full gets it later

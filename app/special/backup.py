@@ -44,13 +44,13 @@ class BackupAndRestore(SpecialFunction):
     def __init__(
         self,
         desk: Desk,
-        keep: Persistence,
+        persistence: Persistence,
         worker: Latest,
         folder: Path,
         plugged: Callable[[], Sequence[Stick]] = sticks,
     ) -> None:
         super().__init__(desk)
-        self.keep, self.worker, self.folder, self.plugged = keep, worker, folder, plugged
+        self.persistence, self.worker, self.folder, self.plugged = persistence, worker, folder, plugged
         self.places: tuple[Place, ...] = ()
         self.busy = ""
         self.restored: Callable[[], None] = _nobody
@@ -121,7 +121,7 @@ class BackupAndRestore(SpecialFunction):
                 place.path.mkdir(parents=True, exist_ok=True)
             except OSError as error:
                 raise FileError(f"{place.path} CANNOT BE WRITTEN: {error.strerror}") from error
-            self.keep.backup(target)
+            self.persistence.backup(target)
             os.sync()
             return name
 
@@ -145,7 +145,7 @@ class BackupAndRestore(SpecialFunction):
             return
         self.busy = "Restoring …"
         self.desk.restoring = True
-        self.worker.queue(lambda: self.keep.restore(place.path), self._done, self._failed)
+        self.worker.queue(lambda: self.persistence.restore(place.path), self._done, self._failed)
 
     def _done(self, kept: Path | None) -> None:
         self.busy = ""

@@ -30,9 +30,9 @@ class LoggedEvents(SpecialFunction):
     name = "EVENT LOG"
     use = "what happened when; search"
 
-    def __init__(self, desk: Desk, keep: Persistence, worker: Latest) -> None:
+    def __init__(self, desk: Desk, persistence: Persistence, worker: Latest) -> None:
         super().__init__(desk)
-        self.keep, self.worker = keep, worker
+        self.persistence, self.worker = persistence, worker
         self.entry = Entry(words=True)
         self.searching = False
         self.filter = "ALL"
@@ -74,7 +74,9 @@ class LoggedEvents(SpecialFunction):
     def look(self) -> None:
         """Ask the store; the answer comes with a later frame. Of questions meanwhile only the last counts."""
         search, kinds = self.entry.text.strip(), FILTERS[self.filter]
-        self.worker.ask(lambda _: tuple(self.keep.events(search, kinds, SHOWN)), self._found, self._failed)
+        self.worker.ask(
+            lambda _: tuple(self.persistence.events(search, kinds, SHOWN)), self._found, self._failed
+        )
 
     def _found(self, events: tuple[EventRow, ...]) -> None:
         self.trouble = ""

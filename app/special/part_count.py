@@ -23,12 +23,12 @@ class PartCounter:
     In the cycle that makes the last part Cycle Repeat is switched off, so that the machine stops by itself.
     """
 
-    keep: Persistence = field(default_factory=NoPersistence)
+    persistence: Persistence = field(default_factory=NoPersistence)
     program: str = ""
     count: int = 0
     target: int = 0
     _seen: int | None = None
-    _last_told: int = -1
+    _announced: int = -1
     _made: int = -1  # as the executor was told
 
     @property
@@ -45,7 +45,7 @@ class PartCounter:
         """One frame: another program, another part, the last part."""
         name = Path(snapshot.program).name
         if name != self.program:
-            self._take_up(name)
+            self._load(name)
             self._seen = snapshot.parts
         if self._seen is not None and snapshot.parts > self._seen:
             self.count += snapshot.parts - self._seen
@@ -56,10 +56,10 @@ class PartCounter:
                     )
                 )
         self._seen = snapshot.parts
-        self._tell(snapshot, post)
+        self._tell_executor(snapshot, post)
         self._stop_at(snapshot, post, say)
 
-    def _tell(self, snapshot: Snapshot, post: Callable[[Command], None]) -> None:
+    def _tell_executor(self, snapshot: Snapshot, post: Callable[[Command], None]) -> None:
         """The executor numbers the part under way by this count."""
         if self.program and self.count not in {snapshot.made, self._made}:
             post(PartsMade(self.count))
@@ -69,40 +69,40 @@ class PartCounter:
         self, snapshot: Snapshot, post: Callable[[Command], None], say: Callable[[str], None]
     ) -> None:
         last = snapshot.counts and self.target > 0 and self.count + 1 >= self.target
-        if last and snapshot.cycle_repeat and snapshot.state in _RUNNING and self._last_told != self.count:
-            self._last_told = self.count
+        if last and snapshot.cycle_repeat and snapshot.state in _RUNNING and self._announced != self.count:
+            self._announced = self.count
             post(SetSwitch("cycle_repeat", False))
             say("THE LAST PART OF THE TARGET: CYCLE REPEAT IS SWITCHED OFF")
 
-    def _take_up(self, name: str) -> None:
-        self.program, self.count, self.target, self._last_told = name, 0, 0, -1
+    def _load(self, name: str) -> None:
+        self.program, self.count, self.target, self._announced = name, 0, 0, -1
         if not name:
             return
         try:
-            self.count = self.keep.parts(name)
-            kept = self.keep.setting(_key(name))
+            self.count = self.persistence.parts(name)
+            kept = self.persistence.setting(_key(name))
         except StoreError:
             return  # the desk says by itself that nothing is kept
         self.target = kept if isinstance(kept, int) and 0 < kept <= MOST else 0
 
     def reload(self) -> None:
         """Read count and target again, after a restore."""
-        self._take_up(self.program)
+        self._load(self.program)
 
-    def aim(self, target: int) -> None:
+    def set_target(self, target: int) -> None:
         """So many parts, 0: no target. Raises StoreError when it is not kept."""
-        self.target, self._last_told = target, -1
-        self.keep.save_setting(_key(self.program), target or None)
+        self.target, self._announced = target, -1
+        self.persistence.save_setting(_key(self.program), target or None)
 
     def correct(self, by: int) -> None:
         """Parts that were made otherwise, or are scrap. Raises StoreError when it is not kept."""
-        self.count, self._last_told = self.count + by, -1
-        self.keep.correct_parts(self.program, by)
+        self.count, self._announced = self.count + by, -1
+        self.persistence.correct_parts(self.program, by)
 
     def reset(self) -> None:
         """The count to nought. Raises StoreError when it is not kept."""
-        self.count, self._last_told = 0, -1
-        self.keep.reset_parts(self.program)
+        self.count, self._announced = 0, -1
+        self.persistence.reset_parts(self.program)
 
 
 def _key(program: str) -> str:

@@ -72,7 +72,7 @@ class PartsCounterFunction(FigureFunction):
             self.desk.say("THE COUNT IS AT NOUGHT")
         else:
             self.desk.clear()
-            self._kept(lambda: self.counter.correct(by))
+            self._save(lambda: self.counter.correct(by))
 
     def reset(self) -> None:
         """Count to nought, after asking."""
@@ -81,7 +81,7 @@ class PartsCounterFunction(FigureFunction):
         elif self.counter.count == 0:
             self.desk.say("THE COUNT IS AT NOUGHT")
         else:
-            self.desk.ask(RESET, partial(self._kept, self.counter.reset))
+            self.desk.ask(RESET, partial(self._save, self.counter.reset))
 
     def take(self, text: str) -> bool:
         """The target, from the count on; 0 takes it away."""
@@ -95,10 +95,10 @@ class PartsCounterFunction(FigureFunction):
                 tr("REFUSED: {made} PARTS ARE MADE ALREADY; F4 PUTS THE COUNT TO NOUGHT").format(made=made)
             )
             return False
-        self._kept(lambda: self.counter.aim(target))
+        self._save(lambda: self.counter.set_target(target))
         return True
 
-    def _kept(self, change: Callable[[], None]) -> None:
+    def _save(self, change: Callable[[], None]) -> None:
         try:
             change()
         except StoreError as error:

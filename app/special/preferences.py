@@ -31,7 +31,7 @@ class ScreenPreferences(SpecialFunction):
     def sheet(self, snapshot: Snapshot) -> Sheet:
         """What is chosen now."""
         now = self.desk.settings.now
-        rows = tuple(Row((words, _told(getattr(now, name)))) for name, words in WORDS.items())
+        rows = tuple(Row((words, _in_words(getattr(now, name)))) for name, words in WORDS.items())
         control = "MM" if snapshot.modal.metric else "INCH"
         return Sheet(
             "SCREEN",
@@ -75,7 +75,7 @@ class ScreenPreferences(SpecialFunction):
         return "ARROWS MARK, RETURN GOES ON TO THE NEXT CHOICE; ESC GOES BACK TO THE LIST"
 
 
-def _told(value: object) -> str:
+def _in_words(value: object) -> str:
     if isinstance(value, bool):
         return "SHOWN" if value else "HIDDEN"
     return VALUES.get(str(value), str(value))

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol, TypeVar
 
-from app.programs.copy_rename_delete import good_name, taken
+from app.programs.copy_rename_delete import checked_name, same_name_in
 from app.programs.whole_file import FileError, write_new
 from core.machine.serial_table import DncModel
 
 T_co = TypeVar("T_co", covariant=True)
 
 
-class Reach(Protocol):
+class TransferProgress(Protocol):
     """How far it has come. ``total`` 0: nobody knows; ``what`` it waits for: held, dc1, sender or frame."""
 
     @property
@@ -48,11 +48,11 @@ class Received:
     cycle: float
 
 
-class Carrying(Protocol[T_co]):
+class Transfer(Protocol[T_co]):
     """One transfer. ``run`` takes its time and is called on a worker; all else by anybody."""
 
     @property
-    def reach(self) -> Reach: ...
+    def reach(self) -> TransferProgress: ...
 
     def cancel(self) -> None:
         """Give it up: ``run`` ends with a sentence, and nothing is kept."""
@@ -63,18 +63,18 @@ class Carrying(Protocol[T_co]):
         ...
 
 
-class Lines(Protocol):
+class SerialPorts(Protocol):
     """The serial ports, and transfers over them."""
 
     def ports(self) -> Sequence[tuple[str, str]]:
         """Device and what it is. Raises DriverError."""
         ...
 
-    def send(self, settings: DncModel, path: Path) -> Carrying[int]:
+    def send(self, settings: DncModel, path: Path) -> Transfer[int]:
         """A program out; ``run`` answers how many bytes went."""
         ...
 
-    def receive(self, settings: DncModel) -> Carrying[Received]:
+    def receive(self, settings: DncModel) -> Transfer[Received]:
         """A program in."""
         ...
 
@@ -84,10 +84,10 @@ class Lines(Protocol):
 ENDING = ".nc"
 
 
-def stored(text: bytes, folder: Path, name: str) -> Path:
+def store_new(text: bytes, folder: Path, name: str) -> Path:
     """The new file. Raises FileError: the name is none, or is taken, or the disk does not take it."""
-    name = good_name(name, Path(f"x{ENDING}"))
-    if other := taken(folder, name):
+    name = checked_name(name, Path(f"x{ENDING}"))
+    if other := same_name_in(folder, name):
         raise FileError(f"{other} IS THERE ALREADY; TAKE ANOTHER NAME")
     write_new(folder / name, text)
     return folder / name
@@ -98,7 +98,7 @@ def free_name(folder: Path, name: str) -> str:
     base = Path(name or "RECEIVED")
     suffix = base.suffix or ENDING
     tried, number = f"{base.stem}{suffix}", 1
-    while taken(folder, tried):
+    while same_name_in(folder, tried):
         number += 1
         tried = f"{base.stem}-{number}{suffix}"
     return tried

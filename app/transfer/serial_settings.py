@@ -68,12 +68,12 @@ ROWS: tuple[Row, ...] = (
 )
 
 
-def kept_form(model: DncModel) -> dict[str, object]:
+def stored_form(model: DncModel) -> dict[str, object]:
     """What is kept of it."""
     return asdict(model)
 
 
-def form_of(kept: object, default: DncModel) -> DncModel:
+def settings_of(kept: object, default: DncModel) -> DncModel:
     """What was kept, as far as it is still good; else the machine file's."""
     if not isinstance(kept, dict):
         return default

@@ -15,8 +15,8 @@ from app.desk.sheet import Entry, Key, Row, Sheet
 from app.desk.translation import tr
 from app.programs.whole_file import FileError
 from app.special.special_functions import SpecialFunction
-from app.transfer.serial_line import Carrying, Lines, Reach, Received, free_name, stored
-from app.transfer.serial_settings import ROWS, form_of, kept_form
+from app.transfer.serial_line import Received, SerialPorts, Transfer, TransferProgress, free_name, store_new
+from app.transfer.serial_settings import ROWS, settings_of, stored_form
 from core.executor.snapshot import Snapshot
 from core.machine.serial_table import DncModel
 from core.store.store_errors import StoreError
@@ -36,7 +36,7 @@ def settings_sheet(settings: DncModel, marked: int, chosen: Path | None, last: s
     return Sheet(TITLE, ("SETTING", "VALUE"), (0.5, 0.5), rows, marked, notes=notes, raw=frozenset({0, 1}))
 
 
-def progress_sheet(reach: Reach, settings: DncModel, sends: str) -> Sheet:
+def progress_sheet(reach: TransferProgress, settings: DncModel, sends: str) -> Sheet:
     """How far it has come."""
     share = f"{reach.done / reach.total:.0%}" if reach.total else "—"
     rows = (
@@ -87,7 +87,7 @@ def received_sheet(received: Received, name: str) -> Sheet:
     )
 
 
-KEPT = "rs232"
+SETTING = "rs232"
 BUSY = "A TRANSFER IS UNDER WAY: WAIT UNTIL IT IS DONE, OR F6 GIVES IT UP"
 UNDER_WAY_NAME = "A PROGRAM IS UNDER WAY: RETURN STORES IT AS IT IS NAMED; ANOTHER NAME CAN BE TYPED AT REST"
 THROW_AWAY = "PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, ESC TO KEEP IT"
@@ -99,13 +99,15 @@ class SerialTransfer(SpecialFunction):
     name = "RS-232"
     use = "programs over the serial line"
 
-    def __init__(self, desk: Desk, keep: Persistence, lines: Lines, default: DncModel, own: Path) -> None:
+    def __init__(
+        self, desk: Desk, persistence: Persistence, lines: SerialPorts, default: DncModel, own: Path
+    ) -> None:
         super().__init__(desk)
-        self.keep, self.lines, self.own = keep, lines, own
+        self.persistence, self.lines, self.own = persistence, lines, own
         self.worker = Latest("editing-serial")
-        self.settings = _kept(keep, default)
+        self.settings = _stored_settings(persistence, default)
         self.ports: Sequence[str] = ()
-        self.under_way: Carrying[int] | Carrying[Received] | None = None
+        self.under_way: Transfer[int] | Transfer[Received] | None = None
         self.sends = ""  # the name of the program that is being sent
         self.received: Received | None = None
         self.entry = Entry(words=True)
@@ -253,7 +255,7 @@ class SerialTransfer(SpecialFunction):
     def _store(self) -> None:
         assert self.received is not None
         try:
-            path = stored(self.received.text, self.own, self.entry.text)
+            path = store_new(self.received.text, self.own, self.entry.text)
         except FileError as error:
             self.desk.refuse(str(error))
             return
@@ -273,13 +275,13 @@ class SerialTransfer(SpecialFunction):
         self.settings = replace(ROWS[self.marked][2](self.settings, ports))
         self.desk.clear()
         try:
-            self.keep.save_setting(KEPT, kept_form(self.settings))
+            self.persistence.save_setting(SETTING, stored_form(self.settings))
         except StoreError as error:
             self.desk.refuse(str(error))
 
 
-def _kept(keep: Persistence, default: DncModel) -> DncModel:
+def _stored_settings(persistence: Persistence, default: DncModel) -> DncModel:
     try:
-        return form_of(keep.setting(KEPT), default)
+        return settings_of(persistence.setting(SETTING), default)
     except StoreError:
         return default  # the desk says by itself that nothing is kept

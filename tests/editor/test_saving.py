@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.editor.document import CHANGED, MOST_LINES, TooLongError, created, opened, save_document
+from app.editor.document import CHANGED, MOST_LINES, TooLongError, new_document, open_document, save_document
 from app.programs.whole_file import FileError, write_whole
 from core.language.source import SourceError
 from tests.editor.shop import GOOD, Memory
@@ -63,7 +63,7 @@ def test_a_failure_in_the_middle_leaves_the_old_file(part: Path, monkeypatch: py
 def test_line_ends_of_dos_stay(tmp_path: Path) -> None:
     path = tmp_path / "dos.nc"
     path.write_bytes(b"X1\r\nM30\r\n")
-    document = opened(path, tmp_path / "samples")
+    document = open_document(path, tmp_path / "samples")
     assert document.text == "X1\nM30\n"
     assert save_document(document, "X2\nM30", Memory(), replacing=False) == ""
     assert path.read_bytes() == b"X2\r\nM30\r\n"
@@ -75,14 +75,14 @@ def test_line_ends_of_dos_stay(tmp_path: Path) -> None:
 def test_files_of_other_days_are_known_again(tmp_path: Path, data: bytes) -> None:
     path, memory = tmp_path / "old.nc", Memory()
     path.write_bytes(data)
-    document = opened(path, tmp_path / "samples")
+    document = open_document(path, tmp_path / "samples")
     assert save_document(document, document.text + "(NEW)", memory, replacing=False) == ""
     assert memory.kept["old.nc"][0][0] == data  # the very bytes that were there
-    assert opened(path, tmp_path / "samples").text.startswith(document.text + "(NEW)")
+    assert open_document(path, tmp_path / "samples").text.startswith(document.text + "(NEW)")
 
 
 def test_what_another_program_wrote_is_shown_first_and_kept(part: Path) -> None:
-    document, memory = opened(part, part.parent / "samples"), Memory()
+    document, memory = open_document(part, part.parent / "samples"), Memory()
     part.write_text("M02\n")
     assert save_document(document, "M30\n", memory, replacing=False) == CHANGED
     assert part.read_text() == "M02\n"
@@ -91,39 +91,39 @@ def test_what_another_program_wrote_is_shown_first_and_kept(part: Path) -> None:
 
 
 def test_what_another_program_wrote_is_not_replaced_when_it_cannot_be_kept(part: Path) -> None:
-    document = opened(part, part.parent / "samples")
+    document = open_document(part, part.parent / "samples")
     part.write_text("M02\n")
     assert save_document(document, "M30\n", Memory(full=True), replacing=True) == CHANGED
     assert part.read_text() == "M02\n"
 
 
 def test_a_full_archive_does_not_keep_the_file_from_being_saved(part: Path) -> None:
-    document = opened(part, part.parent / "samples")
+    document = open_document(part, part.parent / "samples")
     assert save_document(document, "M30\n", Memory(full=True), replacing=False) == "the disk is full"
     assert part.read_text() == "M30\n"
 
 
 def test_a_file_that_has_come_meanwhile_is_not_overwritten_by_a_new_one(tmp_path: Path) -> None:
-    document = created(tmp_path, "part")
+    document = new_document(tmp_path, "part")
     (tmp_path / "part.nc").write_text("M02\n")
     assert save_document(document, "M30\n", Memory(), replacing=False) == CHANGED
 
 
 def test_samples_are_protected_and_an_empty_file_can_be_written(tmp_path: Path) -> None:
     (tmp_path / "empty.nc").write_text("")
-    assert opened(tmp_path / "empty.nc", tmp_path).protected
-    assert opened(tmp_path / "empty.nc", tmp_path / "samples").text == ""
+    assert open_document(tmp_path / "empty.nc", tmp_path).protected
+    assert open_document(tmp_path / "empty.nc", tmp_path / "samples").text == ""
 
 
 def test_what_is_no_program_is_not_opened(tmp_path: Path) -> None:
     (tmp_path / "picture.nc").write_bytes(b"\x89PNG\0\0")
     with pytest.raises(SourceError, match="zero bytes"):
-        opened(tmp_path / "picture.nc", tmp_path)
+        open_document(tmp_path / "picture.nc", tmp_path)
 
 
 def test_a_text_too_long_for_the_field_is_not_opened(tmp_path: Path) -> None:
     (tmp_path / "long.nc").write_text("X1\n" * MOST_LINES)
     with pytest.raises(TooLongError, match="over 50000 lines"):
-        opened(tmp_path / "long.nc", tmp_path)
+        open_document(tmp_path / "long.nc", tmp_path)
     (tmp_path / "long.nc").write_text("X1\n" * (MOST_LINES - 1))
-    assert opened(tmp_path / "long.nc", tmp_path).text
+    assert open_document(tmp_path / "long.nc", tmp_path).text

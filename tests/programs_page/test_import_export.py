@@ -9,9 +9,9 @@ import pytest
 
 from app.desk.persistence import NoPersistence
 from app.programs import import_export
-from app.programs.copy_rename_delete import deleted, good_name, renamed
+from app.programs.copy_rename_delete import checked_name, delete_program, rename_program
 from app.programs.folder_chooser import UP, FolderChooser, Stick
-from app.programs.import_export import Carried, exported, imported
+from app.programs.import_export import Carried, export_programs, import_programs
 from app.programs.whole_file import FileError
 from tests.programs_page.test_run_record import Kept
 
@@ -36,7 +36,7 @@ def test_nothing_is_written_while_one_stands_there_with_another_text(tmp_path: P
     sources = made(tmp_path / "stick", a="M30\n", b="M02\n")
     own = tmp_path / "own"
     made(own, b="M00\n")
-    carried = imported(sources, own, Keeping(), lambda _path: "", replace=False)
+    carried = import_programs(sources, own, Keeping(), lambda _path: "", replace=False)
     assert carried == Carried(differing=("b.nc",))
     assert not (own / "a.nc").exists()
 
@@ -46,7 +46,7 @@ def test_the_same_text_is_no_quarrel(tmp_path: Path) -> None:
     own = tmp_path / "own"
     made(own, a="M30\n")
     keep = Keeping()
-    assert imported(sources, own, keep, lambda _path: "", replace=False).done == ("a.nc",)
+    assert import_programs(sources, own, keep, lambda _path: "", replace=False).done == ("a.nc",)
     assert keep.told == []
 
 
@@ -55,7 +55,7 @@ def test_where_versions_are_not_kept_nothing_is_replaced(tmp_path: Path) -> None
     own = tmp_path / "own"
     made(own, a="M00\n")
     with pytest.raises(FileError, match="CANNOT BE KEPT"):
-        imported(sources, own, NoPersistence(), lambda _path: "", replace=True)
+        import_programs(sources, own, NoPersistence(), lambda _path: "", replace=True)
     assert (own / "a.nc").read_text() == "M00\n"
 
 
@@ -64,7 +64,7 @@ def test_one_bad_file_keeps_all_of_them_out(tmp_path: Path) -> None:
     bad = tmp_path / "stick" / "b.nc"
     bad.write_bytes(b"\x00\x01" * 40)
     with pytest.raises(FileError, match=r"b\.nc IS NO PROGRAM"):
-        imported([*sources, bad], tmp_path / "own", Keeping(), lambda _path: "", replace=False)
+        import_programs([*sources, bad], tmp_path / "own", Keeping(), lambda _path: "", replace=False)
     assert not (tmp_path / "own").exists()
 
 
@@ -72,7 +72,7 @@ def test_a_file_that_is_too_large_is_not_read(tmp_path: Path, monkeypatch: pytes
     monkeypatch.setattr(import_export, "LARGEST", 3)
     sources = made(tmp_path / "stick", a="M30\n")
     with pytest.raises(FileError, match="LARGER THAN ANY PROGRAM"):
-        exported(sources, tmp_path, replace=False)
+        export_programs(sources, tmp_path, replace=False)
 
 
 def test_a_copy_that_does_not_read_back_is_no_copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -82,7 +82,7 @@ def test_a_copy_that_does_not_read_back_is_no_copy(tmp_path: Path, monkeypatch: 
     real = Path.read_bytes
     monkeypatch.setattr(Path, "read_bytes", lambda path: b"" if ".part" in str(path) else real(path))
     with pytest.raises(FileError, match="DOES NOT READ BACK"):
-        exported(sources, stick, replace=False)
+        export_programs(sources, stick, replace=False)
     assert list(stick.iterdir()) == []
 
 
@@ -96,7 +96,7 @@ def test_a_full_stick_leaves_no_half_file(tmp_path: Path, monkeypatch: pytest.Mo
 
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(FileError, match="No space left"):
-        exported(sources, stick, replace=False)
+        export_programs(sources, stick, replace=False)
     assert list(stick.iterdir()) == []
 
 
@@ -105,26 +105,26 @@ def test_a_full_stick_leaves_no_half_file(tmp_path: Path, monkeypatch: pytest.Mo
     [("part", "part.nc"), (" part ", "part.nc"), ("part.TXT", "part.TXT"), ("3.5", "3.5.nc")],
 )
 def test_a_name_gets_the_ending_it_lacks(typed: str, name: str) -> None:
-    assert good_name(typed, Path("like.nc")) == name
+    assert checked_name(typed, Path("like.nc")) == name
 
 
 @pytest.mark.parametrize("typed", ["", "  ", "a/b", "..", ".hidden", "a:b", "x" * 300])
 def test_a_name_that_will_not_do(typed: str) -> None:
     with pytest.raises(FileError):
-        good_name(typed, Path("like.nc"))
+        checked_name(typed, Path("like.nc"))
 
 
 def test_another_case_of_letters_is_another_name_of_the_same_file(tmp_path: Path) -> None:
     (path,) = made(tmp_path / "own", a="M30\n")
-    assert renamed(path, "A", NoPersistence()) == "A.nc"
+    assert rename_program(path, "A", NoPersistence()) == "A.nc"
     with pytest.raises(FileError, match="IS ITS NAME ALREADY"):
-        renamed(path.with_name("A.nc"), "A.nc", NoPersistence())
+        rename_program(path.with_name("A.nc"), "A.nc", NoPersistence())
 
 
 def test_what_cannot_be_kept_is_not_deleted(tmp_path: Path) -> None:
     (path,) = made(tmp_path / "own", a="M30\n")
     with pytest.raises(FileError, match="NOT DELETED"):
-        deleted(path, NoPersistence())
+        delete_program(path, NoPersistence())
     assert path.exists()
 
 

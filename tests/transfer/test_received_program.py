@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from app.programs.whole_file import FileError
-from app.transfer.serial_line import free_name, stored
+from app.transfer.serial_line import free_name, store_new
 
 
 def test_a_new_file_with_its_ending(tmp_path: Path) -> None:
-    path = stored(b"M30\n", tmp_path / "programs", "O77")
+    path = store_new(b"M30\n", tmp_path / "programs", "O77")
     assert path == tmp_path / "programs" / "O77.nc"
     assert path.read_bytes() == b"M30\n"
     assert [each.name for each in path.parent.iterdir()] == ["O77.nc"]
@@ -21,7 +21,7 @@ def test_a_new_file_with_its_ending(tmp_path: Path) -> None:
 def test_what_is_there_stays(tmp_path: Path, name: str) -> None:
     (tmp_path / "O77.nc").write_bytes(b"OLD\n")
     with pytest.raises(FileError, match="IS THERE ALREADY; TAKE ANOTHER NAME"):
-        stored(b"M30\n", tmp_path, name)
+        store_new(b"M30\n", tmp_path, name)
     assert (tmp_path / "O77.nc").read_bytes() == b"OLD\n"
     assert len(list(tmp_path.iterdir())) == 1
 
@@ -29,14 +29,14 @@ def test_what_is_there_stays(tmp_path: Path, name: str) -> None:
 @pytest.mark.parametrize("name", ["", "  ", "../O77", "a/b", ".hidden"])
 def test_names_that_are_none(tmp_path: Path, name: str) -> None:
     with pytest.raises(FileError):
-        stored(b"M30\n", tmp_path, name)
+        store_new(b"M30\n", tmp_path, name)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_disk_that_takes_nothing_is_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "file").write_bytes(b"")
     with pytest.raises(FileError, match="CANNOT BE WRITTEN"):
-        stored(b"M30\n", tmp_path / "file", "O77")
+        store_new(b"M30\n", tmp_path / "file", "O77")
 
 
 def test_a_name_that_is_free_is_offered(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.transfer.serial_settings import ROWS, form_of, kept_form
+from app.transfer.serial_settings import ROWS, settings_of, stored_form
 from core.machine.serial_table import DncModel
 
 DEFAULT = DncModel("/dev/ttyUSB0", 9600, 7, "E", 1, "xonxoff", "%", "\r\n")
@@ -54,11 +54,11 @@ def test_without_a_port_there_is_nothing_to_step_to() -> None:
 
 def test_what_is_kept_comes_back() -> None:
     changed = replace(DEFAULT, baud=4800, parity="O", eol="\n", wait=True)
-    assert form_of(kept_form(changed), DEFAULT) == changed
+    assert settings_of(stored_form(changed), DEFAULT) == changed
 
 
 @pytest.mark.parametrize(
     "kept", [None, 7, {"flow": "smoke"}, {"bits": 9}, {"parity": "X"}, {"baud": "fast"}, {"wait": 1}]
 )
 def test_what_cannot_be_is_forgotten(kept: object) -> None:
-    assert form_of(kept, DEFAULT) == DEFAULT
+    assert settings_of(kept, DEFAULT) == DEFAULT
