@@ -116,7 +116,7 @@ class Journal:
         """A version as it was kept. Raises StoreError; not for the screen's thread."""
         return self._opened().load_program(name, version)
 
-    def keep_version(self, name: str, text: bytes, why: str) -> int:
+    def save_version(self, name: str, text: bytes, why: str) -> int:
         """Another version; its number once it is kept. Raises StoreError; not for the screen's thread."""
         return self._opened().save_program(name, text, why).result()
 
@@ -171,10 +171,6 @@ class Journal:
         store = self._store
         if store is not None:
             store.rename_program(old, new).result()
-
-    def save_version(self, program: str, text: bytes, why: str) -> None:
-        """Keep a version; back when it is on the disk. Raises StoreError."""
-        self.keep_version(program, text, why)
 
     def backup(self, target: Path) -> None:
         """A copy of the store, also while it is written. Raises StoreError."""

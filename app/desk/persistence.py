@@ -68,8 +68,8 @@ class Persistence(Protocol):
         """Versions, count and record go with a program that gets another name."""
         ...
 
-    def save_version(self, program: str, text: bytes, why: str) -> None:
-        """Keep a version before the file goes; back when it is on the disk. Raises StoreError."""
+    def save_version(self, name: str, text: bytes, why: str) -> int:
+        """Keep a version and answer its number when it is on the disk. Raises StoreError."""
         ...
 
     def backup(self, target: Path) -> None:
@@ -128,7 +128,7 @@ class NoPersistence:
     def renamed(self, _old: str, _new: str) -> None:
         """Nothing goes with it."""
 
-    def save_version(self, _program: str, _text: bytes, _why: str) -> None:
+    def save_version(self, _name: str, _text: bytes, _why: str) -> int:
         """Versions are not kept here, so nothing may be thrown away."""
         raise StoreError(NOTHING_KEPT)
 

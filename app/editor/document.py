@@ -147,7 +147,7 @@ def _decodes_to(document: Document, data: bytes) -> bool:
 
 def _kept(archive: Archive, name: str, data: bytes, why: str) -> str:
     try:
-        archive.keep_version(name, data, why)
+        archive.save_version(name, data, why)
     except StoreError as error:
         return str(error)
     return ""

@@ -47,7 +47,7 @@ class Drafts:
             if text == document.text:
                 place.unlink(missing_ok=True)
                 return ""
-            if self.archive.keep_version(document.name, document.encoded(text), WHY):
+            if self.archive.save_version(document.name, document.encoded(text), WHY):
                 place.unlink(missing_ok=True)
                 return messages.DRAFT
             why = messages.NO_STORE

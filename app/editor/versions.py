@@ -23,7 +23,7 @@ class Archive(Protocol):
         """One of them, as it was kept."""
         ...
 
-    def keep_version(self, name: str, text: bytes, why: str) -> int:
+    def save_version(self, name: str, text: bytes, why: str) -> int:
         """Keep another, and answer its number when it is on the disk; the same text again is no new one."""
         ...
 
@@ -39,7 +39,7 @@ class NoArchive:
         """There is none."""
         raise StoreError(f"no version {version} of {name} is kept here")
 
-    def keep_version(self, _name: str, _text: bytes, _why: str) -> int:
+    def save_version(self, _name: str, _text: bytes, _why: str) -> int:
         """It is not kept."""
         return 0
 

@@ -44,7 +44,7 @@ class Memory:
     def text_of(self, name: str, version: int) -> bytes:
         return self.kept[name][version - 1][0]
 
-    def keep_version(self, name: str, text: bytes, why: str) -> int:
+    def save_version(self, name: str, text: bytes, why: str) -> int:
         if self.full:
             raise StoreError("the disk is full")
         rows = self.kept.setdefault(name, [])

@@ -19,8 +19,9 @@ from tests.programs_page.test_run_record import Kept
 class Keeping(Kept):
     """Versions are kept."""
 
-    def save_version(self, program: str, text: bytes, why: str) -> None:
-        self.told.append((program, text, why))
+    def save_version(self, name: str, text: bytes, why: str) -> int:
+        self.told.append((name, text, why))
+        return 1
 
 
 def made(folder: Path, **texts: str) -> list[Path]:

@@ -160,7 +160,7 @@ def test_a_name_that_will_not_do_is_refused(shop: Shop, name: str, why: str) -> 
 
 def test_versions_go_with_another_name(shop: Shop) -> None:
     assert shop.journal is not None
-    shop.journal.keep_version("alpha.nc", b"old", "test")
+    shop.journal.save_version("alpha.nc", b"old", "test")
     shop.open_list()
     shop.key(Key.Key_F5)
     shop.key(Key.Key_Delete)
