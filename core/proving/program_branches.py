@@ -20,9 +20,9 @@ from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import Setup
 from core.interpreter.machine_requirements import first_needs
 from core.interpreter.omniturn.conditional_calls import Branching
+from core.interpreter.omniturn.loops_and_subroutines import terminal
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.omniturn.program_size import terminal
 from core.language.diagnostics import Diagnostic, Severity
 from core.machine.machine_model import Machine
 from core.proving.cutting_checks import CuttingChecks

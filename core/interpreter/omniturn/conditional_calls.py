@@ -11,11 +11,11 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.interpretation import ToolUse
 from core.interpreter.job_setup import Setup
 from core.interpreter.omniturn.contour_modification import ContourModifier
+from core.interpreter.omniturn.loops_and_subroutines import called_when, takes_call, terminal
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_state import ContourState
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.omniturn.program_size import takes_call, terminal
 
 
 class Guide(Protocol):
@@ -113,15 +113,13 @@ class Branching(Interpreter):
 
     def _choose(self, made: Statement) -> None:
         answer = self._answer(made)
-        on_call = made.flow == "M95" or made.value("C") == 1
-        takes = takes_call(made, self._state.setup.inputs) if answer is None else answer == on_call
+        takes = takes_call(made, self._state.setup.inputs) if answer is None else answer == called_when(made)
         self._choice = takes
         self._guide.asked(self, made, takes)
 
     def _takes(self, made: Statement) -> bool:
         takes, self._choice = bool(self._choice), None
-        on_call = made.flow == "M95" or made.value("C") == 1
-        self._held[terminal(made)] = takes == on_call
+        self._held[terminal(made)] = takes == called_when(made)
         self._held_to = self._state.blocks
         return takes
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from copy import copy
 from typing import NamedTuple
 
 from core.interpreter.checkpoint import FlowLevel, FlowPlace
 from core.interpreter.interpretation import DEEPEST_CALL
+from core.interpreter.omniturn.code_table import FLOW_CODES
 from core.interpreter.omniturn.omniturn_statement import UNREADABLE, Statement
 from core.language.diagnostics import Diagnostic, Severity
 
@@ -208,6 +209,21 @@ def find_structure(statements: Iterable[Statement], length: int) -> tuple[Struct
 def call_target(made: Statement) -> int:
     """Number of the subroutine that a call names; M95 always means 1."""
     return 1 if made.flow == "M95" else int(made.value("P") or 0)
+
+
+def terminal(made: Statement) -> str:
+    """The input that a conditional call asks."""
+    return FLOW_CODES[made.flow].terminal[0] or f"{made.value('I'):.0f}"
+
+
+def takes_call(made: Statement, inputs: Callable[[str], bool]) -> bool:
+    """Whether a conditional call is made as the inputs stand."""
+    return inputs(terminal(made)) == called_when(made)
+
+
+def called_when(made: Statement) -> bool:
+    """The state of its input in which a conditional call is made."""
+    return made.flow == "M95" or made.value("C") == 1
 
 
 class Flow:

@@ -17,13 +17,13 @@ from core.interpreter.omniturn.block_execution import execute
 from core.interpreter.omniturn.checkpoint_restore import approach_blocks, checkpoint_of, restore
 from core.interpreter.omniturn.coarse_feeds import looks_ahead
 from core.interpreter.omniturn.contour_modification import ContourModifier
-from core.interpreter.omniturn.loops_and_subroutines import Flow
+from core.interpreter.omniturn.loops_and_subroutines import Flow, takes_call, terminal
 from core.interpreter.omniturn.m_codes import check_m_codes
 from core.interpreter.omniturn.nose_compensation import nose_code, switch
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import PLANE, UNREADABLE, ReadyLine, Statement, statement
-from core.interpreter.omniturn.program_size import refuse_too_large, takes_call, terminal
+from core.interpreter.omniturn.program_size import refuse_too_large
 from core.interpreter.omniturn.straight_moves import go, on_step, plain_move
 from core.interpreter.omniturn.tools_and_offsets import warn_of_idle_shifts
 from core.language.diagnostics import ProgramError

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from core.interpreter.diagnostic_log import refusal
 from core.interpreter.interpretation import DEEPEST_CALL, MOST_BLOCKS, MOST_LINES
-from core.interpreter.omniturn.code_table import FLOW_CODES, Acts
-from core.interpreter.omniturn.loops_and_subroutines import call_target
+from core.interpreter.omniturn.code_table import Acts
+from core.interpreter.omniturn.loops_and_subroutines import call_target, takes_call
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.language.diagnostics import Diagnostic
@@ -129,14 +129,3 @@ def blocks_of(made: Statement) -> int:
 def corner_words(made: Statement) -> int:
     """Blocks that C and R put between this move and the next; C may be an axis word instead."""
     return int(made.one_shot is None and not {"C", "R"}.isdisjoint(made.words))
-
-
-def terminal(made: Statement) -> str:
-    """The input that a conditional call asks."""
-    return FLOW_CODES[made.flow].terminal[0] or f"{made.value('I'):.0f}"
-
-
-def takes_call(made: Statement, inputs: Callable[[str], bool]) -> bool:
-    """Whether a conditional call is made as the inputs stand."""
-    wanted = made.flow == "M95" or made.value("C") == 1
-    return inputs(terminal(made)) == wanted
