@@ -55,7 +55,7 @@ class AutomaticPage(Page):
         self.comment = CommentLine(look, self)
         self.path = PathView(look, self)
         self.space = WorkingPlaneView(look, self)  # takes the path's place where the machine is a mill
-        self.files = FilePrompt(look, desk.shelf, desk.choose, self._files_closed, self)
+        self.files = FilePrompt(look, desk.program_folders, desk.choose, self._files_closed, self)
 
     def dress(self) -> None:
         """Everything in the colours that are in force now."""

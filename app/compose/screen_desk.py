@@ -197,7 +197,7 @@ def _desk(
             workshop(machine, offsets, journal, zero=zero, left=left),
             executor.post,
         ),
-        shelf=ProgramFolders((data_folder() / "programs", samples())),
+        program_folders=ProgramFolders((data_folder() / "programs", samples())),
         station=connected.panel,
         two_hand=machine.interlocks.two_hand_start,
         with_c=machine.c_enabled,

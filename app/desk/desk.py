@@ -87,7 +87,7 @@ class Desk:
     post: Callable[[Command], None]
     snapshot: Callable[[], Snapshot]
     session: ProgramLoader
-    shelf: ProgramFolders
+    program_folders: ProgramFolders
     station: StationPanel | None = None
     two_hand: bool = True
     with_c: bool = True
@@ -287,7 +287,7 @@ class Desk:
 
     def choose(self, typed: str) -> bool:
         """Load the program that was typed or picked; False when there is none of that name."""
-        path = self.shelf.find(typed)
+        path = self.program_folders.find(typed)
         if path is None:
             return False
         self.put_on_desk(path)

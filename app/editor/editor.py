@@ -316,7 +316,7 @@ def enter(desk: Desk, editor: Editor) -> bool:
     why = refusal(desk.snapshot())
     name, now = editor.wanted.strip(), desk.session.now
     editor.wanted = ""
-    path = desk.shelf.find(name) if name else now.path
+    path = desk.program_folders.find(name) if name else now.path
     if why or not (name or path):
         desk.say(why or messages.NO_PROGRAM)
         return False

@@ -25,13 +25,13 @@ class FilePrompt(Panel):
     def __init__(
         self,
         look: Look,
-        shelf: ProgramFolders,
+        program_folders: ProgramFolders,
         choose: Callable[[str], bool],
         closed: Callable[[], None],
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(look, parent)
-        self._shelf, self._choose, self._closed = shelf, choose, closed
+        self._shelf, self._choose, self._closed = program_folders, choose, closed
         self._entries: tuple[ListedProgram, ...] = ()
         self._row = 0
         self._moved = False  # a row was marked by hand: it goes before what was typed

@@ -63,7 +63,7 @@ class ProgramList:
 
     def look_again(self) -> None:
         """Read the folders again; the answer comes with a later frame."""
-        work = partial(list_programs, self.desk.shelf, self.own, self.persistence)
+        work = partial(list_programs, self.desk.program_folders, self.own, self.persistence)
         self.worker.queue(work, self._found, self.desk.refuse)
 
     def look(self) -> None:

@@ -31,12 +31,14 @@ class Program:
         return str(self.path), self.changed, self.size
 
 
-def list_programs(shelf: ProgramFolders, own: Path, persistence: Persistence) -> tuple[Program, ...]:
-    """All programs of the shelf. Takes its time; raises StoreError when the store cannot be read."""
+def list_programs(
+    program_folders: ProgramFolders, own: Path, persistence: Persistence
+) -> tuple[Program, ...]:
+    """All programs of the folders. Takes its time; raises StoreError when the store cannot be read."""
     runs = {row.program: row for row in persistence.runs()}
     return tuple(
         Program(entry.name, entry.path, status.st_size, status.st_mtime, entry.path.parent != own, run)
-        for entry in shelf.entries()
+        for entry in program_folders.entries()
         if (status := _status(entry.path)) is not None
         for run in (runs.get(entry.name, RunRow(entry.name)),)
     )

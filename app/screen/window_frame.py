@@ -58,7 +58,7 @@ class Frame(QWidget):
         self.tool = ToolGauge(look, "TOOL  ·  OFFSET", self)
         self.times = TimesGauge(look, "PARTS  ·  TIME", self)
         self.strip = LampStrip(look, press, self)
-        self.standing = NoticeRows(look, press, self)
+        self.notices = NoticeRows(look, press, self)
         self.dock = StationDock(look, desk, self) if desk.station else None
         self.prompt = PromptLine(look, press, self)
         self.keys = FunctionKeys(look, lambda number: press(f"F{number}"), self)
@@ -159,10 +159,10 @@ class Frame(QWidget):
         at, low = places(width, height, with_dock), low_places(width, height, with_dock)
         self._docked = with_dock
         work = work_of(at) if large else low.work
-        rows = Rect(work.x, work.y, work.w, min(self.standing.take_room(), work.h // 3))
+        rows = Rect(work.x, work.y, work.w, min(self.notices.take_room(), work.h // 3))
         work, over = _below(work, rows), _below(at.path if large else low.work, rows)
-        stand(self.standing, rows)
-        self.standing.setVisible(bool(rows.h))
+        stand(self.notices, rows)
+        self.notices.setVisible(bool(rows.h))
         self._stand_readouts(at, large)
         for part, rect in ((self.head, low.head), (self.run, low.run)):
             stand(part, rect)
@@ -208,9 +208,9 @@ class Frame(QWidget):
     def refresh(self) -> None:
         """Take one snapshot and show it everywhere."""
         snapshot, view, loaded = self.desk.look()
-        self.standing.show_rows(self._notices_of(snapshot, loaded, here=self.page is self.automatic))
+        self.notices.show_rows(self._notices_of(snapshot, loaded, here=self.page is self.automatic))
         by_hand = self._by_hand(snapshot)
-        if self._dock_moved or (self.standing.other_room and not by_hand):
+        if self._dock_moved or (self.notices.other_room and not by_hand):
             self._lay_out()
         self._show_bars(snapshot, view, loaded)
         lamps = self._lamps_of(snapshot, view)

@@ -80,7 +80,7 @@ def room(tmp_path: Path) -> Iterator[Room]:
         post=lambda _command: None,
         snapshot=lambda: now[0],
         session=ProgramLoader(workshop, lambda _command: None),
-        shelf=ProgramFolders(()),
+        program_folders=ProgramFolders(()),
         clock=lambda: 0.0,
         book=OffsetBook(store),
     )

@@ -64,7 +64,7 @@ def desk_on(
         post=machine.post,
         snapshot=machine.snapshot,
         session=ProgramLoader(work, machine.post),
-        shelf=ProgramFolders(folders or (SAMPLES,)),
+        program_folders=ProgramFolders(folders or (SAMPLES,)),
         station=machine,
         two_hand=two_hand,
         lathe=lathe,

@@ -22,7 +22,7 @@ from core.executor.snapshot import State
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.elementary_blocks import Kind as BlockKind
 from core.interpreter.modal_state import Modal
-from tests.desk.drawing.made import turned
+from tests.path.made import turned
 from tests.screen.hands import Hands
 
 Key = Qt.Key

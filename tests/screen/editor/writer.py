@@ -44,7 +44,7 @@ class Writer(Hands):
         self.sees(lambda: self.front == page_table.EDITOR and self.editor.field.hasFocus())
 
     def edit(self, name: str) -> None:
-        """A program of the shelf, from the desk into the editor."""
+        """A program of the folders, from the desk into the editor."""
         self.load(name)
         self.key(Key.Key_F3)
         self.sees(lambda: self.front == page_table.EDITOR and bool(self.text()))

@@ -1,4 +1,4 @@
-"""The file that was read, changed behind the desk's back by somebody else."""
+"""Program files: what the folders give, and a file that somebody else has changed."""
 
 from __future__ import annotations
 
@@ -6,9 +6,54 @@ import os
 from dataclasses import replace
 from pathlib import Path
 
-from app.desk.program_folder import ProgramFile
+import pytest
+
+from app.desk.program_folder import ProgramFile, ProgramFolders
 from app.desk.program_loading import Loaded, Phase
 from core.language.source import load_source
+
+
+@pytest.fixture
+def program_folders(tmp_path: Path) -> ProgramFolders:
+    mine, samples = tmp_path / "mine", tmp_path / "samples"
+    mine.mkdir()
+    samples.mkdir()
+    (mine / "PART1").write_text("G90")
+    (mine / "part10.nc").write_text("G90")
+    (samples / "part1").write_text("G90")
+    (samples / "knob.nc").write_text("G90")
+    (samples / "notes.md").write_text("no program")
+    (samples / ".hidden").write_text("G90")
+    return ProgramFolders((mine, samples, tmp_path / "not there"))
+
+
+def test_the_operators_folder_hides_the_samples(program_folders: ProgramFolders) -> None:
+    assert [entry.name for entry in program_folders.entries()] == ["knob.nc", "PART1", "part10.nc"]
+    assert program_folders.find("part1") == program_folders.folders[0] / "PART1"
+
+
+@pytest.mark.parametrize("typed", ["knob", "KNOB.NC", " knob.nc "])
+def test_case_and_ending_do_not_matter(program_folders: ProgramFolders, typed: str) -> None:
+    assert program_folders.find(typed) == program_folders.folders[1] / "knob.nc"
+
+
+def test_a_path_is_taken_as_it_is(program_folders: ProgramFolders) -> None:
+    there = program_folders.folders[1] / "notes.md"
+    assert program_folders.find(str(there)) == there
+
+
+@pytest.mark.parametrize("typed", ["", "  ", "nosuch", "par", "/nowhere/knob.nc", "notes"])
+def test_unknown_names_find_nothing(program_folders: ProgramFolders, typed: str) -> None:
+    assert program_folders.find(typed) is None
+
+
+def test_typing_narrows_the_list(program_folders: ProgramFolders) -> None:
+    assert [entry.name for entry in program_folders.matching("PART")] == ["PART1", "part10.nc"]
+    assert program_folders.matching("xyz") == ()
+
+
+# --- The file that was read, changed behind the desk's back by somebody else.
+
 
 TEXT = "G90G94\nX.5F10\nM30\n"
 

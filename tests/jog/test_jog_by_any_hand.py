@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from core.executor.commands import Command, Jog, JogStep, JogStop
 from core.executor.snapshot import State
-from tests.desk.jogging.test_hold import FRAME, Scene
+from tests.jog.test_held_jog import FRAME, Scene
 
 SOURCES = {"Left": ("Z", -1), "Right": ("Z", 1), "Up": ("X", -1), "Down": ("X", 1), "finger C1": ("C", 1)}
 EVENTS = st.one_of(

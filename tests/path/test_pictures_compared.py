@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.path.measuring import Apart, farthest
 from app.path.polyline import Stroke
-from tests.desk.drawing.made import polyline
+from tests.path.made import polyline
 
 JUMP, RAPID, TURN = Stroke.JUMP, Stroke.RAPID, Stroke.TURN
 BEFORE = polyline([(9, 9, JUMP), (0, 5, RAPID), (-9, 5, TURN), (-9, 8, TURN)], [0, 2, 3, 4])

@@ -13,7 +13,7 @@ from app.desk.program_renewal import RunningRenewal
 from core.executor.commands import Renew
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot, State
-from tests.desk.test_session import BAD, LIMIT, Bench
+from tests.desk.test_program_loading import BAD, LIMIT, Bench
 
 
 class Shop(Bench):

@@ -30,7 +30,7 @@ def test_an_interrupted_job_and_a_full_disk_stand_on_every_page(hands: Hands, pa
     hands.desk.waiting = lambda: "20 parts"
     hands.frame.go(page)
     hands.window.refresh()
-    rows = hands.frame.standing
+    rows = hands.frame.notices
     assert rows.isVisible()
     assert [row.text.split(" LINE")[0] for row in rows.rows] == [
         "INTERRUPTED: PIN.NC",
@@ -62,7 +62,7 @@ def test_no_target_slips_away_under_a_finger_that_jogs(hands: Hands) -> None:
     time[0] += 3.0
     hands.window.refresh()
     assert hands.frame.page.geometry() != stands
-    assert hands.frame.standing.isVisible()
+    assert hands.frame.notices.isVisible()
 
 
 def test_what_was_done_of_an_interrupted_program_stays_drawn(hands: Hands) -> None:
@@ -86,7 +86,7 @@ def test_a_finger_on_the_row_answers_as_the_key_does(hands: Hands) -> None:
     hands.load("pin")
     hands.machine.now = replace(hands.machine.now, interrupted=broken_off(program="pin.nc"), state=State.IDLE)
     hands.window.refresh()
-    rows = hands.frame.standing
+    rows = hands.frame.notices
     assert [key for key, _label in rows.rows[0].keys] == ["F6", "Y"]
     hands.frame.go(page_table.JOG)
     hands.window.refresh()

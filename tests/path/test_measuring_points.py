@@ -9,7 +9,7 @@ import pytest
 
 from app.path.measuring import MOST_CROSSED, Features, Point, PointKind, crossings, point_at
 from app.path.polyline import Stroke
-from tests.desk.drawing.made import polyline
+from tests.path.made import polyline
 
 EVERYWHERE = (-100.0, 100.0, -100.0, 100.0)
 # a square of 4 mm, its last side crossed by a diagonal that comes from elsewhere

@@ -18,7 +18,7 @@ from core.interpreter.job_setup import ToolOffset
 from core.interpreter.modal_state import Modal
 from core.language.source import load_source
 from core.proving.program_timeline import Timeline, timed_blocks
-from tests.desk.drawing.made import LOCKED, turned
+from tests.path.made import LOCKED, turned
 
 PROGRAMS = Path(__file__).parents[2] / "programs"
 
