@@ -197,13 +197,15 @@ def write_model(file: str) -> int:
 
 def play(file: str) -> int:
     """Answers on the bus of ``file`` until Ctrl-C or SIGTERM. Raises CommandError."""
+    from app.compose.backend_entry import backend_of, playable
     from app.compose.machine_setup import read_machine
     from core.ports import DriverError
 
     machine = read_machine(file)
-    player = {"canopen": _drives, "grblhal": _controller}.get(machine.backend)
-    if player is None:
-        why = f"machine.backend is {machine.backend}: nothing to be a peer of; canopen and grblhal have one"
+    play_it = backend_of(machine).play
+    if play_it is None:
+        there = " and ".join(playable())
+        why = f"machine.backend is {machine.backend}: nothing to be a peer of; {there} have one"
         raise CommandError(f"{file}: {why}")
     ended = False
 
@@ -214,16 +216,10 @@ def play(file: str) -> int:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, end)
     try:
-        player(machine, lambda: not ended)
+        play_it(machine, lambda: not ended, _say, _typed())
     except DriverError as error:
         raise CommandError(str(error)) from error
     return EXIT_OK
-
-
-def _drives(machine: Machine, going: Callable[[], bool]) -> None:
-    from app.compose.played_machine import play_peers
-
-    play_peers(machine, going, _say, _typed())
 
 
 def _typed() -> Callable[[], Iterable[str]]:
@@ -234,14 +230,6 @@ def _typed() -> Callable[[], Iterable[str]]:
         return Typed(sys.stdin.fileno()).lines
     except (OSError, ValueError, AttributeError):
         return tuple
-
-
-def _controller(machine: Machine, going: Callable[[], bool]) -> None:
-    from app.compose.grblhal_backend import play_grblhal
-
-    play_grblhal(
-        machine, going, lambda where: _say(f"simulated grblHAL of {machine.name} on {where}; end: Ctrl-C")
-    )
 
 
 def _say(what: str) -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import dataclasses
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.compose.backend_entry import Backend, has_station
 from core.machine.machine_model import Axis, Machine
-from core.ports import Clock, DriverError
+from core.ports import Clock, DriverError, MachinePorts
 from drivers.canopen.canopen_config import (
     AxisConfig,
     CanopenConfig,
@@ -20,6 +22,7 @@ from drivers.canopen.canopen_config import (
     Terminal,
 )
 from drivers.canopen.canopen_table import PLAIN_MODULE, CanNode, CanopenTable, EncoderTable, can_terminal
+from drivers.operator_station import PanelStation
 
 if TYPE_CHECKING:
     from drivers.canopen.canopen_machine import CanopenMachine
@@ -174,6 +177,64 @@ def _terminal(text: str, first: str, *, active_low: bool = False) -> Terminal:
         raise DriverError(f"terminal {text!r} is no address on the bus")
     node = first if found.node == PLAIN_MODULE else found.node
     return Terminal(node, found.index, found.sub, found.bit, active_low)
+
+
+class CanDriven:
+    """The machine on its bus. On a virtual bus the other end is here too: there is none elsewhere."""
+
+    def __init__(self, machine: Machine, clock: Clock) -> None:
+        can = machine.hardware.table(CanopenTable)
+        self._peers: Peers | None = None
+        if can is not None and not can.bus.own_process:
+            self._peers = canopen_peers(machine, clock)
+        # A clock that stands waits for nobody: the peers are looked after in between.
+        idle = self._peers.pump if self._peers is not None else None
+        try:
+            self._machine = canopen_machine(machine, clock, idle)
+        except DriverError:
+            if self._peers is not None:
+                self._peers.close()
+            raise
+        ports = self._machine.ports
+        self.hands: object | None = self._peers.machine if self._peers is not None else None
+        if not has_station(machine):
+            wired = ports.station if "handwheel" in machine.hardware.analog else None
+            panel = PanelStation(clock, lambda: bool(ports.io.inputs().get("estop")), wired)
+            self.hands, ports = self.hands or panel, dataclasses.replace(ports, station=panel)
+        self.ports: MachinePorts = ports
+
+    def tick(self) -> None:
+        """One round of the bus."""
+        if self._peers is not None:
+            self._peers.pump()
+        self._machine.tick()
+        if self._peers is not None:
+            self._peers.pump()
+
+    def close(self) -> None:
+        """Power off, and let the bus go."""
+        self._machine.close()
+        if self._peers is not None:
+            self._peers.close()
+
+
+def _played(machine: Machine) -> bool:
+    can = machine.hardware.table(CanopenTable)
+    return can is not None and not can.bus.own_process
+
+
+def _play(
+    machine: Machine,
+    going: Callable[[], bool],
+    say: Callable[[str], None],
+    typed: Callable[[], Iterable[str]],
+) -> None:
+    from app.compose.played_machine import play_peers
+
+    play_peers(machine, going, say, typed, canopen_peers)
+
+
+BACKEND = Backend("bus", driven=CanDriven, played=_played, play=_play, survey=canopen_survey)
 
 
 # --- What a control writes to the nodes of a bus at each start, to be compared with what it wrote before.

@@ -2,108 +2,34 @@
 
 from __future__ import annotations
 
-import dataclasses
 import pickle
 import socket
 import subprocess
 import sys
 from typing import TYPE_CHECKING
 
-from app.compose.canopen_backend import canopen_machine, canopen_peers
+from app.compose.backend_entry import backend_of
 from app.compose.inverter_backend import WithInverter, has_inverter
-from app.compose.simulated_backend import simulated
 from core.machine.machine_model import Machine
-from core.ports import Clock, DriverError, MachinePorts
-from drivers.canopen.canopen_table import CanopenTable
+from core.ports import Clock, DriverError
 from drivers.clocks import RealClock
 from drivers.feeder.feeder_client import Line
 from drivers.feeder.feeder_links import SocketLink
 from drivers.feeder.feeder_loop import keep_memory, real_time, serve
 from drivers.feeder.feeder_messages import NOTHING, Inbox, Message, packed, text
 from drivers.feeder.feeder_server import Driven
-from drivers.operator_station import PanelStation
 
 if TYPE_CHECKING:
-    from drivers.lookalikes.canopen_devices import Peers
-
-# --- Drivers as one loop owns them: the simulated machine, or a bus with or without simulated peers on it.
-
-
-STATION = ("start", "hold")  # a machine whose file has neither has no operator station of its own
+    pass
 
 
 def driven(machine: Machine, clock: Clock) -> Driven:
     """What the machine file's backend and its spindle are driven by. Raises DriverError."""
-    inner = _backend(machine, clock)
+    make = backend_of(machine).driven
+    if make is None:
+        raise DriverError(f"{machine.source}: the feeder has no backend {machine.backend}")
+    inner = make(machine, clock)
     return WithInverter(inner, machine, clock) if has_inverter(machine) else inner
-
-
-def _backend(machine: Machine, clock: Clock) -> Driven:
-    if machine.backend == "sim":
-        return SimDriven(machine, clock)
-    if machine.backend == "canopen":
-        return CanDriven(machine, clock)
-    raise DriverError(f"{machine.source}: the feeder has no backend {machine.backend}")
-
-
-def has_station(machine: Machine) -> bool:
-    """Whether the machine has buttons of its own, or is operated by those on the screen."""
-    return any(name in machine.inputs for name in STATION)
-
-
-class SimDriven:
-    """The simulated machine."""
-
-    def __init__(self, machine: Machine, clock: Clock) -> None:
-        simulation = simulated(machine, clock)
-        self.ports: MachinePorts = simulation.ports
-        self.hands: object | None = simulation.machine
-
-    def tick(self) -> None:
-        """The plant goes on also when nobody looks."""
-        self.ports.axes.sample()
-
-    def close(self) -> None:
-        """Nothing to let go."""
-
-
-class CanDriven:
-    """The machine on its bus. On a virtual bus the other end is here too: there is none elsewhere."""
-
-    def __init__(self, machine: Machine, clock: Clock) -> None:
-        can = machine.hardware.table(CanopenTable)
-        self._peers: Peers | None = None
-        if can is not None and not can.bus.own_process:
-            self._peers = canopen_peers(machine, clock)
-        # A clock that stands waits for nobody: the peers are looked after in between.
-        idle = self._peers.pump if self._peers is not None else None
-        try:
-            self._machine = canopen_machine(machine, clock, idle)
-        except DriverError:
-            if self._peers is not None:
-                self._peers.close()
-            raise
-        ports = self._machine.ports
-        self.hands: object | None = self._peers.machine if self._peers is not None else None
-        if not has_station(machine):
-            wired = ports.station if "handwheel" in machine.hardware.analog else None
-            panel = PanelStation(clock, lambda: bool(ports.io.inputs().get("estop")), wired)
-            self.hands, ports = self.hands or panel, dataclasses.replace(ports, station=panel)
-        self.ports: MachinePorts = ports
-
-    def tick(self) -> None:
-        """One round of the bus."""
-        if self._peers is not None:
-            self._peers.pump()
-        self._machine.tick()
-        if self._peers is not None:
-            self._peers.pump()
-
-    def close(self) -> None:
-        """Power off, and let the bus go."""
-        self._machine.close()
-        if self._peers is not None:
-            self._peers.close()
 
 
 _START = 20.0  # s for the first answer: the process has to start and to configure every drive

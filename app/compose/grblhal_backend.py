@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Protocol
 
+from app.compose.backend_entry import Backend, Connected
 from app.compose.inverter_backend import has_inverter, with_inverter
 from app.desk.station_hands import StationPanel
 from core.machine.machine_model import Axis, Machine
@@ -88,11 +89,16 @@ def grblhal_config(machine: Machine) -> GrblConfig:
     )
 
 
-def play_grblhal(machine: Machine, going: Callable[[], bool], say: Callable[[str], None]) -> None:
+def _play(
+    machine: Machine,
+    going: Callable[[], bool],
+    say: Callable[[str], None],
+    _typed: Callable[[], Iterable[str]],
+) -> None:
     """A look-alike of the controller, on the TCP port of the machine file or on a new pseudo terminal."""
     address = tcp_address(grblhal_config(machine).port)
     end: TcpEnd | PtyEnd = PtyEnd() if address is None else TcpEnd(*address)
-    say(end.name)
+    say(f"simulated grblHAL of {machine.name} on {end.name}; end: Ctrl-C")
     serve(end, Firmware(RealClock()), going)
 
 
@@ -100,3 +106,12 @@ def _axis(axis: Axis, machine: Machine) -> GrblAxis:
     home = machine.hardware.homes.get(axis.name)
     here = home.offset if home is not None and home.method in _HERE else None
     return GrblAxis(axis.name, axis.vmax, axis.amax, axis.absolute, axis.name in _WIRED, here)
+
+
+def _connect(machine: Machine, clock: Clock) -> Connected:
+    """A controller that plans by itself; it knows no buttons, so the station is the screen's."""
+    controller = grblhal_machine(machine, clock)
+    return Connected(controller.ports, controller.panel, None, controller.close)
+
+
+BACKEND = Backend("controller", connect=_connect, play=_play)

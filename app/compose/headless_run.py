@@ -11,7 +11,8 @@ from types import TracebackType
 from typing import TextIO
 
 from app.cli.command_errors import CommandError
-from app.compose.backends import Connected, connect, played, real_time
+from app.compose.backend_entry import Connected, played
+from app.compose.backends import connect, real_time
 from app.compose.journal import Journal
 from app.compose.shop_floor import open_shop_floor, told_to_agents
 from app.desk.data_folder import data_folder

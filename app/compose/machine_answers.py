@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from app.compose.backends import connect, played, real_time
+from app.compose.backend_entry import backend_of, played
+from app.compose.backends import connect, real_time
 from app.compose.inverter_backend import has_inverter
 from app.compose.shop_floor import try_shop_floor
 from core.machine.machine_model import Axis, Machine
@@ -83,11 +84,10 @@ def _ask_shop_floor(machine: Machine, answers: Answers) -> None:
 
 def _ask_nodes(machine: Machine, clock: Clock, answers: Answers) -> None:
     """On a real bus every node by itself, so that one that is missing does not hide the others."""
-    if machine.backend != "canopen" or played(machine):
+    survey = backend_of(machine).survey
+    if survey is None or played(machine):
         return
-    from app.compose.canopen_backend import canopen_survey
-
-    for name, node, trouble, detail in canopen_survey(machine, clock):
+    for name, node, trouble, detail in survey(machine, clock):
         state = "no answer" if "no answer" in trouble else "wrong" if trouble else "ok"
         answers.rows.append(Row(f"node {name}", str(node), state, detail))
         if trouble:
@@ -121,9 +121,8 @@ def _settle(clock: Clock, ports: MachinePorts, machine: Machine) -> None:
 
 def _blamed(machine: Machine) -> str:
     """What it was that could not be reached."""
-    if machine.backend == "sim":
-        return "spindle" if has_inverter(machine) else "feeder"
-    return "bus" if machine.backend == "canopen" else "controller"
+    word = backend_of(machine).word
+    return "spindle" if word == "feeder" and has_inverter(machine) else word
 
 
 def _rows(machine: Machine, ports: MachinePorts) -> Iterator[Row]:

@@ -15,15 +15,18 @@ from drivers.mtconnect import mtconnect_table
 from drivers.simulated import simulated_table
 
 SHIPPED = "gt75.toml"
-# One entry a driver, in the order in which a machine file's owner is told of them.
-DRIVERS: tuple[Driver, ...] = (
-    simulated_table.DRIVER,
-    canopen_table.DRIVER,
-    inverter_table.DRIVER,
-    grblhal_table.DRIVER,
-    serial_table.DRIVER,
-    mtconnect_table.DRIVER,
+# One entry a driver, in the order in which a machine file's owner is told of them: what it adds to the file
+# and, of a backend, the module of this room that puts it together (``backend_entry``).
+_ENTRIES = (
+    (simulated_table.DRIVER, "simulated_backend"),
+    (canopen_table.DRIVER, "canopen_backend"),
+    (inverter_table.DRIVER, ""),
+    (grblhal_table.DRIVER, "grblhal_backend"),
+    (serial_table.DRIVER, ""),
+    (mtconnect_table.DRIVER, ""),
 )
+DRIVERS: tuple[Driver, ...] = tuple(driver for driver, _ in _ENTRIES)
+BACKENDS = {driver.backend: module for driver, module in _ENTRIES if module}
 
 
 def parse_machine(text: str, source: str) -> Machine:

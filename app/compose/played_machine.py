@@ -10,9 +10,8 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from app.compose.canopen_backend import canopen_peers
 from core.machine.machine_model import Machine
-from core.ports import DriverError
+from core.ports import Clock, DriverError
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import StepClock
 from drivers.feeder.feeder_loop import keep_memory, real_time
@@ -120,7 +119,8 @@ def play_peers(
     machine: Machine,
     going: Callable[[], bool],
     say: Callable[[str], None],
-    typed: Callable[[], Iterable[str]] = tuple,
+    typed: Callable[[], Iterable[str]],
+    make: Callable[[Machine, Clock], Peers],
 ) -> None:
     """Answer on the machine file's bus while ``going``; ``say`` tells what it is and what was ``typed``.
 
@@ -134,7 +134,7 @@ def play_peers(
             "interface virtual lives within one process, which plays its drives itself; take udp_multicast"
         )
     clock, zero, epoch = StepClock(), time.monotonic(), time.time()
-    peers = canopen_peers(machine, clock)
+    peers = make(machine, clock)
     keep_memory()
     real_time()  # drives are punctual; where this is refused the feeder has said so already
     peers.arrival = lambda stamp: stamp - epoch

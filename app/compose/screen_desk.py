@@ -9,7 +9,8 @@ from functools import partial
 
 from app.cli.command_errors import CommandError
 from app.compose.accepted_machine import file_changes, guarded
-from app.compose.backends import Connected, connect, played
+from app.compose.backend_entry import Connected, played
+from app.compose.backends import connect
 from app.compose.error_log import Log
 from app.compose.inverter_backend import has_inverter
 from app.compose.journal import Journal

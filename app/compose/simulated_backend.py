@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from app.compose.backend_entry import Backend, Connected
+from app.compose.inverter_backend import has_inverter, with_inverter
 from core.machine.machine_model import Axis, Machine
-from core.ports import Clock
+from core.ports import Clock, MachinePorts
 from drivers.lookalikes.plant_config import SimAxis, SimCollet, SimConfig, SimOutput, SimSpindle
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.simulated.simulated_table import SimulatedTable
@@ -48,3 +50,32 @@ def _axis(axis: Axis, machine: Machine) -> SimAxis:
         corner=axis.amax * machine.timing.setpoint,
         own_drive=not machine.spindle_is_c,
     )
+
+
+class SimDriven:
+    """The simulated machine."""
+
+    def __init__(self, machine: Machine, clock: Clock) -> None:
+        simulation = simulated(machine, clock)
+        self.ports: MachinePorts = simulation.ports
+        self.hands: object | None = simulation.machine
+
+    def tick(self) -> None:
+        """The plant goes on also when nobody looks."""
+        self.ports.axes.sample()
+
+    def close(self) -> None:
+        """Nothing to let go."""
+
+
+def _in_process(machine: Machine, clock: Clock) -> Connected:
+    """The simulated machine, whose spindle may be a real one."""
+    simulation = simulated(machine, clock)
+    ports, hands = simulation.ports, simulation.machine
+    if not has_inverter(machine):
+        return Connected(ports, hands, hands.set_input, lambda: None)
+    ports, close = with_inverter(machine, ports, clock)
+    return Connected(ports, hands, hands.set_input, close)
+
+
+BACKEND = Backend("feeder", driven=SimDriven, connect=_in_process, played=lambda _machine: True)

@@ -8,7 +8,7 @@ import pytest
 
 import resources
 from app.compose.backends import connect
-from app.compose.feeder_process import CanDriven
+from app.compose.canopen_backend import CanDriven
 from app.compose.machine_files import load_machine, parse_machine
 from core.machine.machine_model import Machine
 from core.ports import DriverError

@@ -12,7 +12,8 @@ import pytest
 
 import resources
 from app.cli.main import main
-from app.compose.backends import Connected, connect
+from app.compose.backend_entry import Connected
+from app.compose.backends import connect
 from app.compose.machine_answers import check_ports
 from app.compose.machine_files import load_machine
 from core.machine.machine_model import Machine

@@ -1,0 +1,75 @@
+"""What the composition asks of a backend: one ``BACKEND`` in the module that puts it together."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from app.compose.machine_files import BACKENDS
+from app.desk.station_hands import StationPanel
+from core.machine.machine_model import Machine
+from core.ports import Clock, DriverError, MachinePorts
+from drivers.feeder.feeder_server import Driven
+
+STATION = ("start", "hold")  # a machine whose file has neither has no operator station of its own
+Play = Callable[
+    [Machine, Callable[[], bool], Callable[[str], None], Callable[[], Iterable[str]]], None
+]  # machine, while going, what to say, lines that were typed
+
+
+@dataclass(frozen=True, slots=True)
+class Connected:
+    """The ports of a machine. ``panel``: the station on the screen, None where the machine has its own."""
+
+    ports: MachinePorts
+    panel: StationPanel | None
+    set_input: Callable[[str, bool], None] | None  # of a simulated machine
+    close: Callable[[], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Backend:
+    """How a machine of this backend is driven.
+
+    ``word`` is what could not be reached where nothing answers. ``driven`` makes what the feeder owns, and
+    ``connect`` what lives in the control's own process, with its inverter; a backend that has both is asked
+    for the feeder by its machine file. ``played``: machine and other end are simulated here. ``play`` is the
+    other end alone, for trying a machine file without hardware. ``survey`` asks every node by itself: its
+    name, number, what is wrong with it and what it says.
+    """
+
+    word: str
+    driven: Callable[[Machine, Clock], Driven] | None = None
+    connect: Callable[[Machine, Clock], Connected] | None = None
+    played: Callable[[Machine], bool] = lambda _machine: False
+    play: Play | None = None
+    survey: Callable[[Machine, Clock], Iterable[tuple[str, int, str, str]]] | None = None
+
+
+def backend_of(machine: Machine) -> Backend:
+    """The backend of a machine; its libraries are loaded when it connects. Raises DriverError for no such."""
+    if machine.backend not in BACKENDS:
+        raise DriverError(f"{machine.source}: there is no driver for backend {machine.backend} yet")
+    return _backend(machine.backend)
+
+
+def _backend(word: str) -> Backend:
+    found = importlib.import_module(f"app.compose.{BACKENDS[word]}").BACKEND
+    assert isinstance(found, Backend)
+    return found
+
+
+def playable() -> list[str]:
+    """Backends whose other end can be played alone."""
+    return [word for word in BACKENDS if _backend(word).play is not None]
+
+
+def has_station(machine: Machine) -> bool:
+    """Whether the machine has buttons of its own, or is operated by those on the screen."""
+    return any(name in machine.inputs for name in STATION)
+
+
+def played(machine: Machine) -> bool:
+    """Whether the machine is simulated, on a virtual bus or on none."""
+    return backend_of(machine).played(machine)
