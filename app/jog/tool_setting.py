@@ -11,7 +11,7 @@ from app.jog import jog_touch_off
 from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_history import CORRECTIONS, OffsetHistory, refusal
-from app.offsets.offset_values import TOOL_FIELDS, Mode, marked, not_set, shown_value, value_typed, word
+from app.offsets.offset_values import TOOL_FIELDS, Mode, heading, not_set, shown_value, value_typed, word
 from app.offsets.tool_offsets import ToolFields
 from core.executor.snapshot import Snapshot
 from core.store.offset_fields import Sort
@@ -80,8 +80,7 @@ class ToolSetting:
         if not self.asked or self.asked == TOOL:
             return self.history.last_in_words
         mode, name, row = self.history.mode, TOUCHES.get(self.asked, self.asked), self.row
-        touched, mark = self.asked in TOUCHES, marked(name, mode)
-        title = f"{word(name)} {mark}" if mark else word(name)
+        touched, title = self.asked in TOUCHES, heading(name, mode)
         was = shown_value(name, getattr(row, name), mode) if row else not_set()
         try:
             value = self.touching.place(self.text, mode) if touched else value_typed(name, self.text, mode)

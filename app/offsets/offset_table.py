@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
+from app.desk.arithmetic import LONGEST
 from app.desk.desk import Desk
 from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
@@ -122,6 +123,15 @@ class OffsetTable:
             self.clear()
             return True
         return self.enter_key(key)
+
+    def type_text(self, key: str, longest: int = LONGEST) -> None:
+        """A character more, or less."""
+        if key == "Back":
+            self.text = self.text[:-1]
+        elif key == "Delete":
+            self.text = ""
+        elif len(self.text) < longest:
+            self.text += key
 
     def undo(self) -> None:
         """Take the last change of this table back."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError, value_of
+from app.desk.arithmetic import CHARACTERS, EntryError, value_of
 from app.desk.desk import Desk
 from app.desk.formats import length
 from app.desk.translation import tr
@@ -134,12 +134,8 @@ class SecondaryOffsets(OffsetTable):
         self.desk.clear()
         if key == "Enter":
             self._enter()
-        elif key == "Back":
-            self.text = self.text[:-1]
-        elif key == "Delete":
-            self.text = ""
-        elif len(self.text) < LONGEST:
-            self.text += key
+        else:
+            self.type_text(key)
         return True
 
     def choose(self, number: int) -> None:

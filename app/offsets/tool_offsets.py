@@ -215,10 +215,8 @@ class ToolOffsets(OffsetTable):
         elif key in _MOVES:
             down, right = _MOVES[key]
             self._go(self.number + down, self.column + right)
-        elif key == "Back":
-            self.text = self.text[:-1]
-        elif key == "Delete":
-            self.text = ""
+        elif key in {"Back", "Delete"}:
+            self.type_text(key)
         elif len(key) == 1 and self.takes(key):
             self._add(key)
         else:
@@ -252,8 +250,7 @@ class ToolOffsets(OffsetTable):
             return
         if not self.text:
             self.desk.clear()
-        if len(self.text) < (REMARK_LONGEST if self.writing else LONGEST):
-            self.text += key
+        self.type_text(key, REMARK_LONGEST if self.writing else LONGEST)
 
     def _go(self, number: int, column: int) -> None:
         """The cursor there; what was typed and not entered stays behind, and that is said."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import remainder
 
-from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError, value_of
+from app.desk.arithmetic import CHARACTERS, EntryError, value_of
 from app.desk.desk import Desk
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.translation import tr
@@ -94,10 +94,8 @@ class ZeroOffsets(OffsetTable):
             self.move(*_STEPS[key])
         elif key == "Enter":
             self._enter()
-        elif key in {"Back", "Delete"}:
-            self.text = self.text[:-1] if key == "Back" else ""
-        elif len(self.text) < LONGEST:
-            self.text += key
+        else:
+            self.type_text(key)
         return True
 
     def move(self, rows: int, columns: int) -> None:
