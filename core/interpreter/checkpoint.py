@@ -68,7 +68,7 @@ class CTurn(NamedTuple):
 
 
 class FunctionStep(NamedTuple):
-    """An M function on the way."""
+    """An M function of the approach: spindle, coolant, an output."""
 
     action: Action
     text: str

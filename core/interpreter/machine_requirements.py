@@ -35,7 +35,7 @@ class Need(NamedTuple):
 
     @property
     def words(self) -> str:
-        """As an operator reads it."""
+        """The need in words for the operator, where it has any."""
         return _WORDS.get(self.what, self.what)
 
 

@@ -37,7 +37,7 @@ MOST_Q = 999_999_999.999999
 
 
 class Interpreter(Interpretation):
-    """One pass through a program."""
+    """One pass through a Klartext program."""
 
     def __init__(self, program: Program, setup: Setup, kinematics: Kinematics) -> None:
         super().__init__(Log(program.problems))

@@ -1,4 +1,4 @@
-"""G02 and G03."""
+"""Arcs, G02 and G03: the centre by R, or by I and K."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SAME = 1e-9  # mm
 
 
 def arc_blocks(state: State, made: Statement) -> Iterator[Block]:
-    """G02 and G03."""
+    """The block of G02 or G03. Raises ProgramError where its words give no arc."""
     yield arc_move(state, made)
 
 

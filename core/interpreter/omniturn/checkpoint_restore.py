@@ -12,7 +12,7 @@ from core.interpreter.omniturn.omniturn_state import State
 
 
 def checkpoint_of(state: State) -> Checkpoint:
-    """What the next line inherits."""
+    """All that the line that comes next inherits, to go on from there in another pass."""
     return Checkpoint(
         modal=state.modal,
         x=state.x,

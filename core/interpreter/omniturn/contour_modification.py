@@ -17,7 +17,7 @@ from core.interpreter.omniturn.omniturn_statement import Statement
 
 
 class ContourModifier:
-    """Blocks go through it while a corner waits for its second line or nose compensation is on.
+    """Holds blocks back while a corner waits for its second move or nose compensation is on.
 
     It holds no more than one corner and the moves that compensation looks ahead; the blocks that come out
     are counted on without a gap.
@@ -31,7 +31,10 @@ class ContourModifier:
         self._count: int | None = None  # number of the last block handed out, while active
 
     def take(self, block: Block) -> Iterator[Block]:
-        """Takes a block as its line made it; yields those that are sure. Raises ProgramError."""
+        """Take a block as its line made it; yields the blocks that no later line can change.
+
+        Raises ProgramError where the corner cannot be cut, or the nose cannot follow.
+        """
         state = self._state
         corner, state.contour.corner = state.contour.corner, None
         self._begin(block.n - 1)
@@ -41,23 +44,23 @@ class ContourModifier:
         yield from self._put(block, corner)
 
     def check(self, made: Statement) -> None:
-        """Whether a line may follow what is held. Raises ProgramError."""
+        """Refuse a line that may not follow the moves that are held back. Raises ProgramError."""
         if self._state.contour.active:
             self._corners.check(made)
             check_under_nose(self._state, made)
 
-    def mark(self, mark: CompensationSwitch) -> Iterator[Block]:
-        """G41, G42 or G40, and the blocks that are sure by it. Raises ProgramError."""
+    def switch(self, switch: CompensationSwitch) -> Iterator[Block]:
+        """G41, G42 or G40; yields the blocks that no later line can change. Raises ProgramError."""
         self._begin(self._state.blocks)
-        yield from self._put(mark, None)
+        yield from self._put(switch, None)
 
     def end(self) -> Iterator[Block]:
-        """The program is over: nothing comes. Raises ProgramError where a corner is left."""
+        """The program is over. Raises ProgramError where a corner still waits for its second move."""
         self._corners.end()
         yield from ()
 
     def drop(self) -> None:
-        """After an error nothing that is held may come out."""
+        """After an error: forget all that is held back, so that none of it is handed out."""
         self._corners.drop()
         self._nose.drop()
         self._count = None

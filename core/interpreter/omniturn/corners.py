@@ -85,15 +85,15 @@ class Corners:
 
     @property
     def active(self) -> bool:
-        """Whether a move is held."""
+        """Whether a move is held back until the next one is known."""
         return self._held is not None
 
     def drop(self) -> None:
-        """Forget what is held."""
+        """Forget the move that is held back, after an error."""
         self._held = None
 
     def take(self, item: Item, corner: Corner | None) -> Iterator[Item]:
-        """Passes on what is sure. Raises ProgramError where the corner cannot be made."""
+        """Yields what no later item can change. Raises ProgramError where the corner cannot be made."""
         held = self._held
         if held is None:
             yield from self._pass_on(item, corner)

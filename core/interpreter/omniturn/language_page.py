@@ -26,7 +26,7 @@ code and what to do.
 
 
 def page() -> str:
-    """The whole page."""
+    """The text of ``docs/language.md``."""
     chapters = "".join(f"\n## {title}\n\n" + "".join(map(_entry, codes)) for title, codes in CHAPTERS)
     return _TOP.format(head=HEAD, tail=TAIL) + chapters
 

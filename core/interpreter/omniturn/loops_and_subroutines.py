@@ -245,7 +245,7 @@ class Flow:
         return twin
 
     def stop(self) -> None:
-        """Nothing comes any more."""
+        """End the program here: no line is executed any more."""
         self._stop = None
         self.end = self.at
 

@@ -44,13 +44,13 @@ def after_motion(state: State, made: Statement) -> Iterator[Block]:
 
 
 def coolant(state: State, made: Statement) -> Iterator[Block]:
-    """M08 and M09."""
+    """The block of M08 or M09: coolant on, off."""
     state.adopt(state.modal._replace(coolant=made.m == 8))
     yield _done(state, made, Coolant(on=made.m == 8))
 
 
 def collet(state: State, made: Statement) -> Iterator[Block]:
-    """M12 and M13. Raises ProgramError where it may not be opened while the spindle turns."""
+    """The block of M12 (clamps) or M13. Raises ProgramError where it may not open while the spindle turns."""
     opens = made.m == 13
     if opens and state.modal.spindle and not state.setup.limits.unclamp_while_turning:
         text = "M13 opens the collet while the spindle turns."
@@ -60,23 +60,23 @@ def collet(state: State, made: Statement) -> Iterator[Block]:
 
 
 def wait_for_input(state: State, made: Statement) -> Iterator[Block]:
-    """M91 to M94."""
+    """The block of M91 to M94: wait until the terminal is open or closed."""
     assert made.m_code is not None
     yield _done(state, made, WaitInput(*made.m_code.terminal))
 
 
 def program_stop(state: State, made: Statement) -> Iterator[Block]:
-    """M00 and M01."""
+    """The block of M00 or M01, with the comment that the operator is shown."""
     yield _done(state, made, ProgramStop(optional=made.m == 1, message=(made.comment or "").strip()))
 
 
 def repeat_off(state: State, made: Statement) -> Iterator[Block]:
-    """M31."""
+    """The block of M31: cancels Cycle Repeat."""
     yield _done(state, made, RepeatOff())
 
 
 def program_end(state: State, made: Statement) -> Iterator[Block]:
-    """M30 resets the M functions, M02 leaves them."""
+    """The block of M30, which resets the M functions, or M02, which leaves them."""
     reset = made.m == 30
     warn_of_short_dwell(state)
     state.stay(after_end(state.modal, abs(state.rpm_at(state.x)), reset=reset))

@@ -43,7 +43,7 @@ class ApproachOrDeparture(NamedTuple):
         return "departure" if self.departs else "approach"
 
     def refused(self, why: str, text: str, hint: str) -> ProgramError:
-        """An error of this way."""
+        """The error to raise for this approach or departure; ``why`` ends the diagnostic's code."""
         return program_error(self.block.line, 0, f"comp-{self.name}{why}", text, hint)
 
 
@@ -130,7 +130,7 @@ class Compensation:
         self._offset = Offset(0.0)
 
     def take(self, item: Item) -> Iterator[Block]:
-        """Passes on what is sure. Raises ProgramError where the nose cannot follow."""
+        """Yields what no later item can change. Raises ProgramError where the nose cannot follow."""
         if isinstance(item, CompensationSwitch):
             if self._mark is not None:
                 yield from self._close()

@@ -85,7 +85,7 @@ LONG = 5_000
 
 
 class Interpreter(Interpretation):
-    """One pass through a program."""
+    """One pass through an OmniTurn program, or through one line of MDI."""
 
     def __init__(self, program: Program, setup: Setup) -> None:
         super().__init__(Log(program.diagnostics))
@@ -220,12 +220,12 @@ class Interpreter(Interpretation):
 
     def _nose(self, made: Statement) -> Iterator[Block]:
         """G41, G42 or G40."""
-        mark = switch(self._state, made, nose_code(made), called=self._flow.called)
-        if mark is not None:
-            yield from self._released(self._modifier.mark(mark))
+        found = switch(self._state, made, nose_code(made), called=self._flow.called)
+        if found is not None:
+            yield from self._released(self._modifier.switch(found))
 
     def _modified(self, block: Block) -> Iterator[Block]:
-        """The block itself, or, where corners or nose compensation are at work, what is sure by now."""
+        """The block, or, with a corner or nose compensation, the blocks that no later line can change."""
         if self._state.contour.active:
             yield from self._released(self._modifier.take(block))
         else:
@@ -307,7 +307,7 @@ class PassToLine(Interpreter):
 
     @property
     def setup(self) -> Setup:
-        """Its circumstances."""
+        """The circumstances of the pass."""
         return self._state.setup
 
     @property

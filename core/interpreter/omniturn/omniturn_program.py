@@ -65,7 +65,7 @@ class Style:
         self.found.append(Diagnostic(line, column, severity, kind, message, hint, count=count))
 
     def look_at_file(self, source: Source) -> None:
-        """Line ends."""
+        """Note what is odd about the line ends of the file."""
         if "\r" in source.text:
             self.tell("line-ends", 1, count=source.text.count("\r"))
         if source.text and source.text[-1] not in "\r\n":

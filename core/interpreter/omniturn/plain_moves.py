@@ -91,7 +91,7 @@ class Columns(NamedTuple):
         return [row if known else None for row, known in zip(rows, self.known.tolist(), strict=True)]
 
     def part(self, at: slice | Ints) -> Columns:
-        """Some of the lines."""
+        """The lines of a slice, or of these indices."""
         return Columns(self.x[at], self.z[at], self.f[at], self.g[at], self.fine[at], self.known[at])
 
 

@@ -96,6 +96,6 @@ def _check_start(state: State, made: Statement) -> None:
 
 
 def stop_block(state: State, made: Statement) -> Iterator[Block]:
-    """M05."""
+    """The block of M05: the spindle stops, and C is released."""
     state.adopt(state.modal._replace(spindle=0, c_locked=False, c_rpm=None))
     yield state.action(made.line, made.part("m"), SpindleStop())

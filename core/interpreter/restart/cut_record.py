@@ -100,7 +100,7 @@ class _Rows:
         self.opened = 0
 
     def take(self, block: Block) -> None:
-        """One block; arcs in chords."""
+        """Add the rows of one block, arcs in chords."""
         modal = block.modal
         if not block.moves:
             if isinstance(block.action, Collet):
@@ -127,7 +127,7 @@ class _Rows:
         self.bar.append(self.opened)
 
     def take_series(self, series: Series) -> None:
-        """Many straight moves in one."""
+        """Add the rows of many straight moves at once."""
         like, count = series.pattern, len(series)
         modal: Modal = like.modal
         dx, dz = like.offset_x - modal.tool_x, like.offset_z - modal.tool_z

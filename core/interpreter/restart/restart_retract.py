@@ -73,7 +73,7 @@ class Retract:
 
     @property
     def known(self) -> bool:
-        """Whether a way is known."""
+        """Whether the tool is clear, or its way out of the work is known."""
         return self.tool_place is ToolPlace.CLEAR or bool(self.legs)
 
 

@@ -71,11 +71,11 @@ class Corners:
         self._held: _Held | None = None
 
     def drop(self) -> None:
-        """Forget what is held."""
+        """Forget the move that is held back, after an error."""
         self._held = None
 
     def take(self, block: Block, corner: Corner | None) -> Iterator[Block]:
-        """Passes on what is sure. Raises ProgramError where the corner cannot be made."""
+        """Yields what no later block can change. Raises ProgramError where the corner cannot be made."""
         held = self._held
         if held is None:
             if corner is None:

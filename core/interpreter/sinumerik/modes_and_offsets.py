@@ -9,7 +9,7 @@ from core.language.sinumerik.sinumerik_words import Form, Word
 
 
 def settable_offset(state: State, made: Statement) -> None:
-    """G54 to G59 and G500."""
+    """Take up the settable offset that G54 to G59 name; none under G500."""
     code = made.code("settable offset")
     if code is None:
         return
@@ -64,7 +64,7 @@ def _check_form(made: Statement, word: Word) -> None:
 
 
 def modes(state: State, made: Statement) -> None:
-    """The codes that stay in force."""
+    """Take up the codes of a block that stay in force."""
     modal = state.modal
     state.motion = _chosen(made.code("motion"), state.motion)
     state.plane = _chosen(made.code("plane"), state.plane)

@@ -38,7 +38,7 @@ _BY_STATE = frozenset(
 
 
 class Interpreter(Interpretation):
-    """One pass through a program."""
+    """One pass through a SINUMERIK program and its subprograms."""
 
     def __init__(self, source: Source, setup: Setup) -> None:
         super().__init__(Log())

@@ -72,7 +72,7 @@ class State:
 
     @property
     def rpm(self) -> float:
-        """Commanded speed here."""
+        """Commanded spindle speed where the tip stands; signed."""
         return self.rpm_at(self.x - self.modal.offset_x)
 
     @property

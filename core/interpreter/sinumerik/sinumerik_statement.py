@@ -25,7 +25,7 @@ class Statement:
     keys: dict[str, Word] = field(default_factory=dict)
 
     def code(self, group: str) -> int | None:
-        """The G code of this group."""
+        """The G code of this group that the block holds; None without one."""
         word = self.g.get(group)
         return None if word is None else int(word.value or 0)
 
@@ -36,17 +36,17 @@ class Statement:
 
     @property
     def offset_key(self) -> Word | None:
-        """TRANS or ATRANS."""
+        """The word TRANS or ATRANS of the block; None without one."""
         return self.keys.get("TRANS") or self.keys.get("ATRANS")
 
     @property
     def corner(self) -> Word | None:
-        """CHF, CHR or RND."""
+        """The word CHF, CHR or RND of the block; None without one."""
         return next((self.words[name] for name in sorted(known.CORNERS) if name in self.words), None)
 
     @property
     def ends(self) -> bool:
-        """M2, M17 or M30."""
+        """Whether the block holds M2, M17 or M30."""
         return bool(_ENDS & self.m.keys())
 
     def refuse(self, word: Word | None, code: str, text: str, hint: str) -> ProgramError:

@@ -29,12 +29,12 @@ MOST_TOOL = 32767
 
 
 def begin(cursor: Cursor) -> Begin:
-    """Behind ``BEGIN PGM``."""
+    """The words behind ``BEGIN PGM``: name and unit."""
     return Begin(*_named(cursor, "BEGIN PGM"))
 
 
 def end(cursor: Cursor) -> End:
-    """Behind ``END PGM``."""
+    """The words behind ``END PGM``: name and unit."""
     return End(*_named(cursor, "END PGM"))
 
 
@@ -74,7 +74,7 @@ def _demand_all(cursor: Cursor, corner: tuple[AxisWord, ...]) -> None:
 
 
 def tool_call(cursor: Cursor) -> ToolCall:
-    """Behind ``TOOL CALL``."""
+    """The words behind ``TOOL CALL``: tool, axis, S, F, DL and DR."""
     column = cursor.column
     tool = cursor.name("TOOL CALL", MOST_TOOL) if cursor.take(_TOOL) else None
     found = cursor.take(_AXIS)
@@ -106,7 +106,7 @@ _EQUALS = re.compile(r"=")
 
 
 def datum(cursor: Cursor, column: int) -> Datum:
-    """Behind ``TRANS DATUM``."""
+    """The words behind ``TRANS DATUM``: AXIS with its axes, or RESET."""
     if cursor.keyword("RESET"):
         made = Datum(reset=True)
     elif cursor.keyword("AXIS"):
@@ -140,7 +140,7 @@ def cycle(cursor: Cursor, column: int) -> Datum:
 
 
 def label(cursor: Cursor) -> Label:
-    """Behind ``LBL``."""
+    """The number or name behind ``LBL``."""
     column = cursor.column
     made = Label(cursor.name("LBL", MOST_LABEL), column)
     if not cursor.done:
@@ -149,7 +149,7 @@ def label(cursor: Cursor) -> Label:
 
 
 def call(cursor: Cursor) -> Call:
-    """Behind ``CALL LBL``."""
+    """The label behind ``CALL LBL``, and its repeats."""
     column = cursor.column
     name = cursor.name("CALL LBL", MOST_LABEL)
     if name == 0:

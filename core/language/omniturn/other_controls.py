@@ -104,7 +104,7 @@ def whole_line(code: str) -> tuple[str, str, str] | None:
 
 
 def tool(text: str) -> tuple[str, str] | None:
-    """``T0101``: what it is here."""
+    """Sentence and hint for ``T0101``, by which others call tool and wear offset; None for any other."""
     match = _TOOL.fullmatch(text)
     if match is None:
         return None
