@@ -20,7 +20,7 @@ from core.language.source import load_source
 from core.proving.program_timeline import Timeline, timed_blocks
 from tests.path.made import LOCKED, turned
 
-PROGRAMS = Path(__file__).parents[2] / "programs"
+PROGRAMS = Path(__file__).parents[1] / "programs"
 
 
 def drawn(*blocks: Block) -> Picture:
