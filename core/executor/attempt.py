@@ -31,7 +31,7 @@ class Attempt:
 
 
 class ReportedAttempt(Attempt):
-    """A ``with`` block whose failure is written to the log, told to ``failed`` and then over.
+    """A ``with`` block whose failure is written to the log, given to ``failed`` and then over.
 
     Should ``failed`` fail as well, that is written too. What comes in every tick is written the first, the
     tenth, the hundredth time, so that it does not drown what was before.

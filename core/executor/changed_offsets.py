@@ -11,7 +11,7 @@ from core.interpreter.modal_state import Modal
 
 
 class ChangedOffsets:
-    """At most one: a later one takes the place of the one before. The part under way keeps its offsets.
+    """The program under way with other offsets, at most one; the part under way keeps those that it has.
 
     What was asked for must be proved before anything of the program moves again: with Cycle Repeat the next
     part waits for it, and a program that does not pass the proof with the new offsets is not repeated.
@@ -32,7 +32,7 @@ class ChangedOffsets:
         return self._asked is not None and self._asked.proof is None and not self._asked.trouble
 
     def ask(self, asked: Renew, running: Job | None) -> str:
-        """Keep it for the end of the part; the answer is why not, or nothing."""
+        """Keep them for the end of the part; returns why not, empty when they are kept."""
         job = asked.job
         if job is not None and (running is None or job.source.text != running.source.text):
             return "another program is under way: new offsets are taken by the same program only"
@@ -46,7 +46,7 @@ class ChangedOffsets:
             return ""
         if asked.trouble or asked.job is None:
             return asked.trouble
-        why = start_conditions.unproved(asked.job, asked.proof) or start_conditions.beyond(
+        why = start_conditions.unproved(asked.job, asked.proof) or start_conditions.lacking(
             self._context, asked.proof
         )
         return why or outdated(asked.job, left)
@@ -67,5 +67,5 @@ class ChangedOffsets:
             self._context.log("offsets", "the changed offsets are in force")
 
     def forget(self) -> None:
-        """Another program is loaded."""
+        """Another program is loaded: nothing is asked for any more."""
         self._asked = None

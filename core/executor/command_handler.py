@@ -75,7 +75,7 @@ class CommandHandler:
         }
 
     def obey(self, command: Command) -> None:
-        """Do it, or say why not. Raises DriverError."""
+        """Carry a command out, or log why not. Raises DriverError."""
         self._methods[type(command)](command)
 
     def _refuse(self, why: str) -> None:

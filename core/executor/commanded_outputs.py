@@ -19,7 +19,7 @@ class Differing(NamedTuple):
 
     @property
     def words(self) -> str:
-        """For the operator."""
+        """What has become of it, as the operator reads it."""
         name = self.name.upper()
         return f"{name} HAS GONE OFF" if self.wanted else f"{name} HAS COME ON"
 
@@ -38,11 +38,11 @@ class CommandedOutputs:
         return self._io.inputs()
 
     def outputs(self) -> Mapping[str, bool]:
-        """As they are."""
+        """The outputs as they are, by name."""
         return self._io.outputs()
 
     def write(self, name: str, on: bool) -> None:
-        """Switch one. Raises DriverError, and then it was not commanded."""
+        """Switch one output. Raises DriverError, and then it was not commanded."""
         self._io.write(name, on)
         self._wanted[name] = on
         self._written[name] = self._now
@@ -55,7 +55,7 @@ class CommandedOutputs:
                 self._wanted[model.name], self._written[model.name] = model.safe, self._now
 
     def look(self, now: float) -> None:
-        """First thing in a tick."""
+        """Called first in a tick, with the time by which writes are remembered."""
         self._now = now
 
     def fell(self, names: Sequence[str]) -> None:
@@ -64,7 +64,7 @@ class CommandedOutputs:
             self._written.pop(name, None)
 
     def differing(self) -> list[Differing]:
-        """Those that are not as they were commanded, and ought to be by now."""
+        """The outputs that are not as they were commanded, and ought to be by now."""
         actual = self._io.outputs()
         return [
             Differing(name, wanted)
@@ -73,7 +73,7 @@ class CommandedOutputs:
         ]
 
     def accept(self) -> list[Differing]:
-        """Where no program is under way they may be as they are; returns what had changed by itself."""
+        """No program is under way: outputs count as they are now. Returns those that have changed."""
         changed = self.differing()
         for each in changed:
             self._wanted[each.name] = not each.wanted

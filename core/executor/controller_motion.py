@@ -29,7 +29,7 @@ _WIDEST = 3.0  # radians
 
 
 class BlockPart(NamedTuple):
-    """One thing for the controller, the block that it is part of, and seconds that it takes at least."""
+    """A part of a block for the controller, the block, and the seconds that it takes at least."""
 
     op: BlockOp
     block: Block
@@ -43,8 +43,8 @@ class Turning(NamedTuple):
     highest: float
 
 
-def pieces_of(block: Block, turning: Turning, fastest: float = math.inf) -> Iterator[BlockPart]:
-    """The pieces of one moving block, none faster than ``fastest`` mm/s.
+def parts_of(block: Block, turning: Turning, fastest: float = math.inf) -> Iterator[BlockPart]:
+    """The parts of one moving block, none faster than ``fastest`` mm/s.
 
     Raises AlarmError for what has no speed or is not X and Z alone.
     """
@@ -136,7 +136,7 @@ class _Sent(NamedTuple):
 
 
 class ControllerMotion:
-    """``Moving`` block by block, on the executor's thread alone.
+    """A path section given to the controller block by block, on the executor's thread alone.
 
     Single block acts at the end of the last block that the controller has, ``BlockSink.ahead`` away at most.
     """
@@ -197,7 +197,7 @@ class ControllerMotion:
 
     @property
     def starving(self) -> float:
-        """A controller comes to rest by itself; only one that was left alone for long shall not go on."""
+        """Minus infinity where the control was away too long, else endless: it stops by itself."""
         return -math.inf if self._dry else math.inf
 
     # --- what is asked ------------------------------------------------------------------------------------
@@ -254,11 +254,11 @@ class ControllerMotion:
         """The controller stops by itself."""
 
     def release(self) -> bool:
-        """The controller alone knows whether it still waits."""
+        """Never gives a thread pass back: the controller alone knows whether it still waits for its index."""
         return False
 
     def retract(self, block: Block) -> None:
-        """Stop, to draw X back then."""
+        """Begin to leave a thread whose spindle is lost: stop, to draw X back then."""
         left = [*(each.piece.block for each in self._sent), *(each.block for each in self._pieces)]
         self._lost = block, [block, *left, *self._waiting][-1].mx
         self.brake()
@@ -291,7 +291,7 @@ class ControllerMotion:
         self._seconds, self._still, self._dry = 0.0, False, False
 
     def _look(self) -> BlockState:
-        """How the controller stands; what is done is forgotten."""
+        """The state of the controller; blocks that it has done are forgotten."""
         state = self._sink.state()
         while self._sent and self._sent[0].ticket <= state.done:
             done = self._sent.popleft().piece
@@ -335,7 +335,7 @@ class ControllerMotion:
     def _hand_over(self) -> None:
         turning = Turning(self._overrides.spindle, self._context.spindle.highest)
         while self._waiting and sum(piece.seconds for piece in self._pieces) < _CUT:
-            self._pieces.extend(pieces_of(self._waiting.popleft(), turning, self._sink.fastest))
+            self._pieces.extend(parts_of(self._waiting.popleft(), turning, self._sink.fastest))
         while self._pieces and self._may(self._pieces[0]):
             ticket = self._sink.submit(self._pieces[0].op)
             if ticket is None:

@@ -65,12 +65,12 @@ class Cycle:
 
     @property
     def next_block(self) -> Block | None:
-        """What comes after the block that is being executed."""
+        """The block after the one that is being executed."""
         return self._motion.following or self._feed.next_block
 
     @property
     def at_rest(self) -> bool:
-        """Nothing moves any more."""
+        """Whether nothing moves any more."""
         return not self._motion.moving
 
     # --- what the operator asks ---------------------------------------------------------------------------
@@ -177,7 +177,7 @@ class Cycle:
                     return
 
     def _rest(self, what: Next) -> None:
-        """What this tick ends with."""
+        """Wait, stop, begin motion or end: what this tick ends with."""
         match what:
             case Next.WAIT:
                 self._change(State.WAIT if self._still.label else State.RUN)
@@ -195,7 +195,7 @@ class Cycle:
                 pass
 
     def _act(self, block: Block) -> bool:
-        """The block that needed the standstill. False when the cycle stops or ends with it."""
+        """Carry out the block that needed the standstill; False when the cycle stops or ends with it."""
         context, action = self._context, block.action
         if action is not None:
             self._show(block)

@@ -37,8 +37,8 @@ _COMMANDS = 100  # looked at in one tick
 _POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
 
 
-def _kept_nowhere(_what: InterruptedJob | None) -> None:
-    """Nothing outlives this executor."""
+def _discard(_what: InterruptedJob | None) -> None:
+    """Where nothing outlives the executor, no interrupted job is kept."""
 
 
 class Executor:
@@ -54,7 +54,7 @@ class Executor:
         ports: MachinePorts,
         on_event: Callable[[Event], None],
         passes: Callable[[Job, Setup], ProgramPass] = interpret,
-        note: Note = _kept_nowhere,
+        note: Note = _discard,
         left: InterruptedJob | None = None,
     ) -> None:
         self._commands: queue.SimpleQueue[tuple[float, Command]] = queue.SimpleQueue()
@@ -158,13 +158,13 @@ class Executor:
         context.spindle.look()
         context.signals = self._station.read(self._ports.station.snapshot(), context.now)
         context.spindle.override, context.spindle.auto = context.signals.spindle, context.signals.auto
-        self._tell_override()
+        self._log_override()
         if self._control.state in ACTIVE:
             self._control.counters.cycle += context.now - before
             if context.now - before > _STALL:
                 context.log("starved", f"the control was away for {context.now - before:.2f} s")
 
-    def _tell_override(self) -> None:
+    def _log_override(self) -> None:
         """A turned pot goes to the log in steps worth reading."""
         fraction = self._context.feed_override
         if abs(fraction - self._logged_override) >= _WORTH_AN_ENTRY or (fraction == 0.0) != (

@@ -67,7 +67,7 @@ class FeedHold:
         return State.HOLD
 
     def starve(self, code: Code, detail: str) -> None:
-        """The queue was not refilled in time: its tail stops the slides."""
+        """The queue was not refilled in time and stops the slides: keep and show why."""
         self.reason, self._since = CATALOGUE[code].text.upper(), self._context.now
         self._context.show_stop(code, detail)
 
@@ -78,7 +78,7 @@ class FeedHold:
         self._retracting = True
 
     def stopped(self) -> bool:
-        """Every tick while the slides come to rest; whether they do by now.
+        """Called every tick while the slides come to rest; returns whether they are at rest.
 
         Raises AlarmError("thread-lost") once a lost thread is left.
         """

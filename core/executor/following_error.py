@@ -23,7 +23,7 @@ _NOTHING = 1e-9
 
 
 class FollowingErrorWatch:
-    """``look`` once a tick. At rest, powered or not, in motion: each axis by its own rules."""
+    """Watches all axes, at rest and in motion, powered or not; ``look`` is called once a tick."""
 
     def __init__(self, axes: Sequence[Axis]) -> None:
         self._axes = [_OneAxis(axis) for axis in axes]
@@ -56,7 +56,7 @@ class FollowingErrorWatch:
 
 
 class _OneAxis:
-    """Times are those of the samples, so that a control that was away takes nothing for long."""
+    """One axis. Times are those of the samples, so that a control that was away takes nothing for long."""
 
     def __init__(self, axis: Axis) -> None:
         self._axis = axis
@@ -79,7 +79,7 @@ class _OneAxis:
         return self._dt > 0.0
 
     def powered(self, demand: float, actual: float) -> None:
-        """Raises AlarmError."""
+        """A sample of the axis with its drive on. Raises AlarmError."""
         axis, error = self._axis, abs(demand - actual)
         if self._demand is None:
             self._demand, self._sent_at, self._counted = demand, self._t, (self._t, demand, actual)

@@ -44,7 +44,7 @@ class GearedThreadPass:
         self._axes = axes
         self._gear = gear
         self._turns = turns
-        self._way = ThreadPath.of(blocks, limits)
+        self._path = ThreadPath.of(blocks, limits)
         self.blocks = tuple(blocks)
         self._zero, self._sign = 0.0, 1.0
         self._speed = 0.0  # turns/s, for which the cam is planned
@@ -114,7 +114,7 @@ class GearedThreadPass:
     def go_on(self) -> None:
         """Begin again after a hold before the first motion, at another index."""
         (_, z, *_), _ = self._axes.demand_at(self._axes.now())
-        if self._stopped and self._gear.geared() is None and abs(z - self._way.z) <= _AT_START:
+        if self._stopped and self._gear.geared() is None and abs(z - self._path.z) <= _AT_START:
             self.begin()
 
     def brake(self) -> None:
@@ -142,7 +142,7 @@ class GearedThreadPass:
     def _running_up(self, speed: float) -> float:
         """Turns from rest to the index: a slide that speeds up from rest lags behind one that moves by
         v²/2a, which it must have begun v/2a earlier; half of its running up."""
-        return 0.5 * self._way.lead * speed**2 / (_SHARE * self._way.a)
+        return 0.5 * self._path.lead * speed**2 / (_SHARE * self._path.a)
 
     def _go_on_at(self, speed: float, geared: Geared) -> None:
         """What is still to come, for another speed: the running up, or what follows the thread.
@@ -150,14 +150,14 @@ class GearedThreadPass:
         What was handed over before is a whole pass: where a change of it is refused that goes on, and a slide
         that it asks too much of slips.
         """
-        way, ramp = self._way, self._running_up(speed)
+        path, ramp = self._path, self._running_up(speed)
         for early in _EARLIER:
             turns = self._reached(geared, self._axes.now() + self._axes.commit + early)
             try:
                 if turns < -max(ramp, self._ramp):
                     self._mesh_up(speed, ramp)
-                elif turns > self._ramp and way.lead * turns < self._paced(speed).full_depth(way.lead):
-                    self._mesh(turns, way.lead * turns, way.lead, speed, [])
+                elif turns > self._ramp and path.lead * turns < self._paced(speed).full_depth(path.lead):
+                    self._mesh(turns, path.lead * turns, path.lead, speed, [])
             except DriverError as error:
                 if error.code == "late":
                     continue
@@ -165,24 +165,24 @@ class GearedThreadPass:
             return
 
     def _mesh_up(self, speed: float, ramp: float) -> None:
-        """The whole way, from rest ``ramp`` turns before the index. Raises DriverError."""
-        self._mesh(-ramp, 0.0, 0.0, speed, [(2.0 * ramp, 0.5 * self._way.lead / ramp)])
+        """The whole path, from rest ``ramp`` turns before the index. Raises DriverError."""
+        self._mesh(-ramp, 0.0, 0.0, speed, [(2.0 * ramp, 0.5 * self._path.lead / ramp)])
         self._ramp = ramp
 
     def _mesh(self, turns: float, s: float, v: float, speed: float, up: Phases) -> None:
-        """Hand over the way from ``turns`` on, where the slide is at ``s`` with ``v`` mm per turn.
+        """Hand over the path from ``turns`` on, where the slide is at ``s`` with ``v`` mm per turn.
 
         Raises DriverError; what was handed over before then goes on.
         """
-        way, leaves = self._paced(speed).onwards(turns, s, v, up)
-        self._gear.mesh(Cam(self._zero, self._sign, way, self._way.drawn_back()))
+        path, leaves = self._paced(speed).onwards(turns, s, v, up)
+        self._gear.mesh(Cam(self._zero, self._sign, path, self._path.drawn_back()))
         self._leaves, self._speed = leaves, speed
 
     def _paced(self, speed: float) -> ThreadPath:
-        """The way with limits per turn, up to where the spindle still matters."""
-        way, share = self._way, _SHARE / speed**2
-        out = way.out if way.beyond else way.x + way.slope * way.length
-        return way._replace(a=way.a * share, ax=way.ax * share, az=way.az * share, out=out)
+        """The path with limits per turn, up to where the spindle still matters."""
+        path, share = self._path, _SHARE / speed**2
+        out = path.out if path.beyond else path.x + path.slope * path.length
+        return path._replace(a=path.a * share, ax=path.ax * share, az=path.az * share, out=out)
 
     def _reached(self, geared: Geared, t: float) -> float:
         """Turns that the cam will not have been played beyond at ``t``, the spindle not speeding up."""

@@ -26,7 +26,7 @@ _AWAY = 0.1  # s between two looks; what was turned in a longer one is old
 
 
 class WheelClicks:
-    """``per``: counts of one click; a negative number turns the wheel round."""
+    """Turns counts into clicks: ``per`` counts are one; a negative number reverses the wheel."""
 
     def __init__(self, per: int) -> None:
         self._per = per
@@ -61,7 +61,7 @@ _ROUNDING = 1e-9
 
 
 class Handwheel:
-    """``axis`` is what it moves, empty for nothing; ``ended`` tells why it was taken away."""
+    """Moves ``axis``, empty while it moves nothing; ``ended`` says why the control has taken it away."""
 
     def __init__(self, context: MachineContext, jogger: Jogger) -> None:
         model = context.machine.hardware.analog.get(WHEEL)
@@ -89,18 +89,18 @@ class Handwheel:
         self._until = self._context.now + min(command.lease, LONGEST_LEASE)
 
     def off(self, state: State) -> None:
-        """Nobody asks any more. Raises DriverError."""
+        """The page no longer asks for the handwheel: what it moves stops. Raises DriverError."""
         self._stop(state)
         self.axis = self.ended = ""
 
     def end(self, why: str, state: State) -> None:
-        """Take it away, and say why. Raises DriverError."""
+        """Take the handwheel away, and log why. Raises DriverError."""
         self._stop(state)
         self.axis, self.ended = "", why
         self._context.log("refused", f"handwheel: {why}")
 
     def turn(self, state: State) -> bool:
-        """Once a tick; True when the axis moves. Raises DriverError."""
+        """Called once a tick: follow the clicks; returns whether the axis moves. Raises DriverError."""
         context, jogger = self._context, self._jogger
         clicks = self._clicks.take(context.signals.wheel, context.now)
         if not self.axis:
@@ -120,7 +120,7 @@ class Handwheel:
         return self._follow(clicks)
 
     def bars(self, state: State) -> str:
-        """Why a key moves nothing because of the wheel; empty when it may."""
+        """Why a jog by key is refused because of the handwheel; empty when it is not."""
         if self._jogger.goal is not None:
             self._together("a key or finger came while it was turned", state)
         if self._context.now >= self._apart:
@@ -170,7 +170,7 @@ class Handwheel:
         index = context.ports.axes.axes.index(self.axis)
         start = context.sample.demand[index] if jogger.goal is None else jogger.goal
         wanted = self._within(index, start + clicks * self._step)
-        found = _Ride(context.machine.axes[index], self._top(index), self._step, wanted)
+        found = _Chase(context.machine.axes[index], self._top(index), self._step, wanted)
         jogger.chase(self.axis, found.pieces, wanted)
         if jogger.goal is not None and found.goal != wanted:
             jogger.goal = found.goal
@@ -198,7 +198,7 @@ class Handwheel:
             self._context.log("refused", f"handwheel: {what}")
 
 
-class _Ride:
+class _Chase:
     """The way to ``wanted``, or as much of it as is not too far behind; ``goal`` is where it ends."""
 
     def __init__(self, axis: Axis, top: float, step: float, wanted: float) -> None:

@@ -31,12 +31,12 @@ class Homing:
         return ""
 
     def stop(self) -> None:
-        """Give it up; the drives brake on their own and hold."""
+        """Give the homing up; the drives brake on their own and hold."""
         self._left, self._now = [], ""
         self._context.ports.axes.stop(Stop.RAMP_HOLD)
 
     def step(self) -> bool:
-        """Whether all is done. Raises DriverError."""
+        """Every tick: home the next axis when one is done; returns whether all are. Raises DriverError."""
         context = self._context
         homed = dict(zip(context.ports.axes.axes, context.sample.homed, strict=True))
         if self._now and not homed[self._now]:

@@ -40,17 +40,17 @@ class InterruptedJob:
 
     @property
     def words(self) -> str:
-        """For the log and for sentences."""
+        """Program, line, tool, part and cause in a few words, for the log and for sentences."""
         return f"{self.program} line {self.line}, T{self.tool}, part {self.part}: {self.why}"
 
 
 def plain(kept: InterruptedJob) -> dict[str, object]:
-    """As JSON can hold it."""
+    """The interrupted job as JSON can hold it."""
     return asdict(kept) | {"axes": list(kept.axes), "where": list(kept.where)}
 
 
 def of_plain(value: object) -> InterruptedJob | None:
-    """What was kept, None: nothing, or nothing that can be understood."""
+    """The interrupted job that was stored; None where there is none, or none that can be understood."""
     if not isinstance(value, Mapping):
         return None
     try:

@@ -227,10 +227,10 @@ class Jogger:
             self._axis, self.ending = index, False
         return moves
 
-    def chase(self, name: str, rides: Callable[[float, float, float], list[Ramp]], goal: float) -> None:
+    def chase(self, name: str, ramps: Callable[[float, float, float], list[Ramp]], goal: float) -> None:
         """Go where the handwheel sends the axis, from whatever it does now. Raises DriverError."""
         index = self._context.ports.axes.axes.index(name)
-        if self._splice(index, rides):
+        if self._splice(index, ramps):
             self._axis, self.goal, self.ending = index, goal, False
 
     def stop(self) -> None:
@@ -262,7 +262,7 @@ class Jogger:
         self._axis, self.stepping, self._short = -1, False, False
         self.goal, self.ending = None, False
 
-    def _splice(self, index: int, rides: Callable[[float, float, float], list[Ramp]]) -> bool:
+    def _splice(self, index: int, ramps: Callable[[float, float, float], list[Ramp]]) -> bool:
         """Queue what ``rides`` makes of (start, position, velocity); later when the clock was faster.
 
         False when it makes nothing. Raises DriverError.
@@ -271,7 +271,7 @@ class Jogger:
         for margin in _MARGINS:
             start = axes.now() + axes.commit + margin
             p, v = axes.demand_at(start)
-            pieces = rides(start, p[index], v[index])
+            pieces = ramps(start, p[index], v[index])
             if not pieces:
                 return False
             try:

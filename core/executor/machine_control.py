@@ -93,7 +93,7 @@ class MachineControl:
             return
         if state in STOPPED and cycle is not None:
             if not self.refuse(
-                start_conditions.busy(self._context) or cycle.why_not_on() or self._unannounced()
+                start_conditions.station_stop(self._context) or cycle.why_not_on() or self._unannounced()
             ):
                 waits = bool(self._context.spindle.waits)
                 self.announcement.begin()

@@ -59,7 +59,7 @@ class ProgramRun:
     def begin(self) -> None:
         """The program, a restart in it, or the line of MDI; whatever was prepared counts once."""
         status, context = self.status, self._context
-        job = start_conditions.job_of(status)
+        job = start_conditions.job_to_start(status)
         assert job is not None
         self.counters.cycle = 0.0
         self._line = status.starts is Starts.LINE

@@ -56,7 +56,7 @@ class Wait:
         return False
 
     def shift(self, held: float) -> None:
-        """The cycle was held so long."""
+        """Feed hold has lasted so long, s: it does not count."""
         self.since += held
 
 
@@ -178,7 +178,7 @@ class Next(Enum):
 
 
 class Standstill:
-    """``done`` is for single block: something was executed since the last stop."""
+    """What comes next while all is at rest. ``done``: a block was executed since the last stop."""
 
     def __init__(self, context: MachineContext, feed: ReadAhead) -> None:
         self._context, self._feed = context, feed
@@ -192,7 +192,10 @@ class Standstill:
         return self._wait.label() if self._wait is not None else None
 
     def next(self) -> Next:
-        """One thing at a time. Raises AlarmError for a wait that takes too long and for bad blocks."""
+        """What the cycle has to do now, one thing at a time.
+
+        Raises AlarmError for a wait that takes too long and for bad blocks.
+        """
         feed = self._feed
         if self._wait is not None:
             return self._look(self._wait)
@@ -211,7 +214,7 @@ class Standstill:
         return Next.END if feed.ended else Next.NOTHING
 
     def carry_out(self, block: Block) -> None:
-        """Do what an action says, or wait for the speed that a cutting block needs. Raises as ``waits``."""
+        """Do what an action says, or wait for the speed that a block needs. Raises AlarmError, DriverError."""
         if block.action is not None:
             self._wait = carry_out(block, self._context)
         elif needs_speed(block):
@@ -225,7 +228,7 @@ class Standstill:
             self._wait = Wait(lambda: label, lambda _: False, self._context.now)
 
     def held(self, seconds: float) -> None:
-        """The cycle was held so long: it does not count."""
+        """Feed hold has lasted so long, s: it does not count."""
         if self._wait is not None:
             self._wait.shift(seconds)
 

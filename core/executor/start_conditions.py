@@ -32,8 +32,8 @@ def guard_open(context: MachineContext) -> bool:
     return context.machine.interlocks.guard_stops and not context.inputs.get("guard", False)
 
 
-def busy(context: MachineContext) -> str:
-    """What at the station keeps a cycle from going on."""
+def station_stop(context: MachineContext) -> str:
+    """What at the operator station keeps a cycle from going on; empty when nothing."""
     if context.signals.hold:
         return "feed hold is pressed"
     if guard_open(context):
@@ -49,11 +49,11 @@ def unclamped(context: MachineContext) -> str:
 
 
 def hindrance(context: MachineContext, state: State) -> str:
-    """What keeps any cycle from being started at this machine now."""
+    """What keeps any cycle from being started at this machine now; empty when nothing."""
     if state in _BUSY:
         return _BUSY[state]
-    if busy(context):
-        return busy(context)
+    if station_stop(context):
+        return station_stop(context)
     if context.ports.blocks is not None and context.ports.blocks.state().hindrance:
         return context.ports.blocks.state().hindrance
     away = [a.name for a, homed in zip(context.machine.axes, context.sample.homed, strict=True) if not homed]
@@ -64,10 +64,10 @@ def hindrance(context: MachineContext, state: State) -> str:
 
 def job_refusal(context: MachineContext, state: State, job: Job | None, proof: Proof | None) -> str:
     """Why this job may not be started now; empty when it may."""
-    return hindrance(context, state) or unproved(job, proof) or beyond(context, proof)
+    return hindrance(context, state) or unproved(job, proof) or lacking(context, proof)
 
 
-def beyond(context: MachineContext, proof: Proof | None) -> str:
+def lacking(context: MachineContext, proof: Proof | None) -> str:
     """What the program asks for and this machine cannot do; empty when nothing."""
     blocks = context.ports.blocks
     for need in proof.needs if proof is not None else ():
@@ -104,14 +104,14 @@ _NOTHING = {
 _SAME = 0.01  # mm, degrees: nearer than this the slides stand where a way was planned from
 
 
-def job_of(status: ControlStatus) -> Job | None:
+def job_to_start(status: ControlStatus) -> Job | None:
     """The job that Cycle Start would begin."""
     return status.job if status.starts is Starts.PROGRAM else status.prepared
 
 
 def start_refusal(context: MachineContext, state: State, status: ControlStatus) -> str:
     """Why Cycle Start does nothing now; empty when it may start."""
-    job, proof = job_of(status), status.proof
+    job, proof = job_to_start(status), status.proof
     if status.starts is not Starts.PROGRAM:
         proof = status.prepared_proof
     if job is None and status.starts in _NOTHING:
@@ -130,7 +130,7 @@ def _moved(context: MachineContext, job: Job | None) -> str:
 
 
 def _changed(context: MachineContext, status: ControlStatus, job: Job | None) -> str:
-    """Whether what the program, the line or the restart was proved for is still so."""
+    """What has changed since the program, the line or the restart was proved; empty when nothing."""
     if job is None:
         return ""
     begin = job.setup.begin
@@ -171,7 +171,7 @@ _FIGURE_CHANGED = 0.1  # of a figure: more, and it counts from anew
 
 
 class Starting(NamedTuple):
-    """One thing that stands and will be on. ``what`` names it, ``text`` is what the operator reads.
+    """Something that stands now and that a start sets going. ``what`` names it; the operator reads ``text``.
 
     ``figure`` is how much of it, rpm for a spindle: one that has changed much is another announcement.
     ``begin`` lets it start; it is called with the start that was announced.
@@ -184,14 +184,14 @@ class Starting(NamedTuple):
 
 
 class Announcement:
-    """``sources`` are asked every tick what a start would start now. On the executor's thread alone."""
+    """What a start would set going, asked of ``sources`` every tick. On the executor's thread alone."""
 
     def __init__(self) -> None:
         self.sources: list[Callable[[], Iterable[Starting]]] = []
         self._since: dict[str, tuple[float, float]] = {}  # what: when it was first published, its figure
 
     def publish(self, now: float) -> tuple[str, ...]:
-        """What goes into the snapshot of this tick."""
+        """The texts for the snapshot of this tick."""
         items, before = self._items(), self._since
         self._since = {item.what: self._counted(item, before, now) for item in items}
         return tuple(item.text for item in items)
@@ -205,7 +205,7 @@ class Announcement:
         return ""
 
     def begin(self, what: str = "") -> None:
-        """A start, of ``what`` or of all, that was not refused."""
+        """Set ``what`` going, or all, by a start that was not refused."""
         for item in self._items(what):
             item.begin()
 

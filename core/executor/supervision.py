@@ -23,7 +23,7 @@ from core.ports import AxisSample, Trip, code_of
 
 
 class Supervisor:
-    """Sees faults and raises them as AlarmError."""
+    """Watches drives, axes and collet."""
 
     def __init__(self, context: MachineContext) -> None:
         self._context = context
@@ -31,7 +31,7 @@ class Supervisor:
         self.max_following_error = 0.0
 
     def acknowledged(self) -> None:
-        """An axis that stands elsewhere now may stand there."""
+        """The operator has acknowledged an alarm: an axis that stands elsewhere now may stand there."""
         self._axes.forget()
 
     def look(self, state: State) -> None:
@@ -74,7 +74,7 @@ class Supervisor:
 
 
 class OutputsWatch:
-    """``look`` once a tick; ``starts`` is a source of the announcement. On the executor's thread alone."""
+    """Watches outputs and the feeder, once a tick. On the executor's thread alone."""
 
     def __init__(self, context: MachineContext, program_run: ProgramRun) -> None:
         self._context = context
@@ -84,7 +84,7 @@ class OutputsWatch:
         )  # outputs of which it is known that they are not as commanded
 
     def look(self) -> None:
-        """Raises DriverError, AlarmError."""
+        """Hold the cycle where something was switched by somebody else. Raises DriverError, AlarmError."""
         trips = self._context.ports.trips
         trip = trips.tripped() if trips is not None else None
         if trips is not None and trip is not None:
@@ -102,7 +102,7 @@ class OutputsWatch:
             self._disturbed("switched-off", " AND ".join(each.words for each in new))
 
     def starts(self) -> Iterator[Starting]:
-        """Outputs that going on switches as the program has them."""
+        """What the announcement lists: outputs that going on switches as the program has them."""
         if self._program_run.status.state in STOPPED:
             for name, wanted in self._context.outputs.differing():
                 words = f"{name.upper()} {'COMES ON' if wanted else 'GOES OFF'}"

@@ -41,9 +41,9 @@ class ThreadPass:
     ) -> None:
         self._axes = axes
         self._turns = turns
-        self._way = ThreadPath.of(blocks, limits)
+        self._path = ThreadPath.of(blocks, limits)
         self._top = limits.vmax[1]
-        self._lead, self._ramp = self._way.lead, _SHARE * self._way.a
+        self._lead, self._ramp = self._path.lead, _SHARE * self._path.a
         self.blocks = tuple(blocks)
         self._index = 0.0  # turns, unsigned, at which s = 0 is in step
         self._sign = 1.0
@@ -58,7 +58,7 @@ class ThreadPass:
 
     @property
     def end(self) -> float:
-        """When the pass comes to rest as planned now."""
+        """When the pass comes to rest as planned now, s."""
         return self._ends
 
     @property
@@ -133,10 +133,10 @@ class ThreadPass:
         """Come to rest along the thread; a pass that is already leaving it is left alone."""
         t = self._axes.now() + self._axes.commit + max(1.5 * self._cost, _PATIENCE)
         s, v = self._demand(t)
-        if self._stopped or t >= self._leaves or s + 0.5 * v * v / self._way.a >= self._way.length:
+        if self._stopped or t >= self._leaves or s + 0.5 * v * v / self._path.a >= self._path.length:
             return
-        self._axes.splice(self._way.stopping(t, s, v))
-        self._stopped, self._ends, self._leaves = True, t + v / self._way.a, math.inf
+        self._axes.splice(self._path.stopping(t, s, v))
+        self._stopped, self._ends, self._leaves = True, t + v / self._path.a, math.inf
 
     def _queue(self, t: float) -> None:
         s, v = self._demand(t)
@@ -145,7 +145,7 @@ class ThreadPass:
             lead_in = self._blend(t, s, v)
         if lead_in is None:
             return
-        segments, leaves = self._way.onwards(t, s, v, lead_in)
+        segments, leaves = self._path.onwards(t, s, v, lead_in)
         if np.abs(segments.v[:, 1]).max() > self._top * _OVER:
             return  # faster than the slide: it falls behind, and that is told
         self._axes.splice(segments)
@@ -160,17 +160,17 @@ class ThreadPass:
 
     def _blend(self, t: float, s: float, v: float) -> Phases | None:
         """Two accelerations that lead onto the line, never backwards; None where no room is left for that."""
-        way, time = self._way, _BLEND
+        path, time = self._path, _BLEND
         while time <= _LONGEST:
             goal, speed, rest = self._target(t + time)
-            if goal >= way.full_depth(speed):
+            if goal >= path.full_depth(speed):
                 self._free = True
                 return None
             half = 0.5 * time
             gain, ahead = (speed - v) / half, (goal - s - v * time) / (half * half)
             first, second = ahead - 0.5 * gain, 1.5 * gain - ahead
             onwards = min(v + first * half, speed) >= 0.0 or v < 0.0
-            if onwards and max(abs(first), abs(second)) <= way.a:
+            if onwards and max(abs(first), abs(second)) <= path.a:
                 return [(half, first), (half, second), *rest]
             time *= 2.0
         return None
@@ -216,7 +216,7 @@ class ThreadPass:
 
     def _demand(self, t: float) -> tuple[float, float]:
         (_, z, _), (_, v, _) = self._axes.demand_at(t)
-        return self._way.place(z, v)
+        return self._path.place(z, v)
 
 
 def _end(segments: Segments) -> float:

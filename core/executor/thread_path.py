@@ -207,7 +207,7 @@ class ThreadRetract(NamedTuple):
 
     @classmethod
     def of(cls, block: Block, behind: Sequence[Block], spindle: SpindleControl) -> ThreadRetract:
-        """From ``block``, which is being cut; ``behind`` are the blocks of the pass that would follow."""
+        """The way out of ``block``, which is being cut; ``behind`` are those of its pass that follow."""
         return cls(block, [block, *behind][-1].mx, bool(behind), _why_lost(spindle))
 
     def demand_left(self, at: Sequence[float]) -> None:

@@ -23,7 +23,7 @@ _END = 8.0  # s: the longest wait for a drive; one that is stuck longer is left 
 
 
 class ExecutorThread:
-    """Owns the thread. A failure that the executor could not catch itself stops the machine and is shown."""
+    """The thread in which the executor ticks. A failure that it could not catch itself stops the machine."""
 
     def __init__(self, executor: Executor, clock: Clock, tick: float = TICK) -> None:
         self.executor = executor
@@ -98,18 +98,18 @@ class Watchdog:
         return self._thread.is_alive()
 
     def start(self) -> None:
-        """Once the others run."""
+        """Begin to look, once the other threads run."""
         self._others = [name for name in self._others if running(name)]
         self._thread.start()
 
     def close(self) -> None:
-        """Before anything else is closed: what ends then ends in good order."""
+        """End before anything else is closed: what ends behind it ends in good order."""
         self._closing.set()
         if self._thread.is_alive():
             self._thread.join()
 
     def look(self) -> None:
-        """One look; raises nothing."""
+        """Look once at the executor and the other threads. Raises nothing."""
         with Attempt() as trial:
             self._mind_executor()
             self._mind_others()

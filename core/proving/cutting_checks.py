@@ -62,7 +62,7 @@ class CuttingChecks:
         return [*self._found, *(replace(each, severity=weight) for each in self._without_tool)]
 
     def look(self, blocks: Sequence[Block]) -> None:
-        """The next blocks."""
+        """Look at the next blocks of the program."""
         if self.dialect is not Dialect.OMNITURN or not blocks:
             return
         alike: Iterable[Block] = (blocks[0],) if isinstance(blocks, Series) else blocks

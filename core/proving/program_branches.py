@@ -35,7 +35,7 @@ from core.proving.spindle_forecast import SETTLING
 
 
 class Fork(NamedTuple):
-    """Where another way leaves one: blocks made before, the time there, and the other."""
+    """Where one way through the program leaves another: blocks made before, the time there, and that way."""
 
     blocks: int
     t: float
@@ -44,7 +44,7 @@ class Fork(NamedTuple):
 
 @dataclass(slots=True, eq=False)
 class Branch:
-    """A way in time, s from the start of the program. ``ends``: of its blocks from ``first`` + 1 on."""
+    """One way through the program, s from its start. ``ends``: times of its blocks from ``first`` + 1 on."""
 
     first: int = 0
     start: float = 0.0
@@ -56,7 +56,7 @@ class Branch:
     failed: bool = False
 
     def at(self, blocks: int) -> float:
-        """When so many blocks have been made."""
+        """When so many blocks have been executed, s."""
         made = blocks - self.first
         if made <= 0 or not self.ends:
             return self.start
@@ -68,7 +68,7 @@ _Node = tuple[Branch, int]
 
 
 def cycle_range(first: Branch) -> Range:
-    """Least and greatest time from the start of the program to its end, of all ways that were gone."""
+    """Least and greatest time from the start of the program to its end, of all ways that were proved."""
     known: dict[tuple[int, int], Range] = {}
     todo: list[_Node] = [(first, 0)]
     while todo:
@@ -233,7 +233,7 @@ class Branches:
         return False
 
     def asked(self, branch: Branching, made: Statement, takes: bool) -> None:
-        """Keep a copy for the other way."""
+        """A conditional call is met: keep a copy of the pass for the other way."""
         on = takes == (made.flow == "M95" or made.value("C") == 1)
         self._covered.add((made.line, on))
         if branch.stopped:

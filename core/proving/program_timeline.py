@@ -32,7 +32,7 @@ Part = list[Block] | Series
 
 
 class BlocksInMotion:
-    """A queue of blocks that keeps series whole as far as it can."""
+    """Blocks that the planner has and that are not timed yet; series are kept whole where they can be."""
 
     def __init__(self) -> None:
         self._parts: deque[Part] = deque()
@@ -80,7 +80,7 @@ class MotionSpan(NamedTuple):
 
     @property
     def blocks(self) -> list[Block]:
-        """Each block, those of series made for whoever asks."""
+        """The blocks that end in it, those of series made for whoever asks."""
         return list(chain.from_iterable(self.parts))
 
     @property
@@ -181,7 +181,7 @@ class Timeline:
 
     @property
     def rest_state(self) -> RestState:
-        """What a way that leaves this one here goes on with."""
+        """What another way through the program, which leaves this one here, goes on with."""
         return RestState(self.t, copy(self.spindle), self._speed_wanted, copy(self._ends))
 
     def go_on(self, rest_state: RestState) -> None:

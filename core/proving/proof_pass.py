@@ -24,8 +24,8 @@ from core.proving.proof_report import MillFigures, Range, Reach, Report, Times, 
 # --- sums -----------------------------------------------------------------------------------------------
 
 
-class Span:
-    """Least and greatest of what was seen; (0, 0) when nothing was."""
+class Extent:
+    """Least and greatest of values; (0, 0) where there were none."""
 
     def __init__(self) -> None:
         self.low, self.high = math.inf, -math.inf
@@ -37,7 +37,7 @@ class Span:
 
     @property
     def range(self) -> Range:
-        """What was seen."""
+        """Least and greatest value."""
         return (self.low, self.high) if self.low <= self.high else (0.0, 0.0)
 
 
@@ -45,8 +45,8 @@ class Tally:
     """Lengths in mm, reach in the program's frame, from the blocks of a program in order."""
 
     def __init__(self) -> None:
-        self.x, self.z, self.c, self.rpm, self.feed = Span(), Span(), Span(), Span(), Span()
-        self.axes: list[Span] = []  # machine positions of a mill's axes
+        self.x, self.z, self.c, self.rpm, self.feed = Extent(), Extent(), Extent(), Extent(), Extent()
+        self.axes: list[Extent] = []  # machine positions of a mill's axes
         self.cutting_length = 0.0
         self.rapid_length = 0.0
 
@@ -89,7 +89,7 @@ class Tally:
 
     def _see_axes(self, block: Block) -> None:
         if not self.axes:
-            self.axes = [Span() for _ in block.machine_end]
+            self.axes = [Extent() for _ in block.machine_end]
         for span, reach in zip(self.axes, block.machine_reach(), strict=True):
             span.see(*reach)
 
@@ -141,7 +141,7 @@ MAX_FINDINGS = 100  # a broken offset makes every line of a program leave the tr
 
 
 class ProofPass:
-    """What adds up while a program passes by once."""
+    """What is found, and what adds up, while a program is gone through once."""
 
     def __init__(self, machine: Machine, checks: CuttingChecks) -> None:
         self._machine = machine
@@ -160,7 +160,7 @@ class ProofPass:
 
     @property
     def checks(self) -> CuttingChecks:
-        """Those of cutting, as far as the program has passed by."""
+        """The checks of cutting, as far as the program was gone through."""
         return self._checks
 
     def add(self, span: MotionSpan | RestSpan) -> None:
@@ -223,7 +223,7 @@ class ProofPass:
             self._wait += spent
 
     def report(self, timeline: Timeline, source: Source) -> Report:
-        """All of it, when the program has passed by."""
+        """The report, once the whole program was gone through."""
         self._see()
         beyond = list(self._beyond.values())[:MAX_FINDINGS]
         found = [*timeline.diagnostics, *beyond, *self._checks.findings]

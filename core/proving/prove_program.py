@@ -60,7 +60,7 @@ def _proved(
     *,
     ideal: bool,
 ) -> Report:
-    """With block delete as it stands, and all inputs both ways."""
+    """The report with block delete as it stands, and all inputs both ways."""
     branches = Branches(reading, setup, machine, ideal=ideal)
     timeline = Timeline(branches.root or reading.begin(setup), setup, machine, ideal=ideal)
     single = setup.begin is not None and setup.begin.single

@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-from core.executor.controller_motion import LONGEST, Turning, pieces_of
+from core.executor.controller_motion import LONGEST, Turning, parts_of
 from core.executor.raised_alarm import AlarmError
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.machine_requirements import first_needs, needs_of
@@ -27,7 +27,7 @@ def block(kind: Kind, **words: object) -> Block:
 
 
 def test_a_line_goes_out_in_pieces_of_a_fifth_of_a_second() -> None:
-    pieces = list(pieces_of(block(Kind.FEED, x=3.0, z=-4.0), FULL))  # 5 mm at 10 mm/s
+    pieces = list(parts_of(block(Kind.FEED, x=3.0, z=-4.0), FULL))  # 5 mm at 10 mm/s
     assert [piece.seconds for piece in pieces] == pytest.approx([0.5 / 3] * 3)
     ops = [piece.op for piece in pieces]
     assert all(isinstance(op, LineOp) for op in ops)
@@ -40,7 +40,7 @@ def test_a_line_goes_out_in_pieces_of_a_fifth_of_a_second() -> None:
 
 def test_an_arc_stays_on_its_circle_and_ends_exactly() -> None:
     arc = block(Kind.ARC, x=10.0, z=-10.0, cx=10.0, cz=0.0, feed=20.0)  # a quarter of 15.7 mm, 0.79 s
-    ops = [piece.op for piece in pieces_of(arc, FULL)]
+    ops = [piece.op for piece in parts_of(arc, FULL)]
     assert len(ops) == 4
     before = (1.0, 2.0)
     for op in ops:
@@ -54,22 +54,22 @@ def test_an_arc_stays_on_its_circle_and_ends_exactly() -> None:
 
 def test_a_slow_controller_makes_the_pieces_shorter() -> None:
     rapid = block(Kind.RAPID, z=-100.0, feed=127.0)
-    assert len(list(pieces_of(rapid, FULL))) == 4
-    slow = list(pieces_of(rapid, FULL, fastest=10.0))
+    assert len(list(parts_of(rapid, FULL))) == 4
+    slow = list(parts_of(rapid, FULL, fastest=10.0))
     assert len(slow) == 50
     assert all(piece.seconds <= LONGEST + 1e-9 for piece in slow)
     assert isinstance(slow[0].op, RapidOp)
 
 
 def test_a_thread_is_one_piece() -> None:
-    (piece,) = pieces_of(block(Kind.THREAD, z=-100.0, feed=1.5, per_rev=True, rpm=600.0), FULL)
+    (piece,) = parts_of(block(Kind.THREAD, z=-100.0, feed=1.5, per_rev=True, rpm=600.0), FULL)
     assert piece.op == ThreadOp(1.0, 2.0, 1.0, -98.0, 1.5)
 
 
 def test_an_arc_goes_out_in_less_than_half_turns_however_quick_it_is() -> None:
     """Three quarters of a turn about Z 0.1, 5 ms long: from behind the centre to X+ of it, by X-."""
     quick = block(Kind.ARC, x=0.1, z=0.1, cx=0.0, cz=0.1, clockwise=True, feed=100.0)
-    ops = [piece.op for piece in pieces_of(quick, FULL)]
+    ops = [piece.op for piece in parts_of(quick, FULL)]
     assert len(ops) == 2
     for op in ops:
         assert isinstance(op, ArcOp)
@@ -79,10 +79,10 @@ def test_an_arc_goes_out_in_less_than_half_turns_however_quick_it_is() -> None:
 
 def test_a_feed_per_turn_follows_the_commanded_speed_its_pot_and_its_limit() -> None:
     cut = block(Kind.FEED, z=-0.1, feed=0.1, per_rev=True, rpm=-1200.0)
-    (piece,) = pieces_of(cut, Turning(0.5, 3500.0))
+    (piece,) = parts_of(cut, Turning(0.5, 3500.0))
     assert isinstance(piece.op, LineOp)
     assert piece.op.feed == pytest.approx(0.1 * 1200 / 60 * 0.5)
-    (piece,) = pieces_of(cut, Turning(1.0, 600.0))
+    (piece,) = parts_of(cut, Turning(1.0, 600.0))
     assert isinstance(piece.op, LineOp)
     assert piece.op.feed == pytest.approx(0.1 * 600 / 60)
 
@@ -92,7 +92,7 @@ def test_a_feed_per_turn_follows_the_commanded_speed_its_pot_and_its_limit() -> 
 )
 def test_what_cannot_be_moved_is_refused(words: dict[str, object], expected: str) -> None:
     with pytest.raises(AlarmError, match=expected):
-        list(pieces_of(block(Kind.FEED, **words), FULL))
+        list(parts_of(block(Kind.FEED, **words), FULL))
 
 
 def test_needs_are_told_once_with_their_first_line() -> None:
