@@ -214,7 +214,7 @@ class Standstill:
         return Next.END if feed.ended else Next.NOTHING
 
     def carry_out(self, block: Block) -> None:
-        """Do what an action says, or wait for the speed that a block needs. Raises AlarmError, DriverError."""
+        """Carry out an action, or wait for the speed that a block needs. Raises AlarmError, DriverError."""
         if block.action is not None:
             self._wait = carry_out(block, self._context)
         elif needs_speed(block):
