@@ -3,6 +3,7 @@
 import importlib
 import subprocess
 import sys
+from collections.abc import Iterator
 
 import pytest
 
@@ -66,3 +67,34 @@ def test_only_composing_knows_drivers(imports: dict[str, set[str]]) -> None:
     others = (m for m in imports if not m.startswith(("app.compose", "drivers")))
     known = {m: sorted(name for name in imports[m] if name.split(".")[0] == "drivers") for m in others}
     assert {module: names for module, names in known.items() if names} == {}
+
+
+def test_no_modules_import_each_other_in_a_circle(imports: dict[str, set[str]]) -> None:
+    """Not even for types alone: who reads one of them would have to read all."""
+    assert sorted(_circles(imports)) == []
+
+
+def _circles(imports: dict[str, set[str]]) -> Iterator[list[str]]:
+    """Modules that can all be reached from each other (Tarjan's strongly connected components)."""
+    number: dict[str, int] = {}
+    lowest: dict[str, int] = {}
+    stack: list[str] = []
+
+    def visit(module: str) -> Iterator[list[str]]:
+        number[module] = lowest[module] = len(number)
+        stack.append(module)
+        for used in sorted(imports[module] & imports.keys()):
+            if used not in number:
+                yield from visit(used)
+                lowest[module] = min(lowest[module], lowest[used])
+            elif used in stack:
+                lowest[module] = min(lowest[module], number[used])
+        if lowest[module] == number[module]:
+            circle = stack[stack.index(module) :]
+            del stack[stack.index(module) :]
+            if len(circle) > 1:
+                yield sorted(circle)
+
+    for module in sorted(imports):
+        if module not in number:
+            yield from visit(module)
