@@ -32,7 +32,7 @@ class Drafts:
         self._go_on()
 
     def forget(self, document: Document) -> None:
-        """It is saved, or given up."""
+        """Its text is saved or given up: the draft file goes."""
         self._wanted[document.name] = None
         self._go_on()
 
@@ -59,7 +59,7 @@ class Drafts:
         return messages.DRAFT_STAYS.format(aside, why)
 
     def poll(self) -> None:
-        """Once a frame."""
+        """Once a frame: take up what was written, and write what was typed since."""
         self._worker.poll()
         self._go_on()
 

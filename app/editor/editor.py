@@ -35,7 +35,7 @@ from core.executor.snapshot import Snapshot
 
 
 class Stage(StrEnum):
-    """Where the editor is."""
+    """What the editor is doing with its document."""
 
     CLOSED = "closed"
     OFFERED = "offered"  # a new file: F1 creates it, Esc aborts
@@ -100,7 +100,7 @@ class Editor:
             self.notice = self.drafts.trouble
 
     def close(self) -> None:
-        """End the workers."""
+        """End the editor's workers; what is being written is written to its end."""
         self.proof.close()
         self.worker.close()
         self.drafts.close()
@@ -121,7 +121,7 @@ class Editor:
         self.notice = messages.CREATE
 
     def create(self) -> None:
-        """F1: yes, a new file."""
+        """F1: the name that was offered becomes a new, empty document."""
         if self.stage is not Stage.OFFERED:
             return
         try:

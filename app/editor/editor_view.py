@@ -141,7 +141,7 @@ class EditorPage(Page):
         return True
 
     def asks(self) -> str:
-        """What F6 would do now."""
+        """The question that F6 answers with yes; empty without one."""
         return self.editor.notice if self.editor.asked else ""
 
     def prompt(self) -> str:
@@ -227,7 +227,7 @@ class EditorPage(Page):
             self.field.setFocus()
 
     def back(self) -> None:
-        """Back to the text."""
+        """From what is asked or looked at back to the text."""
         self.editor.keep_no_name()
         self.enter(Mode.TEXT)
 
@@ -247,7 +247,7 @@ class EditorPage(Page):
             self.editor.notice = "NOTHING WAS FOUND THAT IS WRONG"
 
     def save(self) -> None:
-        """Save and go on."""
+        """Save the text and go on editing."""
         self.editor.save(self.typed_text.now())
 
     def leave_to(self, page: str) -> None:
@@ -256,7 +256,7 @@ class EditorPage(Page):
         self.editor.leave(self.typed_text.now(), to_desk=page == page_table.AUTOMATIC)
 
     def abandon(self) -> None:
-        """Go without saving."""
+        """Leave without saving."""
         self.editor.abandon(self.typed_text.now())
 
     def answer(self) -> None:
@@ -442,7 +442,7 @@ class EditorPage(Page):
         return chords
 
     def _go(self) -> None:
-        """The editor has been left."""
+        """The editor has been left: say what it had to say, and show the page that was wanted."""
         if self.editor.notice:
             self.desk.say(self.editor.notice)
             self.editor.clear()

@@ -37,7 +37,7 @@ class HeadLine(Panel):
         self.heading = Heading()
 
     def show_heading(self, heading: Heading) -> None:
-        """What stands in the line."""
+        """Show another name, mark or place."""
         if heading != self.heading:
             self.heading = heading
             self.update()

@@ -97,11 +97,11 @@ class TextField(QPlainTextEdit):
             self.viewport().update()
 
     def finding_at(self, line: int) -> Diagnostic | None:
-        """What is said of a line."""
+        """What proving has found in a line; None where it found nothing."""
         return self._found.get(line)
 
     def dress(self) -> None:
-        """Font and colours."""
+        """Take font and colours of the look."""
         colours = self.look.palette
         self.setFont(self.look.font(SIZE))
         self.setStyleSheet(
@@ -201,7 +201,7 @@ class Margin(QWidget):
 
     @property
     def wide(self) -> int:
-        """Pixels."""
+        """Width in pixels, by the number of digits."""
         digits = max(3, len(str(self._field.blockCount())))
         return round((3.4 + 1.35 * digits) * self._field.look.u)
 
@@ -256,7 +256,7 @@ class TypedText:
             self._editor.clear()  # whoever goes on typing has read the answer, and no question stays open
 
     def now(self) -> str:
-        """What stands in the field."""
+        """The text that stands in the field."""
         return self._field.toPlainText()
 
     def refresh(self) -> None:

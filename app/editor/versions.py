@@ -32,15 +32,15 @@ class NoArchive:
     """Where nothing is kept: scripts, and a desk whose store cannot be opened."""
 
     def versions(self, _name: str) -> Sequence[VersionRow]:
-        """None."""
+        """No version is kept."""
         return ()
 
     def text_of(self, name: str, version: int) -> bytes:
-        """There is none."""
+        """Raises StoreError: no version is kept."""
         raise StoreError(f"no version {version} of {name} is kept here")
 
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
-        """It is not kept."""
+        """Keeps nothing and answers 0."""
         return 0
 
 

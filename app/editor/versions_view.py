@@ -34,7 +34,7 @@ class VersionList(Panel):
         self.hide()
 
     def refresh(self) -> None:
-        """Once a frame."""
+        """Once a frame: redraw when the history has another answer."""
         history = self._history
         now = (history.rows, history.marked, history.changes, history.words())
         if now != self._shown:
@@ -118,7 +118,7 @@ class VersionList(Panel):
         }
 
     def arrows(self) -> dict[int, Callable[[], None]]:
-        """The same by arrows."""
+        """The same actions by the arrow keys."""
         by = {number: key.action for number, key in self.keys().items()}
         return {
             Qt.Key.Key_Up: by[4],

@@ -42,7 +42,7 @@ class OffsetBook:
     # --- what there is -------------------------------------------------------------------------------
 
     def of(self, kind: Kind) -> Mapping[int, Row]:
-        """One of the three tables."""
+        """The offsets of one kind, by number."""
         tables: dict[Kind, Mapping[int, Row]] = {
             Kind.TOOL: self.tools,
             Kind.SECONDARY: self.secondary,
@@ -68,7 +68,7 @@ class OffsetBook:
     # --- changes: each answers why not, or nothing ----------------------------------------------------
 
     def change(self, kind: Kind, number: int, values: Mapping[str, Value], why: str) -> str:
-        """Save fields of an offset."""
+        """Save some fields of an offset and keep the rest."""
         return self._post(lambda store: store.set_offset(kind, number, why, values))
 
     def touch_off(self, number: int, touch: Touch, why: str) -> str:
@@ -76,7 +76,7 @@ class OffsetBook:
         return self._post(lambda store: store.touch_off(number, touch, why))
 
     def choose_master(self, number: int, why: str) -> str:
-        """Another master, 0: none."""
+        """Make this tool the master; 0: no tool is."""
         return self._post(lambda store: store.choose_master(number, why))
 
     def clear(self, kind: Kind, why: str) -> str:
@@ -144,5 +144,5 @@ def tool_offsets(rows: Mapping[int, ToolRow]) -> dict[int, ToolOffset]:
 
 
 def secondary_offsets(rows: Mapping[int, SecondaryRow]) -> dict[int, SecondaryOffset]:
-    """Of the secondary offsets."""
+    """X, Z and nose radius of the secondary offsets."""
     return {n: SecondaryOffset(*row) for n, row in rows.items()}

@@ -100,7 +100,7 @@ class Effect:
         return self.now
 
     def forget(self) -> None:
-        """Nobody looks any more."""
+        """Give up what is being drawn, and forget what was drawn."""
         self._worker.give_up()
         self.now, self.trouble = None, ""
 
@@ -126,11 +126,11 @@ class EffectDisplay:
 
     @property
     def effect(self) -> Effect | None:
-        """Who draws."""
+        """The worker that draws; None where nothing is drawn."""
         return self.table.desk.attached(Effect)
 
     def turn(self) -> None:
-        """F6."""
+        """F6: the next of whole path, greatest change, table."""
         if not self.open:
             self._open()
         elif not self.near and self.pictures is not None and not self.pictures.same:
@@ -166,7 +166,7 @@ class EffectDisplay:
         return _tables(book.tools, _before(book.secondary, last, SecondaryRow)), now
 
     def close(self) -> None:
-        """The table again."""
+        """Show the table again."""
         self.open = self.near = False
         if self.effect is not None:
             self.effect.forget()

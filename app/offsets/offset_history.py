@@ -44,7 +44,7 @@ def counts_from(snapshot: Snapshot) -> str:
 
 
 def _behind_saved(snapshot: Snapshot) -> str:
-    """What stands behind SAVED."""
+    """What the message says behind SAVED while parts run."""
     if snapshot.state not in UNDER_WAY:
         return ""
     if snapshot.cycle_repeat:

@@ -51,7 +51,7 @@ class OffsetTable:
 
     @property
     def question(self) -> str:
-        """What is asked now."""
+        """What the operator is asked to type now."""
         raise NotImplementedError
 
     @property

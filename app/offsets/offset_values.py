@@ -32,7 +32,7 @@ class Mode:
 
     @property
     def name(self) -> str:
-        """The unit in words."""
+        """The unit as messages name it."""
         return "mm" if self.metric else "in"
 
 

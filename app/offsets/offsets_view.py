@@ -83,18 +83,18 @@ class HistoryList(Panel):
         self.hide()
 
     def show_entries(self, entries: tuple[Entry, ...]) -> None:
-        """All of it, newest first."""
+        """Show these changes, newest first."""
         if entries != self.entries:
             self.entries = entries
             self.look_at(self.top)
 
     @property
     def rows(self) -> int:
-        """How many changes fit."""
+        """How many changes fit into the panel."""
         return max(1, int((self.height() - 3.4 * self.look.u) / (ROW * self.look.u)))
 
     def look_at(self, top: int) -> None:
-        """Begin with this one."""
+        """Scroll so that this change is the first that is shown."""
         self.top = max(0, min(top, len(self.entries) - self.rows))
         self.update()
 
@@ -179,7 +179,7 @@ class OffsetPage(Page):
         return self.model.typed(key)
 
     def takes(self, key: str) -> bool:
-        """As the model says."""
+        """Whether a character is text of the entry."""
         return self.model.takes(key)
 
     def _touched(self, key: str) -> None:

@@ -22,7 +22,7 @@ _KEYS = CHARACTERS | {"Back", "Delete", "Enter"}
 
 
 class Step(IntEnum):
-    """What is asked."""
+    """The steps of the dialogue, in the order in which they are asked."""
 
     NUMBER = 0
     X = 1
@@ -54,7 +54,7 @@ class SecondaryOffsets(OffsetTable):
 
     @property
     def heading(self) -> str:
-        """Which offset."""
+        """The number of the offset that is being entered."""
         which = tr("Secondary offset number:")
         return f"{which} {self.number}" if self.number else which
 
@@ -94,12 +94,12 @@ class SecondaryOffsets(OffsetTable):
 
     @property
     def foot(self) -> str:
-        """In the control's words."""
+        """How to leave and how to clear, in the control's words."""
         leave = tr("Press Esc to exit offset adjustment screen")
         return f"{leave}        {tr('Press C to clear all offsets')}"
 
     def hint(self, snapshot: Snapshot) -> str:
-        """Every value is a sum."""
+        """That every value may be a sum, or from when a correction counts."""
         return counts_from(snapshot) or tr(
             "EVERY VALUE TAKES ARITHMETIC, SUCH AS .5-.002; RETURN ALONE KEEPS THE VALUE"
         )
@@ -124,7 +124,7 @@ class SecondaryOffsets(OffsetTable):
     # --- keys ----------------------------------------------------------------------------------------
 
     def takes(self, key: str) -> bool:
-        """Figures, signs, and C."""
+        """Figures and signs are typed, C clears the table."""
         return key in CHARACTERS or key == "C"
 
     def enter_key(self, key: str) -> bool:
@@ -155,7 +155,7 @@ class SecondaryOffsets(OffsetTable):
             super().clear()
 
     def take_back(self) -> bool:
-        """The entry that was begun."""
+        """Take back the entry that was begun, and say so."""
         if self.step is Step.NUMBER and not self.text:
             return False
         number = self.number

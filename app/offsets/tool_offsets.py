@@ -135,7 +135,7 @@ class ToolOffsets(OffsetTable):
 
     @property
     def question(self) -> str:
-        """Tool and field."""
+        """The tool and the field under the cursor."""
         return f"T{self.number}  {heading(self.name, self.mode)}?"
 
     @property
@@ -152,7 +152,7 @@ class ToolOffsets(OffsetTable):
 
     @property
     def foot(self) -> str:
-        """What other keys do."""
+        """What F2, F3 and Esc do here."""
         return tr("F2 adds what is typed; F3 shows X and Z from the master; Esc leaves")
 
     def hint(self, snapshot: Snapshot) -> str:
@@ -304,6 +304,6 @@ class ToolOffsets(OffsetTable):
         return True
 
     def drop(self) -> None:
-        """Forget all of it."""
+        """Forget what is typed, an open remark and half of a new tool."""
         self.text, self.writing = "", False
         self.fields.new.drop()

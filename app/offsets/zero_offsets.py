@@ -64,13 +64,13 @@ class ZeroOffsets(OffsetTable):
 
     @property
     def foot(self) -> str:
-        """What other keys do."""
+        """What F2, C and Esc do here."""
         return tr(
             "F2: where the machine stands reads what is typed        C: clear G54 to G59        Esc: exit"
         )
 
     def hint(self, _snapshot: Snapshot) -> str:
-        """How a cell is entered."""
+        """How a value is entered and another cell chosen."""
         return tr("TYPE A VALUE OR A SUM AND PRESS RETURN; ARROWS AND TAB CHOOSE ANOTHER CELL")
 
     def barred(self, snapshot: Snapshot, *, correction: bool = False) -> str:
@@ -82,7 +82,7 @@ class ZeroOffsets(OffsetTable):
     # --- keys ----------------------------------------------------------------------------------------
 
     def takes(self, key: str) -> bool:
-        """Figures, signs, and C."""
+        """Figures and signs are typed, C clears the table."""
         return key in CHARACTERS or key == "C"
 
     def enter_key(self, key: str) -> bool:
@@ -109,12 +109,12 @@ class ZeroOffsets(OffsetTable):
         self.row, self.column, self.text = row, column, ""
 
     def take_back(self) -> bool:
-        """What is typed."""
+        """Forget what is typed; False when nothing was."""
         typed, self.text = bool(self.text), ""
         return typed
 
     def drop(self) -> None:
-        """Forget it."""
+        """Forget what is typed."""
         self.text = ""
 
     def _enter(self) -> None:

@@ -145,7 +145,7 @@ class FilePrompt(Panel):
         dress_line(self.edit, self.look, 2.6, 1.0)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Move the mark."""
+        """The wheel moves the mark."""
         self._mark(self._row - round(event.angleDelta().y() / 120))
 
     def draw(self, painter: QPainter) -> None:

@@ -112,7 +112,7 @@ class FolderChooser:
 
     @property
     def here(self) -> FolderLine | None:
-        """The marked line."""
+        """The marked line; None where there is none."""
         return self.lines[self.marked] if self.marked < len(self.lines) else None
 
     @property

@@ -115,7 +115,7 @@ def _keep_old(target: Path, persistence: Persistence, text: bytes) -> None:
 
 
 def _nobody() -> None:
-    """Nobody waits for it."""
+    """Nobody waits for the end of a copy."""
 
 
 @dataclass(slots=True)
@@ -162,7 +162,7 @@ class ImportExport:
         return chooser_sheet(self.chooser, f"EXPORT {name}" if self.out else "IMPORT")
 
     def keys(self) -> Mapping[str, Key]:
-        """One, all, look again."""
+        """The function keys: copy one, copy all, look again."""
         if self.out:
             return {
                 "F2": Key("LOOK", self._look),
@@ -188,7 +188,7 @@ class ImportExport:
         self.chooser.marked = max(0, min(len(self.chooser.lines) - 1, row))
 
     def touch(self, row: int) -> None:
-        """A finger on a line."""
+        """A finger marks a line; on the marked one it is Return."""
         if row == self.chooser.marked:
             self._enter()
         else:
@@ -276,7 +276,7 @@ class ImportExport:
         self.desk.refuse(why)
 
     def prompt(self) -> str:
-        """What the keys do here."""
+        """What the keys do here, for the prompt line."""
         if self.out:
             return "RETURN OPENS A PLACE OR FOLDER; F4 COPIES THE MARKED PROGRAM THERE, F5 ALL; ESC GOES BACK"
         return "RETURN OPENS A PLACE OR FOLDER, ON A PROGRAM IT IMPORTS IT; F5 IMPORTS ALL; ESC GOES BACK"

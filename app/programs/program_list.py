@@ -84,7 +84,7 @@ class ProgramList:
 
     @property
     def here(self) -> Program | None:
-        """The marked program."""
+        """The marked program; None where the list is empty."""
         return self.shown[self.marked] if self.marked < len(self.shown) else None
 
     def sheet(self) -> Sheet:
@@ -160,7 +160,7 @@ class ProgramList:
         self._narrow(self.here.name if self.here else "")
 
     def sort(self) -> None:
-        """By the next order."""
+        """F2: sort the list by the next of the orders."""
         names = list(ORDERS)
         self.order = names[(names.index(self.order) + 1) % len(names)]
         self._narrow(self.here.name if self.here else "")
@@ -184,7 +184,7 @@ class ProgramList:
             self.transfer.begin(tuple(p.path for p in self.shown), self.here.path if self.here else None, out)
 
     def prompt(self) -> str:
-        """What can be done now."""
+        """What the keys do now, for the prompt line."""
         if self.transfer.open:
             return self.transfer.prompt()
         if self.question:
@@ -194,7 +194,7 @@ class ProgramList:
         return "TYPE A PART OF A NAME, OR MARK IT WITH ARROWS; RETURN LOADS IT; ESC FOR AUTOMATIC"
 
     def close(self) -> None:
-        """End the workers."""
+        """End the workers of the list and of the preview."""
         self.worker.close()
         self.preview.close()
 

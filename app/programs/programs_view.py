@@ -105,7 +105,7 @@ class ProgramsPage(ListPage):
         return self.labels_of(own, self.model.keys())
 
     def key_actions(self) -> KeyActions:
-        """The keys of this moment."""
+        """The function keys of the list, or of the chooser over it."""
         keys = self.model.keys()
         own = {} if self.model.transfer.open else {"F3": self._edit}
         return {**own, **{name: partial(self._do, name) for name in keys}}

@@ -16,7 +16,7 @@ from app.screen.panel import Panel
 
 @dataclass(frozen=True, slots=True)
 class EntryWords:
-    """The words of one moment."""
+    """What an entry shows: which, question, typed text, old → new, and what other keys do."""
 
     which: str = ""
     question: str = ""
@@ -35,7 +35,7 @@ class EntryPanel(Panel):
         self.asked = EntryWords()
 
     def show_entry(self, asked: EntryWords) -> None:
-        """The model's words of now."""
+        """Show these words; redraw when one of them is another."""
         if asked != self.asked:
             self.asked = asked
             self.update()

@@ -45,7 +45,7 @@ class Listing(Panel):
 
     @property
     def rows(self) -> int:
-        """How many rows fit."""
+        """How many lines of the program fit into the window."""
         return max(1, int((self.height() - 3.2 * self.look.u) / (ROW * self.look.u)))
 
     @property

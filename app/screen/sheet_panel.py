@@ -41,7 +41,7 @@ class SheetPanel(Panel):
 
     @property
     def rows(self) -> int:
-        """How many rows fit."""
+        """How many rows of the table fit into the panel."""
         foot = len(self.sheet.notes) * NOTE + (ASKED if self.sheet.question else 0.0)
         return max(1, int((self.height() / self.look.u - 4.0 - HEAD - foot) / ROW))
 
@@ -180,15 +180,15 @@ class ListPage(Page):
         return self.model.typed(key)
 
     def takes(self, key: str) -> bool:
-        """As the model says."""
+        """Whether a character is text of the list or of what is open."""
         return self.model.takes(key)
 
     def prompt(self) -> str:
-        """From the model."""
+        """The prompt line of the model."""
         return self.model.prompt()
 
     def opened(self) -> None:
-        """With the list."""
+        """The page comes up with its list."""
         self.model.opened()
 
     def leave(self) -> bool:

@@ -57,7 +57,7 @@ class BackupAndRestore(SpecialFunction):
 
     @property
     def count(self) -> int:
-        """Places and backups."""
+        """How many places and backups are listed."""
         return len(self.places)
 
     def opened(self) -> None:
@@ -161,7 +161,7 @@ class BackupAndRestore(SpecialFunction):
         self.desk.refuse(why)
 
     def prompt(self) -> str:
-        """What Return does."""
+        """What Return does, for the prompt line."""
         return "RETURN ON A PLACE BACKS UP, ON A BACKUP RESTORES IT; F4 LOOKS FOR STICKS AGAIN"
 
 

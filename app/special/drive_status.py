@@ -77,7 +77,7 @@ class DriveStatus(SpecialFunction):
         return Row(cells, snapshot.spindle_auto and fault == formats.NOTHING, Tone.RUN)
 
     def prompt(self) -> str:
-        """Where the rest stands."""
+        """Where alarms are found, for the prompt line."""
         return "F7 LISTS THE ALARMS WITH CAUSE AND REMEDY; ESC GOES BACK TO THE LIST"
 
 

@@ -43,11 +43,11 @@ class LoggedEvents(SpecialFunction):
 
     @property
     def count(self) -> int:
-        """Events found."""
+        """How many events were found."""
         return len(self.events)
 
     def opened(self) -> None:
-        """Look at once."""
+        """The log comes up: look for events at once."""
         self._next = 0.0
         self.marked = 0
 
@@ -89,7 +89,7 @@ class LoggedEvents(SpecialFunction):
         self.trouble = why
 
     def keys(self) -> Mapping[str, Key]:
-        """Search and filter."""
+        """The function keys: search and filter."""
         return {"F4": Key("SEARCH", self._search), "F5": Key("FILTER", self._filter)}
 
     def _search(self) -> None:
@@ -122,13 +122,13 @@ class LoggedEvents(SpecialFunction):
         return True
 
     def prompt(self) -> str:
-        """What the keys do now."""
+        """What the keys do now, for the prompt line."""
         if self.searching:
             return "TYPE WHAT TO LOOK FOR; RETURN KEEPS IT, ESC TAKES IT AWAY"
         return "F4 SEARCHES, F5 SHOWS ANOTHER KIND; PAGE UP AND PAGE DOWN LOOK ON; ESC GOES BACK"
 
     def escape(self) -> bool:
-        """The search."""
+        """Take the search away; False when there was none."""
         open_before = self.searching or bool(self.entry.text)
         if open_before:
             self.searching, self.entry.text, self.marked = False, "", 0

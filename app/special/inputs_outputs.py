@@ -32,7 +32,7 @@ OWN_CODES = {"coolant": ("M08", "M09"), "collet": ("M12", "M13")}
 
 
 class Kind(StrEnum):
-    """What is listed."""
+    """The three lists of signals."""
 
     OUTPUTS = "OUTPUTS"
     INPUTS = "INPUTS"
@@ -133,7 +133,7 @@ class InputsOutputs(SpecialFunction):
         self.desk.ask(asked.format(name=name), lambda: self.desk.post(ForceOutput(name, on)))
 
     def prompt(self) -> str:
-        """What Return does here."""
+        """What Return does here, for the prompt line."""
         if self.kind is not Kind.OUTPUTS:
             return "F4 SHOWS THE NEXT LIST; ESC GOES BACK TO THE LIST OF FUNCTIONS"
         if self.desk.snapshot().state not in AT_REST:

@@ -27,11 +27,11 @@ class MachineFileAcceptance(SpecialFunction):
 
     @property
     def count(self) -> int:
-        """The changes."""
+        """How many keys of the file have changed."""
         return len(self.changes.changes)
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """One row a key."""
+        """One row for each key that has changed: key, was, is."""
         rows = tuple(Row(tuple(change), None, Tone.WAIT) for change in self.changes.changes)
         note = tr("F2 accepts; the drives stay off until then.") if rows else tr("It is as it was accepted.")
         return Sheet(
@@ -61,7 +61,7 @@ class MachineFileAcceptance(SpecialFunction):
         self.desk.say(tr("ACCEPTED: THE DRIVES CAN BE SWITCHED ON"))
 
     def prompt(self) -> str:
-        """What can be done."""
+        """What the keys do, for the prompt line."""
         if self.changes.changes:
             return tr("ARROWS GO THROUGH THE CHANGES, F2 ACCEPTS ALL OF THEM; ESC GOES BACK TO THE LIST")
         return super().prompt()

@@ -33,7 +33,7 @@ class PartCounter:
 
     @property
     def words(self) -> str:
-        """``12`` or ``12/100``."""
+        """Parts made, and the target where there is one: ``12`` or ``12/100``."""
         return f"{self.count}/{self.target}" if self.target else str(self.count)
 
     @property

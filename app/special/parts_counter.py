@@ -26,7 +26,7 @@ class PartsCounterFunction(FigureFunction):
 
     @property
     def counter(self) -> PartCounter:
-        """The desk's own."""
+        """The count of the program on the desk."""
         return self.desk.counter
 
     def sheet(self, snapshot: Snapshot) -> Sheet:
@@ -105,7 +105,7 @@ class PartsCounterFunction(FigureFunction):
             self.desk.say(f"NOT KEPT: {error}")
 
     def prompt(self) -> str:
-        """How to set the target."""
+        """How to set the target, for the prompt line."""
         return "TYPE HOW MANY PARTS AND PRESS RETURN; ESC GOES BACK TO THE LIST"
 
 

@@ -25,11 +25,11 @@ class ScreenPreferences(SpecialFunction):
 
     @property
     def count(self) -> int:
-        """The choices."""
+        """How many settings there are."""
         return len(WORDS)
 
     def sheet(self, snapshot: Snapshot) -> Sheet:
-        """What is chosen now."""
+        """One row for each setting: what is chosen now."""
         now = self.desk.settings.now
         rows = tuple(Row((words, _in_words(getattr(now, name)))) for name, words in WORDS.items())
         control = "MM" if snapshot.modal.metric else "INCH"
@@ -46,7 +46,7 @@ class ScreenPreferences(SpecialFunction):
         )
 
     def act(self) -> bool:
-        """Go on to the next choice."""
+        """Return: the marked setting goes on to its next choice."""
         self._go_on()
         return True
 
@@ -71,7 +71,7 @@ class ScreenPreferences(SpecialFunction):
             self.desk.say(f"NOT KEPT: {error}")
 
     def prompt(self) -> str:
-        """How to choose."""
+        """How to choose, for the prompt line."""
         return "ARROWS MARK, RETURN GOES ON TO THE NEXT CHOICE; ESC GOES BACK TO THE LIST"
 
 

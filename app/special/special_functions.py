@@ -52,7 +52,7 @@ class SpecialFunction:
         return False
 
     def opened(self) -> None:
-        """It comes up."""
+        """The function comes up."""
 
     def left(self) -> None:
         """It goes: nothing stays half entered or half asked."""
@@ -102,11 +102,11 @@ class FigureFunction(SpecialFunction):
             self.desk.refuse(str(error))
 
     def takes(self, key: str) -> bool:
-        """Figures and signs."""
+        """Whether a character is a figure or a sign."""
         return self.entry.takes(key)
 
     def typed(self, key: str) -> bool:
-        """Figures, then Return."""
+        """Figures are typed, Return takes them."""
         if key == "Enter":
             self.enter()
             return True
@@ -116,12 +116,12 @@ class FigureFunction(SpecialFunction):
         return False
 
     def escape(self) -> bool:
-        """An entry that was begun."""
+        """Take an entry back that was begun; False when there was none."""
         begun, self.entry.text = bool(self.entry.text), ""
         return begun
 
     def left(self) -> None:
-        """Nothing stays typed."""
+        """The function goes: nothing stays typed."""
         self.entry.text = ""
 
 
@@ -194,7 +194,7 @@ class SpecialFunctions:
         self.shown.opened()
 
     def leave(self) -> None:
-        """The page goes."""
+        """The page goes: nothing stays open."""
         self.shown.left()
         self.inside = False
 

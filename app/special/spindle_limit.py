@@ -78,5 +78,5 @@ class SpindleSpeedLimit(FigureFunction):
         return True
 
     def prompt(self) -> str:
-        """How to set it."""
+        """How to set the limit, for the prompt line."""
         return "TYPE A SPEED AND PRESS RETURN; IT TAKES ARITHMETIC; ESC GOES BACK TO THE LIST"

@@ -75,7 +75,7 @@ class SerialPorts(Protocol):
         ...
 
     def receive(self, settings: DncModel) -> Transfer[Received]:
-        """A program in."""
+        """A program in; ``run`` answers what came."""
         ...
 
 

@@ -69,7 +69,7 @@ ROWS: tuple[Row, ...] = (
 
 
 def stored_form(model: DncModel) -> dict[str, object]:
-    """What is kept of it."""
+    """The settings as the store keeps them."""
     return asdict(model)
 
 

@@ -37,7 +37,7 @@ def settings_sheet(settings: DncModel, marked: int, chosen: Path | None, last: s
 
 
 def progress_sheet(reach: TransferProgress, settings: DncModel, sends: str) -> Sheet:
-    """How far it has come."""
+    """How far a transfer has come."""
     share = f"{reach.done / reach.total:.0%}" if reach.total else "—"
     rows = (
         Row((tr("SENDING") if sends else tr("RECEIVING"), sends or settings.port), True, Tone.RUN),
@@ -51,7 +51,7 @@ def progress_sheet(reach: TransferProgress, settings: DncModel, sends: str) -> S
 
 
 def _waits(what: str) -> str:
-    """For whom or what."""
+    """What a transfer waits for, in words."""
     words = {
         "held": tr("HELD BY THE OTHER SIDE (XOFF)"),
         "dc1": tr("FOR DC1 FROM THE OTHER SIDE"),
@@ -119,14 +119,14 @@ class SerialTransfer(SpecialFunction):
         return 0 if self.under_way or self.received else len(ROWS)
 
     def opened(self) -> None:
-        """Look for ports."""
+        """The function comes up: look for serial ports."""
         self.worker.queue(lambda: [device for device, _ in self.lines.ports()], self._found, self.desk.refuse)
 
     def _found(self, ports: list[str]) -> None:
         self.ports = ports
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """The face of this moment."""
+        """Settings, transfer under way, or a program that waits for its name."""
         self.worker.poll()
         if self.received is not None:
             return received_sheet(self.received, self.entry.text)
@@ -135,7 +135,7 @@ class SerialTransfer(SpecialFunction):
         return settings_sheet(self.settings, self.marked, self._chosen(), self.last)
 
     def keys(self) -> Mapping[str, Key]:
-        """What can be done now."""
+        """The function keys of this moment."""
         if self.received is not None:
             return {"F6": Key("DISCARD", self.discard)}
         if self.under_way is not None:
@@ -166,12 +166,12 @@ class SerialTransfer(SpecialFunction):
         return bool(self.count)
 
     def choose(self, row: int) -> None:
-        """A finger on a setting."""
+        """A finger marks a setting, while no transfer is under way."""
         if self.count:
             super().choose(row)
 
     def prompt(self) -> str:
-        """What the keys do."""
+        """What the keys do, for the prompt line."""
         if self.received is not None and not self._at_rest():
             return UNDER_WAY_NAME
         if self.received is not None:
@@ -191,7 +191,7 @@ class SerialTransfer(SpecialFunction):
         return self.desk.session.now.path
 
     def send(self) -> None:
-        """The program on the desk."""
+        """F4: send the program on the desk."""
         path = self._chosen()
         if path is None:
             self.desk.say("NO PROGRAM IS ON THE DESK: CHOOSE THE ONE TO SEND FIRST (F2)")
@@ -202,7 +202,7 @@ class SerialTransfer(SpecialFunction):
             self.worker.queue(carrying.run, self._sent, self._failed)
 
     def receive(self) -> None:
-        """Whatever comes."""
+        """F5: receive a program."""
         if self._ready():
             self.sends = ""
             carrying = self.lines.receive(self.settings)
