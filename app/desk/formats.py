@@ -59,7 +59,7 @@ def rpm(value: float) -> str:
 
 
 def percent(fraction: float) -> str:
-    """An override."""
+    """An override, given as a fraction of 1, in per cent."""
     return f"{fixed(fraction * 100, 0)} %"
 
 

@@ -37,7 +37,7 @@ class Persistence(Protocol):
         ...
 
     def reset_parts(self, program: str) -> None:
-        """Its count to nought."""
+        """Put the part count of this program to nought."""
         ...
 
     def events(self, search: str, kinds: Collection[str], limit: int) -> Sequence[EventRow]:
@@ -49,19 +49,19 @@ class Persistence(Protocol):
         ...
 
     def run_started(self, program: str) -> None:
-        """A run begins."""
+        """Note in the record that a run of this program begins."""
         ...
 
     def run_ended(self, program: str, outcome: str) -> None:
-        """How it ended."""
+        """Note in the record how the run of this program ended."""
         ...
 
     def cycle_finished(self, program: str, seconds: float) -> None:
-        """One whole cycle."""
+        """Note the cycle time of one whole cycle, in seconds."""
         ...
 
     def program_proved(self, program: str, result: str, planned: float | None) -> None:
-        """What proving found."""
+        """Note what proving found; ``planned`` is the forecast cycle time in seconds."""
         ...
 
     def renamed(self, old: str, new: str) -> None:
@@ -92,50 +92,50 @@ class NoPersistence:
         return self.settings.get(key)
 
     def save_setting(self, key: str, value: object) -> None:
-        """Until the program ends."""
+        """Keep the choice until the program ends."""
         self.settings[key] = value
 
     def parts(self, _program: str) -> int:
-        """None are counted here."""
+        """No parts are counted here."""
         return 0
 
     def correct_parts(self, _program: str, _by: int) -> None:
-        """None are counted here."""
+        """No parts are counted here."""
 
     def reset_parts(self, _program: str) -> None:
         """Nothing to put to nought."""
 
     def events(self, _search: str, _kinds: Collection[str], _limit: int) -> Sequence[EventRow]:
-        """There is no log."""
+        """No events are kept here."""
         return ()
 
     def runs(self) -> Sequence[RunRow]:
-        """No run is remembered."""
+        """No runs are remembered here."""
         return ()
 
     def run_started(self, _program: str) -> None:
-        """Not remembered."""
+        """Runs are not remembered here."""
 
     def run_ended(self, _program: str, _outcome: str) -> None:
-        """Not remembered."""
+        """Runs are not remembered here."""
 
     def cycle_finished(self, _program: str, _seconds: float) -> None:
-        """Not remembered."""
+        """Runs are not remembered here."""
 
     def program_proved(self, _program: str, _result: str, _planned: float | None) -> None:
-        """Not remembered."""
+        """Runs are not remembered here."""
 
     def renamed(self, _old: str, _new: str) -> None:
-        """Nothing goes with it."""
+        """Nothing is kept that could go with the name."""
 
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
         """Versions are not kept here, so nothing may be thrown away."""
         raise StoreError(NOTHING_KEPT)
 
     def backup(self, _target: Path) -> None:
-        """Nothing to copy."""
+        """There is nothing to copy: raises StoreError."""
         raise StoreError(NOTHING_KEPT)
 
     def restore(self, _source: Path) -> Path | None:
-        """No place for it."""
+        """There is no place for a backup: raises StoreError."""
         raise StoreError(NOTHING_KEPT)

@@ -97,7 +97,7 @@ class ProgramFile:
         self.differs = ""
 
     def start(self) -> None:
-        """Begin to look."""
+        """Begin to look at the file, on a thread of its own."""
         self._thread.start()
 
     def close(self) -> None:

@@ -116,7 +116,7 @@ def system_words(swivel: Swivel | None) -> str:
 
 
 def rotary_angle(degrees: float) -> str:
-    """A rotary axis."""
+    """The angle of a rotary axis, in degrees."""
     return formats.fixed(degrees, ANGLE_PLACES)
 
 

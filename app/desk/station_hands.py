@@ -38,11 +38,11 @@ class StationPanel(Protocol):
     def set_spindle_auto(self, auto: bool) -> None: ...
 
     def set_spindle_pot(self, fraction: float) -> None:
-        """0…1."""
+        """Turn the spindle override pot to this share of its range, 0…1."""
         ...
 
     def set_feed_pot(self, fraction: float) -> None:
-        """0…1.5."""
+        """Turn the feed override pot to this share of the programmed feed, 0…1.5."""
         ...
 
     def turn_handwheel(self, counts: int) -> None:
@@ -97,7 +97,7 @@ class Pot:
     value: float = 1.0
 
     def set(self, fraction: float) -> None:
-        """Where it shall stand."""
+        """Choose where the pot shall stand; it turns there as fast as a knob can."""
         self.wanted = max(0.0, min(self.most, fraction))
 
     def turn(self, seconds: float) -> bool:
@@ -193,7 +193,7 @@ class StationHands:
             (self.station.press_estop if pressed else self.station.release_estop)()
 
     def set_spindle_auto(self, auto: bool) -> None:
-        """The spindle switch AUTO/OFF."""
+        """Turn the spindle switch to AUTO, or to OFF."""
         if self.station:
             self.station.set_spindle_auto(auto)
 

@@ -46,7 +46,7 @@ class JogHandwheel:
 
     @property
     def counts(self) -> int:
-        """Of one click."""
+        """How many counts of the encoder are one click."""
         return self.machine.hardware.analog[WHEEL].counts_per_click if self.there else 0
 
     @property

@@ -22,7 +22,7 @@ class AxisState(StrEnum):
 
     @property
     def words(self) -> str:
-        """For the operator."""
+        """The state in the operator's language."""
         words = {
             AxisState.HOMED: tr("HOMED"),
             AxisState.LOST: tr("NOT HOMED"),
@@ -71,7 +71,7 @@ class HomingQuestion:
         return [axis.name for axis in order if known[axis.name] in {AxisState.LOST, AxisState.LOOKING}]
 
     def key(self, snapshot: Snapshot, why_not: str) -> None:
-        """The home key: asks."""
+        """The home key asks which axes are to be homed, or says ``why_not``."""
         lost = self.lost(snapshot)
         if why_not:
             self.desk.say(why_not)

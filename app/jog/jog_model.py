@@ -90,7 +90,7 @@ class JogModel:
         return why_no_jog(self.desk.snapshot().state)
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame."""
+        """Renew what is held and follow the machine; called once a frame."""
         self.hold.look(snapshot)
         self.wheel.look(snapshot)
         self.tool.look(snapshot)

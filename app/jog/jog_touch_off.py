@@ -50,7 +50,7 @@ class TouchOff:
         return TOUCHES[self.what]
 
     def open(self, what: str, snapshot: Snapshot) -> None:
-        """The tip touches now."""
+        """The tip touches now: remember where the slide stands."""
         self.what, self.at, self.alone = what, slide(what, snapshot), False
 
     def place(self, text: str, mode: Mode) -> float:

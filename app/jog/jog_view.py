@@ -141,7 +141,7 @@ class JogPage(Page):
     # --- as every page -------------------------------------------------------------------------------
 
     def prompt(self) -> str:
-        """From the model."""
+        """What the model has to say on the prompt line."""
         return self.model.prompt(self.desk.snapshot())
 
     def opened(self) -> None:

@@ -167,7 +167,7 @@ class MdiModel:
         return True
 
     def close(self) -> None:
-        """End the worker."""
+        """End the thread that proves."""
         self.worker.close()
 
     # --- keys ----------------------------------------------------------------------------------------

@@ -220,7 +220,7 @@ class MdiPage(Page):
         return self.model.typed(key)
 
     def takes(self, key: str) -> bool:
-        """As the model says."""
+        """Whether the line takes this character."""
         return self.model.takes(key)
 
     def has_field(self) -> bool:
@@ -228,7 +228,7 @@ class MdiPage(Page):
         return self.model.has_keyboard
 
     def prompt(self) -> str:
-        """From the model."""
+        """What the model has to say on the prompt line."""
         return self.model.prompt(self.desk.snapshot(), self.desk.start_words)
 
     def opens(self) -> bool:

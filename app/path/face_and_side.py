@@ -65,7 +65,7 @@ class FaceBuilder:
             self.pencil.to(*face_point(x0 + (x1 - x0) * s, c), stroke)
 
     def polyline(self) -> Polyline:
-        """What was collected."""
+        """The polyline of what was collected."""
         z, x, stroke, first = self.pencil.arrays()
         low_z, high_z, low_x, high_x = bounds_of(z, x, stroke)
         reach = max(abs(low_z), abs(high_z), abs(low_x), abs(high_x))

@@ -80,7 +80,7 @@ class Measure:
             self.second = self.cursor
 
     def forget(self) -> None:
-        """Hold nothing."""
+        """Give up the points that are held."""
         self.first = self.second = None
 
     def block(self) -> int:

@@ -97,7 +97,7 @@ class Pane:
             self.fit()
 
     def fit(self) -> None:
-        """Everything."""
+        """Show the whole path."""
         self.by_hand = False
         self.look_at(self.whole())
 
@@ -210,7 +210,7 @@ class Pane:
 
     @property
     def complete(self) -> bool:
-        """Whether everything is drawn."""
+        """Whether all that was wanted is drawn."""
         return self._layers is not None and self._layers.complete
 
     # --- drawing -------------------------------------------------------------------------------------
@@ -306,12 +306,12 @@ class Panes:
         return len(self._views) > 1
 
     def next_view(self) -> None:
-        """Another view."""
+        """Go on to the next choice of panes."""
         self._view = (self._view + 1) % max(1, len(self._views))
         self._fill()
 
     def lay(self, room: QRectF) -> None:
-        """Share this room."""
+        """Divide this room among the panes."""
         self._room = room
         if room.width() <= LEAST or not self.now:
             return

@@ -70,7 +70,7 @@ class PathView(Panel):
 
     @property
     def picture(self) -> Picture | None:
-        """What is shown."""
+        """The picture that is shown; None while there is none."""
         return self._panes.picture
 
     @property
@@ -290,11 +290,11 @@ class PathView(Panel):
         self._pointer.press(event.position())
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Drag the picture along."""
+        """A drag moves the picture along."""
         self._pointer.move(event.position())
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        """The drag is over."""
+        """A drag ends, or a touch that has not moved means a point."""
         self._pointer.release(event.position())
 
     # --- drawing -------------------------------------------------------------------------------------

@@ -144,7 +144,7 @@ class AlarmList(Panel):
         self.update()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """As the arrow keys."""
+        """The mouse wheel goes through the entries, as Page up and down do."""
         self.look_at(-1 if event.angleDelta().y() > 0 else 1)
 
     def draw(self, painter: QPainter) -> None:

@@ -54,13 +54,13 @@ class Look:
         self._fonts: dict[tuple[float, bool], QFont] = {}
 
     def resize(self, u: float) -> None:
-        """Take another unit, pixels."""
+        """Take another unit of size, in pixels."""
         if u != self.u:
             self.u = u
             self._fonts.clear()
 
     def repaint(self, palette: Palette) -> None:
-        """Take other colours."""
+        """Take the colours of another palette."""
         self.palette = palette
         self._colours.clear()
 

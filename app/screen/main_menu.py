@@ -20,7 +20,7 @@ COLUMNS = 2
 
 
 class MenuPage(Page):
-    """Opens pages."""
+    """The page that opens all others, by key or finger."""
 
     NAME = page_table.MENU
     LABELS = tuple(
@@ -40,7 +40,7 @@ class MenuPage(Page):
         self.host.go(name)
 
     def prompt(self) -> str:
-        """How to choose."""
+        """How a page is chosen."""
         return "PRESS A FUNCTION KEY OR TOUCH A PAGE; ESC FOR AUTOMATIC"
 
     def escape(self) -> bool:

@@ -74,7 +74,7 @@ class MainWindow(QWidget):
         self.refresh()
 
     def refresh(self) -> None:
-        """Once a frame."""
+        """Poll the snapshot once, and show it everywhere."""
         if self.frame is not None:
             self._look_at_hands(self.frame)
             self.frame.refresh()
@@ -164,14 +164,14 @@ class MainWindow(QWidget):
             self.refresh()
 
     def estop(self) -> None:
-        """E-stop, likewise."""
+        """E-stop, whatever page, field or question has the keyboard."""
         if self.frame is not None:
             self.frame.page.pressed()
             self.frame.desk.estop()
             self.refresh()
 
     def moving(self) -> bool:
-        """Whether something moves."""
+        """Whether an axis or a program is moving."""
         return self.frame is not None and self.frame.desk.snapshot().state in MOVING
 
     def is_text(self, key: str) -> bool:

@@ -87,7 +87,7 @@ class Page(QWidget):
         return False
 
     def key_up(self, _event: QKeyEvent) -> None:
-        """A key comes up."""
+        """See a key come up."""
 
     def pressed(self) -> None:
         """A key or a finger is about to do something else, here or beside the page."""
@@ -123,7 +123,7 @@ class Page(QWidget):
         """It is in front now."""
 
     def leave(self) -> bool:
-        """Whether it may go."""
+        """Whether another page may take its place; where not, it says why on the prompt line."""
         return True
 
     def escape(self) -> bool:
@@ -131,7 +131,7 @@ class Page(QWidget):
         return False
 
     def refresh(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
-        """Show this instant."""
+        """Show snapshot, status and loaded program of this instant; called once a frame."""
 
     def dress(self) -> None:
         """Other colours are in force."""

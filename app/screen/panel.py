@@ -58,7 +58,7 @@ class Panel(QWidget):
         self._places.append((rect, press))
 
     def area(self) -> QRectF:
-        """The whole widget."""
+        """The whole widget, in pixels."""
         return QRectF(self.rect())
 
     def inside(self) -> QRectF:
@@ -123,7 +123,7 @@ class FingerPanel(Panel):
 
     @property
     def fingers(self) -> int:
-        """How many hold something."""
+        """How many fingers hold a control."""
         return len(self._held)
 
     def mouse_is_up(self) -> None:

@@ -94,7 +94,7 @@ class Stage:
             self.clock.sleep_until(self.clock.now() + TICK)
 
     def make_ready(self, program: str = PROGRAM) -> None:
-        """Load, drives on."""
+        """Load a program, prove it and switch the drives on."""
         from core.executor.snapshot import State
 
         desk = self.desk

@@ -131,7 +131,7 @@ class Gauge(Panel):
     def figure(
         self, painter: QPainter, at: QRectF, text: str, size: float, flags: Qt.AlignmentFlag = RIGHT
     ) -> None:
-        """A figure."""
+        """Draw a figure in bold, smaller where its place is narrow."""
         painter.setPen(self.look.colour("text"))
         painter.setFont(self.look.fit(text, size, at.width(), bold=True))
         put(painter, at, flags, text)

@@ -35,12 +35,12 @@ class TitleLine(Panel):
 
     @property
     def program(self) -> str:
-        """The program's name."""
+        """The name of the program in the title line."""
         return self._shown[0]
 
     @property
     def state(self) -> str:
-        """The state in words."""
+        """The state of the machine in words, as shown."""
         return self._shown[1]
 
     def show_page(self, page: str) -> None:
@@ -286,7 +286,7 @@ class NoticeRows(Panel):
         return self.high
 
     def show_rows(self, rows: Sequence[NoticeRow]) -> None:
-        """Other rows."""
+        """Show these notices in the place of those before."""
         before, self.rows = self.rows, tuple(rows)
         if before != self.rows:
             self.update()

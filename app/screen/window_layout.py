@@ -14,7 +14,7 @@ FINGER = 43  # pixels: 9 mm on the smallest screen, 10 inches across the corners
 
 
 class Rect(NamedTuple):
-    """Pixels."""
+    """A place in the window, in pixels."""
 
     x: int
     y: int
@@ -23,12 +23,12 @@ class Rect(NamedTuple):
 
     @property
     def right(self) -> int:
-        """First column beyond."""
+        """The first column of pixels to the right of it."""
         return self.x + self.w
 
     @property
     def bottom(self) -> int:
-        """First row beyond."""
+        """The first row of pixels below it."""
         return self.y + self.h
 
 

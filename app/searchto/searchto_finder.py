@@ -41,7 +41,7 @@ class LineFinder:
         self._ask(job, lambda rebuild: rebuild.cut)
 
     def check(self, job: Job) -> None:
-        """Have a restart proved."""
+        """Have the job of a restart proved."""
         self.worker.ask(lambda watch: (job, self.prove(job, watch)), self.found, self.failed)
 
     def _ask(self, job: Job, ask: Callable[[StateRebuild], Answer]) -> None:

@@ -103,7 +103,7 @@ class SearchtoModel:
             self.post(Prepare(Starts.PROGRAM))
 
     def close(self) -> None:
-        """End the worker."""
+        """End the thread that searches."""
         self.finder.worker.close()
 
     def _why_closed(self, snapshot: Snapshot, loaded: Loaded) -> str:

@@ -39,7 +39,7 @@ class SearchEntryPanel(Panel):
         self.text = ""
 
     def show_text(self, text: str) -> None:
-        """What is typed."""
+        """Show what is typed to find a line."""
         if text != self.text:
             self.text = text
             self.update()

@@ -68,7 +68,7 @@ class Camera:
         return replace(self, aspect=(self.aspect + 1) % len(ASPECTS), nearness=1.0, across=0.0, down=0.0)
 
     def fitted(self) -> Camera:
-        """The whole again."""
+        """The camera that shows the whole again."""
         return replace(self, nearness=1.0, across=0.0, down=0.0)
 
     def zoomed(self, steps: int) -> Camera:
@@ -226,7 +226,7 @@ def figure(scene: Scene, instant: Instant, camera: Camera, width: float, height:
 
 
 def sorted_faces(faces: Sequence[tuple[float, Face]]) -> list[Face]:
-    """Farthest first."""
+    """The faces in painting order, farthest first."""
     return [face for _, face in sorted(faces, key=lambda pair: pair[0])]
 
 

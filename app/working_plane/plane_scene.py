@@ -72,7 +72,7 @@ class SceneBuilder:
         self._last: Swivel | None = None
 
     def add(self, block: Block, swivel: Swivel) -> None:
-        """Append a block."""
+        """Append a block with its place in the working plane."""
         self._last = swivel
         self._by_line.setdefault(block.line, swivel)
         if block.kind is Kind.PLANE:

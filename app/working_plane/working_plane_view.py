@@ -57,12 +57,12 @@ class WorkingPlaneView(Panel):
 
     @property
     def scene(self) -> Scene | None:
-        """What is shown."""
+        """The scene that is shown; None while there is none."""
         return self._scene
 
     @property
     def camera(self) -> Camera | None:
-        """From where one looks."""
+        """The camera; None while there is no scene."""
         return self._camera
 
     def show_scene(self, scene: Scene | None) -> None:
@@ -86,15 +86,15 @@ class WorkingPlaneView(Panel):
     # --- looking around ------------------------------------------------------------------------------
 
     def next_view(self) -> None:
-        """From the next side."""
+        """Look from the next side."""
         self._look(self._camera.following() if self._camera else None)
 
     def fit(self) -> None:
-        """The whole again."""
+        """Show the whole table again."""
         self._look(self._camera.fitted() if self._camera else None)
 
     def zoom(self, steps: int) -> None:
-        """Nearer or farther."""
+        """Go nearer by so many steps, farther by negative ones."""
         self._look(self._camera.zoomed(steps) if self._camera else None)
 
     def pan(self, across: int, down: int) -> None:
@@ -109,7 +109,7 @@ class WorkingPlaneView(Panel):
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """The wheel zooms."""
+        """The mouse wheel zooms."""
         self.zoom(1 if event.angleDelta().y() > 0 else -1)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
@@ -128,7 +128,7 @@ class WorkingPlaneView(Panel):
             self.pan(-across, -down)
 
     def mouseReleaseEvent(self, _event: QMouseEvent) -> None:
-        """The drag is over."""
+        """A drag ends."""
         self._held = None
 
     # --- drawing -------------------------------------------------------------------------------------
