@@ -263,7 +263,7 @@ class Jogger:
         self.goal, self.ending = None, False
 
     def _splice(self, index: int, ramps: Callable[[float, float, float], list[Ramp]]) -> bool:
-        """Queue what ``rides`` makes of (start, position, velocity); later when the clock was faster.
+        """Queue what ``ramps`` makes of (start, position, velocity); later when the clock was faster.
 
         False when it makes nothing. Raises DriverError.
         """

@@ -71,7 +71,7 @@ _read = attrgetter(*_COLUMNS, "per_rev", "clockwise", "modal.offset_c", "modal.c
 
 @dataclass(frozen=True, slots=True)
 class BlockTable:
-    """The words of m blocks: ``start`` and ``end`` (m, axes) and ``centre`` (m, 2) in machine coordinates.
+    """What the time law reads of m blocks: ``start`` and ``end`` (m, axes) and ``centre`` (m, 2) in machine coordinates.
 
     ``axis`` (m,) is the machine X of the spindle axis, from which radii count; ``locked`` (m,) tells where
     the spindle is held as the axis C, whose turns then are those that a feed per revolution counts.
@@ -102,7 +102,7 @@ class BlockTable:
 
 
 def read_blocks(blocks: Sequence[MotionBlock], rpm_max: float) -> BlockTable:
-    """The words of blocks that move; ``rpm_max`` is what the spindle can do at all.
+    """The table of blocks that move; ``rpm_max`` is what the spindle can do at all.
 
     Raises MotionError, naming the block, for a kind that has no time law or a number that is none.
     """
@@ -258,8 +258,8 @@ def _is_row(each: MotionBlock | Row) -> TypeGuard[Row]:
 
 
 def table_of(batch: Sequence[Part], rpm_max: float) -> BlockTable:
-    """The words of all blocks of a batch; see ``read_words``."""
-    parts = [read_blocks(p, rpm_max) if isinstance(p, list) else _row_words(p, rpm_max) for p in batch]
+    """The table of all blocks of a batch; see ``read_blocks``."""
+    parts = [read_blocks(p, rpm_max) if isinstance(p, list) else _row_table(p, rpm_max) for p in batch]
     if len(parts) == 1:
         return parts[0]
     return BlockTable(*[_joined([getattr(part, name) for part in parts]) for name in _FIELDS])
@@ -270,7 +270,7 @@ def _joined(columns: list[Any]) -> Any:
     return sum(columns, ()) if isinstance(columns[0], tuple) else np.concatenate(columns)
 
 
-def _row_words(row: Row, rpm_max: float) -> BlockTable:
+def _row_table(row: Row, rpm_max: float) -> BlockTable:
     like, m = row.pattern, len(row)
     one = read_blocks([like], rpm_max)
     many: dict[str, Any] = {name: getattr(one, name) for name in _FIELDS}

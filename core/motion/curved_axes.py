@@ -33,26 +33,26 @@ _ROUNDING = 1e-9
 _SPOTS = np.array([0.25, 0.5, 0.75])  # of a chord, where it is compared with the true way
 
 
-def with_parts(words: BlockTable) -> BoolArray:
+def with_parts(table: BlockTable) -> BoolArray:
     """Blocks (m,) that this module cuts into pieces."""
-    curved = np.array([way is not None for way in words.way], dtype=bool)
-    return curved | _fed_by_c(words)
+    curved = np.array([way is not None for way in table.way], dtype=bool)
+    return curved | _fed_by_c(table)
 
 
-def parts_of(whole: Pieces, words: BlockTable, limits: MotionLimits, index: int) -> Pieces:
+def parts_of(whole: Pieces, table: BlockTable, limits: MotionLimits, index: int) -> Pieces:
     """Piece ``index`` as chords, or as the slide's way and what C turns on behind it.
 
     Raises MotionError where C turns too little for the slide's way.
     """
-    piece, move = whole[index : index + 1], words.way[index]
+    piece, move = whole[index : index + 1], table.way[index]
     if move is None:
-        return _slide_by_c(piece, words, index)
+        return _slide_by_c(piece, table, index)
     if move.length <= SAME_POINT:
         return piece[:0]
     share = np.array([0.0, 1.0]) if move.straight else chords(move, float(piece.rate[0]), limits)
     points = move.machine(share)
-    points += words.start[index] - points[0]
-    points[-1] = words.end[index]
+    points += table.start[index] - points[0]
+    points[-1] = table.end[index]
     return _chain(piece, points, np.diff(share) * move.length)
 
 
@@ -119,24 +119,24 @@ def _chain(piece: Pieces, points: FloatArray, length: FloatArray) -> Pieces:
     )
 
 
-def _fed_by_c(words: BlockTable) -> BoolArray:
+def _fed_by_c(table: BlockTable) -> BoolArray:
     """Straight moves (m,) at a feed per revolution in which the spindle turns as C: its turns are meant."""
-    delta = words.end - words.start
-    lathe = np.isnan(words.length)
+    delta = table.end - table.start
+    lathe = np.isnan(table.length)
     slides = np.hypot(delta[:, 0], delta[:, 1]) > SAME_POINT
-    turned = words.locked & (np.abs(delta[:, 2]) > SAME_POINT)
-    fed: BoolArray = lathe & words.per_rev & ~words.arc & slides & turned
+    turned = table.locked & (np.abs(delta[:, 2]) > SAME_POINT)
+    fed: BoolArray = lathe & table.per_rev & ~table.arc & slides & turned
     return fed
 
 
-def _slide_by_c(piece: Pieces, words: BlockTable, index: int) -> Pieces:
+def _slide_by_c(piece: Pieces, table: BlockTable, index: int) -> Pieces:
     """The slide's way with C, and behind it the degrees that C turns beyond what the way needs."""
-    start, end, feed = words.start[index], words.end[index], float(words.feed[index])
+    start, end, feed = table.start[index], table.end[index], float(table.feed[index])
     way = float(np.hypot(*(end - start)[:2]))
     needed, turn = way / feed * 360.0, float(end[2] - start[2])
     if abs(turn) < needed * (1.0 - _ROUNDING):
         raise MotionError(
-            f"Block {words.n[index]:.0f}: the slide needs {needed:g} degrees of C; it turns {abs(turn):g}."
+            f"Block {table.n[index]:.0f}: the slide needs {needed:g} degrees of C; it turns {abs(turn):g}."
         )
     there = end.copy()
     there[2] = start[2] + np.copysign(min(needed, abs(turn)), turn)

@@ -14,56 +14,56 @@ RPM_STEP = 1.02  # the spindle speed changes by no more than this factor within 
 ARC_SAMPLES = 65  # points at which an arc's radius is read for the split
 
 
-def constant_rates(words: BlockTable) -> FloatArray:
+def constant_rates(table: BlockTable) -> FloatArray:
     """Speed (m,) of each block in mm/s, that of surface-speed blocks at the middle of their radii.
 
     Raises MotionError for a feed that is not positive and for a feed per revolution with the spindle still.
     """
-    _refuse(words, ~(words.feed > 0.0), "the feed is not above zero; program an F")
-    surface = by_radius(words)
-    middle = 0.5 * (words.start[:, 0] + words.end[:, 0]) - words.axis
-    rpm = np.where(surface, surface_rpms(words, middle), words.rpm)
+    _refuse(table, ~(table.feed > 0.0), "the feed is not above zero; program an F")
+    surface = by_radius(table)
+    middle = 0.5 * (table.start[:, 0] + table.end[:, 0]) - table.axis
+    rpm = np.where(surface, surface_rpms(table, middle), table.rpm)
     _refuse(
-        words, words.per_rev & ~(rpm > 0.0), "feed per revolution with the spindle stopped; start it first"
+        table, table.per_rev & ~(rpm > 0.0), "feed per revolution with the spindle stopped; start it first"
     )
-    on_axis = (words.start[:, 0] - words.axis) * (words.end[:, 0] - words.axis) <= 0.0
-    endless = surface & on_axis & np.isinf(words.hi)
-    _refuse(words, endless, "the spindle speed on the axis has no upper limit; give G77 or rpm_max")
-    return np.where(words.per_rev, words.feed * rpm / 60.0, words.feed) * _per_lead(words)
+    on_axis = (table.start[:, 0] - table.axis) * (table.end[:, 0] - table.axis) <= 0.0
+    endless = surface & on_axis & np.isinf(table.hi)
+    _refuse(table, endless, "the spindle speed on the axis has no upper limit; give G77 or rpm_max")
+    return np.where(table.per_rev, table.feed * rpm / 60.0, table.feed) * _per_lead(table)
 
 
-def _per_lead(words: BlockTable) -> FloatArray:
+def _per_lead(table: BlockTable) -> FloatArray:
     """Way (m,) per way along Z, 1 save in threads: a lead counts along the axis of the thread."""
-    _refuse(words, words.thread & (words.start[:, 1] == words.end[:, 1]), "a thread does not advance along Z")
-    way = np.hypot(words.end[:, 0] - words.start[:, 0], words.end[:, 1] - words.start[:, 1])
-    along = np.where(words.thread, np.abs(words.end[:, 1] - words.start[:, 1]), 1.0)
-    return np.where(words.thread, way / along, 1.0)
+    _refuse(table, table.thread & (table.start[:, 1] == table.end[:, 1]), "a thread does not advance along Z")
+    way = np.hypot(table.end[:, 0] - table.start[:, 0], table.end[:, 1] - table.start[:, 1])
+    along = np.where(table.thread, np.abs(table.end[:, 1] - table.start[:, 1]), 1.0)
+    return np.where(table.thread, way / along, 1.0)
 
 
-def by_radius(words: BlockTable) -> BoolArray:
+def by_radius(table: BlockTable) -> BoolArray:
     """Blocks (m,) whose speed follows the radius."""
-    return words.per_rev & np.isfinite(words.surface)
+    return table.per_rev & np.isfinite(table.surface)
 
 
-def surface_rpms(words: BlockTable, radius: FloatArray) -> FloatArray:
+def surface_rpms(table: BlockTable, radius: FloatArray) -> FloatArray:
     """``core.geometry.surface_speed.surface_rpm`` for arrays; NaN without a surface speed."""
     with np.errstate(divide="ignore"):
-        rpm = 60.0 * words.surface / (2.0 * np.pi * np.abs(radius))
-    return np.clip(rpm, words.lo, words.hi)
+        rpm = 60.0 * table.surface / (2.0 * np.pi * np.abs(radius))
+    return np.clip(rpm, table.lo, table.hi)
 
 
-def _refuse(words: BlockTable, wrong: BoolArray, why: str) -> None:
+def _refuse(table: BlockTable, wrong: BoolArray, why: str) -> None:
     if wrong.any():
-        raise MotionError(f"Block {words.n[wrong.argmax()]:.0f}: {why}.")
+        raise MotionError(f"Block {table.n[wrong.argmax()]:.0f}: {why}.")
 
 
-def split_by_radius(pieces: Pieces, words: BlockTable, index: int) -> Pieces:
+def split_by_radius(pieces: Pieces, table: BlockTable, index: int) -> Pieces:
     """Piece ``index`` in parts within which the rpm changes by 2 % at most, each with the rate at its middle.
 
     On a line across the axis the time of a part is then exact, since 1/v grows linearly with the radius.
     Where the rpm is clamped nothing is split; the parts are bounded by ln(max/min rpm)/ln 1.02 per pass.
     """
-    piece, owner = pieces[index : index + 1], _row(words, index)
+    piece, owner = pieces[index : index + 1], _row(table, index)
     length = float(piece.length[0])
     at = _cuts(piece, owner, length)
     middle = _radii(piece, owner, 0.5 * (at[1:] + at[:-1]))
@@ -83,10 +83,10 @@ def cut(piece: Pieces, at: FloatArray, rate: FloatArray) -> Pieces:
     )
 
 
-def _row(words: BlockTable, index: int) -> BlockTable:
-    """The words of one block alone."""
+def _row(table: BlockTable, index: int) -> BlockTable:
+    """The table of one block alone."""
     row = slice(index, index + 1)
-    return BlockTable(*(getattr(words, name)[row] for name in words.__dataclass_fields__))
+    return BlockTable(*(getattr(table, name)[row] for name in table.__dataclass_fields__))
 
 
 def _radii(piece: Pieces, owner: BlockTable, at: FloatArray) -> FloatArray:

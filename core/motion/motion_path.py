@@ -113,16 +113,16 @@ class PathBuilder:
 
     def add_batch(self, batch: Sequence[Part], reached: float = -np.inf) -> None:
         """``add`` for blocks that come as lists and rows, none of them empty."""
-        words = table_of(batch, self.rpm_max)
+        table = table_of(batch, self.rpm_max)
         if self._closed:
-            raise MotionError(f"Block {words.n[0]:.0f} comes after the end of the path; begin another path.")
-        _demand_unbroken(words, self._end)
-        pieces, counts = _pieces(words, self._limits)
+            raise MotionError(f"Block {table.n[0]:.0f} comes after the end of the path; begin another path.")
+        _demand_unbroken(table, self._end)
+        pieces, counts = _pieces(table, self._limits)
         if self._start is None:
-            self._start = words.start[0].copy()
-        self._end = words.end[-1].copy()
+            self._start = table.start[0].copy()
+        self._end = table.end[-1].copy()
         self._append(pieces, reached)
-        self._blocks.append(words.n.astype(np.int64))
+        self._blocks.append(table.n.astype(np.int64))
         self._counts.append(counts)
         self._path = None
 
@@ -196,14 +196,14 @@ def build_path(blocks: Iterable[MotionBlock], limits: MotionLimits, *, rpm_max: 
     return builder.path()
 
 
-def _pieces(words: BlockTable, limits: MotionLimits) -> tuple[Pieces, IntArray]:
+def _pieces(table: BlockTable, limits: MotionLimits) -> tuple[Pieces, IntArray]:
     """Pieces of the blocks and how many (m,) each block has."""
-    whole = make_pieces(words, constant_rates(words))
+    whole = make_pieces(table, constant_rates(table))
     counts = (whole.length > 0.0).astype(np.int64)
-    turned, mapped = (counts > 0) & by_radius(words), with_parts(words)
+    turned, mapped = (counts > 0) & by_radius(table), with_parts(table)
     parts, done = [], 0
     for i in np.flatnonzero(turned | mapped).tolist():
-        split = parts_of(whole, words, limits, i) if mapped[i] else split_by_radius(whole, words, i)
+        split = parts_of(whole, table, limits, i) if mapped[i] else split_by_radius(whole, table, i)
         if len(split) != 1 or mapped[i]:
             parts += [whole[done:i], split]
             counts[i], done = len(split), i + 1
@@ -211,12 +211,12 @@ def _pieces(words: BlockTable, limits: MotionLimits) -> tuple[Pieces, IntArray]:
     return pieces[pieces.length > 0.0], counts
 
 
-def _demand_unbroken(words: BlockTable, end: FloatArray | None) -> None:
-    before = words.end[:-1] if end is None else np.vstack([end, words.end[:-1]])
-    gap = np.abs(words.start[len(words.n) - len(before) :] - before).max(axis=1, initial=0.0)
+def _demand_unbroken(table: BlockTable, end: FloatArray | None) -> None:
+    before = table.end[:-1] if end is None else np.vstack([end, table.end[:-1]])
+    gap = np.abs(table.start[len(table.n) - len(before) :] - before).max(axis=1, initial=0.0)
     if (gap > GAP).any():
-        i = int(gap.argmax()) + len(words.n) - len(before)
+        i = int(gap.argmax()) + len(table.n) - len(before)
         raise MotionError(
-            f"Block {words.n[i]:.0f} starts {gap.max():.4f} mm from the end of the block before it; "
+            f"Block {table.n[i]:.0f} starts {gap.max():.4f} mm from the end of the block before it; "
             "plan it from where the machine stands."
         )

@@ -1,6 +1,6 @@
 """The plan of a path: look-ahead, squared speeds at the joints, then phases of constant acceleration.
 
-Where a jerk limit will go: ``_phases`` gives every piece a speed-up, a cruise and a slow-down of constant
+Where a jerk limit will go: ``profile_of`` gives every piece a speed-up, a cruise and a slow-down of constant
 acceleration; a jerk limit replaces these three by seven, and ``2·a·length`` by what such a ramp reaches.
 """
 

@@ -75,26 +75,26 @@ def joined(parts: Sequence[Pieces]) -> Pieces:
     return Pieces(*[np.concatenate([getattr(p, name) for p in parts]) for name in _FIELDS])
 
 
-def make_pieces(words: BlockTable, rate: FloatArray) -> Pieces:
+def make_pieces(table: BlockTable, rate: FloatArray) -> Pieces:
     """One piece for each of m blocks, those of length zero included. ``rate`` (m,) is its speed in mm/s.
 
     Raises MotionError for an arc whose start and end do not lie on one circle.
     """
-    delta = words.end - words.start
+    delta = table.end - table.start
     length = np.hypot(delta[:, 0], delta[:, 1])
     turn = np.abs(delta[:, 2])
     way, slides = length, length > np.maximum(SAME_POINT, np.minimum(turn / _STEEPEST, _NO_WAY))
     length = np.where(slides, way, np.where(turn > SAME_POINT, turn, 0.0))
-    beside = ~slides & (way > _TURN_ALONE) & np.isnan(words.length)
+    beside = ~slides & (way > _TURN_ALONE) & np.isnan(table.length)
     rate = np.where(beside, rate * length / np.maximum(way, _TURN_ALONE), rate)  # the slides keep their feed
-    length = np.where(np.isnan(words.length), length, words.length)
-    centre, radius, angle, curvature, sweep = _circles(words)
+    length = np.where(np.isnan(table.length), length, table.length)
+    centre, radius, angle, curvature, sweep = _circles(table)
     length = np.where(curvature != 0.0, radius * sweep, length)
     direction = delta / np.where(length > 0.0, length, 1.0)[:, None]
     direction[curvature != 0.0, :2] = 0.0
     return Pieces(
-        block=words.n.astype(np.int64),
-        start=words.start,
+        block=table.n.astype(np.int64),
+        start=table.start,
         direction=direction,
         centre=centre,
         radius=radius,
@@ -102,23 +102,23 @@ def make_pieces(words: BlockTable, rate: FloatArray) -> Pieces:
         curvature=curvature,
         length=length,
         rate=rate,
-        rapid=words.rapid,
+        rapid=table.rapid,
     )
 
 
-def _circles(words: BlockTable) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+def _circles(table: BlockTable) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
     """Centre, radius, start angle, curvature and positive sweep; zeros for lines and points."""
-    m = len(words.n)
+    m = len(table.n)
     centre, sweep = np.zeros((m, 2)), np.zeros(m)
     radius, angle, curvature = np.zeros(m), np.zeros(m), np.zeros(m)
-    arc = np.flatnonzero(words.arc)
+    arc = np.flatnonzero(table.arc)
     if not len(arc):
         return centre, radius, angle, curvature, sweep
-    start, end = words.start[arc, :2], words.end[arc, :2]
-    centre[arc] = _settled_centre(words, arc)
+    start, end = table.start[arc, :2], table.end[arc, :2]
+    centre[arc] = _settled_centre(table, arc)
     a, b = start - centre[arc], end - centre[arc]
     first, last = np.arctan2(a[:, 0], a[:, 1]), np.arctan2(b[:, 0], b[:, 1])
-    turning = np.where(words.clockwise[arc], 1.0, -1.0)
+    turning = np.where(table.clockwise[arc], 1.0, -1.0)
     closed = np.hypot(*(end - start).T) <= SAME_POINT
     sweep[arc] = np.where(closed, 2.0 * np.pi, (turning * (last - first)) % (2.0 * np.pi))
     radius[arc], angle[arc] = np.hypot(a[:, 0], a[:, 1]), first
@@ -128,18 +128,18 @@ def _circles(words: BlockTable) -> tuple[FloatArray, FloatArray, FloatArray, Flo
     return centre, radius, angle, curvature, sweep
 
 
-def _settled_centre(words: BlockTable, arc: IntArray) -> FloatArray:
+def _settled_centre(table: BlockTable, arc: IntArray) -> FloatArray:
     """The centre moved onto the perpendicular bisector of the chord, so that the arc meets its end exactly.
 
     A program gives centres rounded to the machine's step; without this the path would jump by that step.
     """
-    start, end, centre = words.start[arc, :2], words.end[arc, :2], words.centre[arc]
+    start, end, centre = table.start[arc, :2], table.end[arc, :2], table.centre[arc]
     radii = np.hypot(*(start - centre).T), np.hypot(*(end - centre).T)
     off = np.abs(radii[0] - radii[1])
     if (off > RADII_DIFFER).any():
         worst = int(off.argmax())
         raise MotionError(
-            f"Block {words.n[arc[worst]]:.0f}: start and end of the arc lie {radii[0][worst]:.4f} and "
+            f"Block {table.n[arc[worst]]:.0f}: start and end of the arc lie {radii[0][worst]:.4f} and "
             f"{radii[1][worst]:.4f} mm from its centre; correct the centre or the end point."
         )
     chord = end - start
