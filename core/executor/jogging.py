@@ -36,19 +36,17 @@ def room_to_limit(axis: Axis, at: float, direction: float) -> float:
 
 
 def jog_ramps(v0: float, v1: float, a: float, time: float, way: float) -> list[Ramp]:
-    """To ``v1``, on for the rest of ``time``, then to rest, within ``way`` mm.
+    """Ramps from speed ``v0`` to ``v1``, on for the rest of ``time`` s, then to rest, within ``way`` mm.
 
-    A ride that ``way`` is too short for goes less fast or less long. Braking alone takes v0²/2a.
+    A jog that ``way`` is too short for goes less fast or less long. Braking alone takes v0²/2a.
     """
     if v0 * v1 < 0.0:
         first = abs(v0) / a
         return [(first, v0, -math.copysign(a, v0)), *jog_ramps(0.0, v1, a, time - first, way)]
     sign = math.copysign(1.0, v1 or v0)
     here, top = abs(v0), abs(v1)
-    reach_ramps = (
-        math.sqrt(max(here * here / 2.0 + a * max(way, 0.0), 0.0)) if math.isfinite(way) else math.inf
-    )
-    top = max(min(top, reach_ramps, here + a * max(time, 0.0)), 0.0) if top > here else min(top, reach_ramps)
+    fastest = math.sqrt(max(here * here / 2.0 + a * max(way, 0.0), 0.0)) if math.isfinite(way) else math.inf
+    top = max(min(top, fastest, here + a * max(time, 0.0)), 0.0) if top > here else min(top, fastest)
     change = abs(top - here) / a
     least = change * (here + top) / 2.0 + top * top / (2.0 * a)
     cruise = max(time - change, 0.0) if top > 0.0 else 0.0

@@ -71,7 +71,7 @@ _read = attrgetter(*_COLUMNS, "per_rev", "clockwise", "modal.offset_c", "modal.c
 
 @dataclass(frozen=True, slots=True)
 class BlockTable:
-    """What the time law reads of m blocks: ``start`` and ``end`` (m, axes) and ``centre`` (m, 2) in machine coordinates.
+    """m blocks as columns: ``start`` and ``end`` (m, axes) and ``centre`` (m, 2) in machine coordinates.
 
     ``axis`` (m,) is the machine X of the spindle axis, from which radii count; ``locked`` (m,) tells where
     the spindle is held as the axis C, whose turns then are those that a feed per revolution counts.
