@@ -38,7 +38,7 @@ SENTENCES = (
     ("Read-ahead stops at a standstill", "read ahead", "core/executor/read_ahead.py"),
     ("The queue always ends at rest", "setpoint queue", "drivers/setpoint_queue.py"),
     ("A dead thread stops the machine", "watchdog", "core/executor/watchdog.py"),
-    ("Whether a part is counted", "part count", "core/executor/part_count.py"),
+    ("Whether a part is counted", "part count", "core/executor/parts_made.py"),
     ("Speed by the radius", "constant surface speed", "core/interpreter/omniturn/spindle_speed.py"),
     (
         "The nose's path beside the contour",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from core.geometry.mill_kinematics import Kinematics, Rotary, Slide
+from core.geometry.rotary_axes import Kinematics, Rotary, Slide
 from core.machine.machine_model import Axis, Machine
 from core.machine.mill_kinematics import RotaryModel
 

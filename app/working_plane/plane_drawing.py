@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from app.working_plane.plane_instant import Instant
-    from core.geometry.mill_kinematics import Kinematics, Place
+    from core.geometry.rotary_axes import Kinematics, Place
 
 # --- camera -------------------------------------------------------------------------------------------
 

@@ -18,7 +18,7 @@ from core.geometry.rotation_frames import applied, plus
 from core.interpreter.elementary_blocks import Kind
 
 if TYPE_CHECKING:
-    from core.geometry.mill_kinematics import Kinematics
+    from core.geometry.rotary_axes import Kinematics
     from core.geometry.rotation_frames import Vector
     from core.interpreter.elementary_blocks import Block
     from core.interpreter.working_plane import Corners, Swivel

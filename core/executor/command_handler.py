@@ -34,8 +34,8 @@ from core.executor.control_status import modal_with_offsets
 from core.executor.jogging import at_the_end
 from core.executor.machine_context import MachineContext
 from core.executor.machine_control import MachineControl
-from core.executor.operator_station import StationWatch
 from core.executor.snapshot import CYCLE, Starts, State
+from core.executor.station_signals import StationWatch
 
 _SWITCHES = ("single_block", "optional_stop", "cycle_repeat", "no_count")
 _AT_REST = frozenset({State.IDLE, State.DISABLED})

@@ -16,13 +16,13 @@ from core.executor.interruption_watch import Note
 from core.executor.job import Job, interpret
 from core.executor.machine_context import MachineContext
 from core.executor.machine_control import MachineControl
-from core.executor.operator_station import StationWatch
 from core.executor.raised_alarm import AlarmError, log_alarm, log_line, make_alarm
 from core.executor.read_ahead import ProgramPass
 from core.executor.snapshot import ACTIVE, CYCLE, Event, Snapshot, State
 from core.executor.snapshot_publisher import Publisher
 from core.executor.spindle_control import SpindleControl
 from core.executor.start_conditions import guard_open
+from core.executor.station_signals import StationWatch
 from core.interpreter.job_setup import Setup
 from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionError

@@ -11,7 +11,7 @@ from core.executor.cycle import Cycle
 from core.executor.interrupted_job import CONTROL_LOST, InterruptedJob, utc_now
 from core.executor.job import Job
 from core.executor.machine_context import MachineContext
-from core.executor.part_count import PartCount
+from core.executor.parts_made import PartCount
 from core.executor.snapshot import STOPPED, Starts, State
 from core.interpreter.checkpoint import Begin
 from core.interpreter.elementary_blocks import Block

@@ -17,7 +17,7 @@ from core.executor.interrupted_job import GIVEN_UP, InterruptedJob
 from core.executor.interruption_watch import InterruptionWatch, Note
 from core.executor.job import Job, circumstances, outdated
 from core.executor.machine_context import MachineContext
-from core.executor.part_count import PartCount
+from core.executor.parts_made import PartCount
 from core.executor.read_ahead import ProgramPass
 from core.executor.setpoint_motion import SetpointMotion
 from core.executor.snapshot import Starts, State

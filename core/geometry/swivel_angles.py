@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from core.geometry.mill_kinematics import TURN, Kinematics, Rotary
+from core.geometry.rotary_axes import TURN, Kinematics, Rotary
 from core.geometry.rotation_frames import (
     Z_AXIS,
     Matrix,

@@ -6694,32 +6694,32 @@
       <translation>al abandonar el programa: %1</translation>
     </message>
     <message>
-      <location filename="core/executor/operator_station.py" />
+      <location filename="core/executor/station_signals.py" />
       <source>OPERATOR STATION SILENT</source>
       <translation>LA ESTACIÓN DEL OPERADOR NO RESPONDE</translation>
     </message>
     <message>
-      <location filename="core/executor/operator_station.py" />
+      <location filename="core/executor/station_signals.py" />
       <source>OVERRIDE POT JUMPS</source>
       <translation>LA PERILLA SALTA</translation>
     </message>
     <message>
-      <location filename="core/executor/part_count.py" />
+      <location filename="core/executor/parts_made.py" />
       <source>NO COUNT is on</source>
       <translation>SIN CONT está puesto</translation>
     </message>
     <message>
-      <location filename="core/executor/part_count.py" />
+      <location filename="core/executor/parts_made.py" />
       <source>a restart left something of it out</source>
       <translation>un rearranque omitió algo de ella</translation>
     </message>
     <message>
-      <location filename="core/executor/part_count.py" />
+      <location filename="core/executor/parts_made.py" />
       <source>its cycle was disturbed (%1): measure it, and add it on F10 if it is good</source>
       <translation>su ciclo fue perturbado (%1): mídala, y súmela en F10 si es buena</translation>
     </message>
     <message>
-      <location filename="core/executor/part_count.py" />
+      <location filename="core/executor/parts_made.py" />
       <source>part %1, %2 s</source>
       <translation>pieza %1, %2 s</translation>
     </message>

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from core.geometry.mill_kinematics import Kinematics
+from core.geometry.rotary_axes import Kinematics
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import ControlLimits, Setup, ToolOffset
 from core.interpreter.klartext.klartext_interpreter import Interpreter

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 
-from core.geometry.mill_kinematics import Kinematics, Rotary, Slide
+from core.geometry.rotary_axes import Kinematics, Rotary, Slide
 
 A = Rotary("A", True, (1.0, 0.0, 0.0), (0.0, 250.0, -430.0), -120.0, 120.0, vmax=60.0)
 C = Rotary("C", True, (0.0, 0.0, 1.0), (300.0, 252.0, 0.0), modulo=True, vmax=120.0)

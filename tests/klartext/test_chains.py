@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from core.geometry.mill_kinematics import Kinematics, PivotMove, Rotary
+from core.geometry.rotary_axes import Kinematics, PivotMove, Rotary
 from core.geometry.rotation_frames import X_AXIS, Y_AXIS, Z_AXIS, Vector, from_points, product, turned
 from core.geometry.swivel_angles import SolutionSide, choose, solutions
 from tests.klartext.table import AC, CHAMFERS, ORIGIN, SLIDES, A, C

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.geometry.mill_kinematics import Kinematics
+from core.geometry.rotary_axes import Kinematics
 from tests.klartext.running import TOOL, run, run_file, whole
 from tests.klartext.table import AC, ORIGIN, SLIDES, A
 

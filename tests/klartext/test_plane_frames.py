@@ -8,7 +8,7 @@ import random
 import numpy as np
 import pytest
 
-from core.geometry.mill_kinematics import Kinematics
+from core.geometry.rotary_axes import Kinematics
 from core.geometry.rotation_frames import (
     IDENTITY,
     X_AXIS,

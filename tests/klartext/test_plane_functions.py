@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.geometry.mill_kinematics import Kinematics
+from core.geometry.rotary_axes import Kinematics
 from core.interpreter.elementary_blocks import Kind
 from tests.klartext.running import Ran, run
 from tests.klartext.table import AC, C, limited

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from core.geometry.mill_kinematics import Kinematics
+from core.geometry.rotary_axes import Kinematics
 from core.geometry.rotation_frames import Vector
 from core.interpreter.actions import ProgramEnd, ProgramStop
 from core.interpreter.diagnostic_log import Log

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from core.geometry.machine_travel import CurvedMove, Travel
-from core.geometry.mill_kinematics import Kinematics, Place
+from core.geometry.rotary_axes import Kinematics, Place
 from core.geometry.rotation_frames import IDENTITY, Matrix, Vector, applied, plus, product, transposed
 from core.interpreter.actions import Action, Dwell
 from core.interpreter.diagnostic_log import Log

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from core.geometry.mill_kinematics import PivotMove
+from core.geometry.rotary_axes import PivotMove
 from core.geometry.rotation_frames import (
     IDENTITY,
     X_AXIS,
