@@ -1,4 +1,4 @@
-"""What F7 lists: every alarm, E-stop and stop, newest first, with time, reason and what to do.
+"""The alarm log, which F7 lists: alarms, E-stops and stops, newest first, with time, cause and remedy.
 
 Those of today come from the executor's events, those of before from the store's log of events.
 """

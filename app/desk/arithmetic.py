@@ -1,4 +1,4 @@
-"""Numbers as an operator types them: ``.5-.002``, ``(1.25+.03)/2``. Plain arithmetic and nothing else."""
+"""Arithmetic in entries: numbers as an operator types them, ``.5-.002``, ``(1.25+.03)/2``, nothing else."""
 
 from __future__ import annotations
 

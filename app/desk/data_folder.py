@@ -1,4 +1,4 @@
-"""Where this installation keeps what it must remember."""
+"""The data folder (TURNDESK_HOME): where this installation keeps store, logs and settings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How figures are written for the operator: inch with 5 places, metric with 4, never a negative zero."""
+"""Formats of figures for the operator: inch with 5 places, metric with 4, never a negative zero."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A machine file that is not the one that was accepted: what differs, and that no drive goes on before."""
+"""Changes of the machine file since it was accepted: what differs, and that no drive goes on before."""
 
 from __future__ import annotations
 

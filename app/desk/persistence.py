@@ -1,4 +1,4 @@
-"""What is kept from one day to the next, as far as the screen asks for it; and a desk where nothing is."""
+"""Persistence, as far as the screen asks for it: what is kept from day to day; and where nothing is kept."""
 
 from __future__ import annotations
 

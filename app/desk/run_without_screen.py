@@ -1,4 +1,4 @@
-"""A run without a screen: somebody to press the buttons, and a clock that need not wait for the day."""
+"""A run without a screen, headless: who presses the buttons, and a clock that need not wait."""
 
 from __future__ import annotations
 

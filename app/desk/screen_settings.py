@@ -1,4 +1,4 @@
-"""What the operator has chosen for the screen: language, theme, units, readout, station. It is kept."""
+"""Settings of the screen that the operator has chosen: language, theme, units, readout, station."""
 
 from __future__ import annotations
 

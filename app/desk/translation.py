@@ -1,4 +1,4 @@
-"""Texts in the operator's language. No Qt here: the screen says at its start who translates.
+"""Translation of texts into the operator's language. No Qt: the screen says at its start who translates.
 
 Everything that is read on the screen goes through ``tr`` with its English text as a literal, so that the
 catalogues can be made from the sources; values are put in afterwards: ``tr("LINE {line}").format(line=7)``.

@@ -1,4 +1,4 @@
-"""Targets to hold: four directions and C; steps, speeds, homing. A slide moves while a finger stays."""
+"""The jog pad: directions and C to hold; steps, speeds, homing. A slide moves while a finger is on one."""
 
 from __future__ import annotations
 

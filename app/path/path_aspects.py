@@ -1,4 +1,4 @@
-"""From where a program is looked at. A view of the part being cut is to be one more of these choices."""
+"""Aspects of the path view: from where a program is looked at, where the tip is, legs of an approach."""
 
 from __future__ import annotations
 

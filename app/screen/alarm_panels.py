@@ -1,4 +1,4 @@
-"""What lies over the path view: the message of a stop, an alarm, or the log of alarms."""
+"""Alarms on the screen: an alarm or the message of a stop over the path view, and the log of alarms."""
 
 from __future__ import annotations
 

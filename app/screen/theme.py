@@ -1,4 +1,4 @@
-"""The two palettes and the contrast they must keep. Colours are pairs that stay apart for colour-blind eyes.
+"""Themes: two palettes and the contrast they must keep. Colours stay apart for colour-blind eyes.
 
 The state colours follow Okabe and Ito (2008): bluish green, orange, sky blue and vermilion differ in
 lightness as well as in hue. Nothing is told by colour alone: every state has its word and its shape.

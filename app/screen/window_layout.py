@@ -1,4 +1,4 @@
-"""Where everything stands on the Automatic page, for any window size. Pure arithmetic.
+"""Layout of the window: where everything stands on the Automatic page, for any size. Pure arithmetic.
 
 All fixed things are measured in one unit that follows the window, 160 by 90 of it on a 16:9 screen; what is
 left over goes to the program window and the path view.

@@ -1,4 +1,4 @@
-"""The state that the line inherits beside the one that is active now; every difference by colour and sign."""
+"""SEARCHTO: the state that the line inherits beside the active one; every difference by colour and sign."""
 
 from __future__ import annotations
 

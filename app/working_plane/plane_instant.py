@@ -1,4 +1,4 @@
-"""From a snapshot, or from the line under the cursor, to the instant that the 3-D view shows."""
+"""The instant that the view of the working plane shows: of a snapshot, or of the line under the cursor."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Table, workpiece, working plane and tool in space, as ``plane_drawing`` lays them out in pixels."""
+"""The 3-D view of a mill: table, workpiece, working plane and tool, laid out by ``plane_drawing``."""
 
 from __future__ import annotations
 
