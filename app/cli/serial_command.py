@@ -4,20 +4,14 @@ from __future__ import annotations
 
 import argparse
 import sys
-from concurrent.futures import ThreadPoolExecutor
-from concurrent.futures import TimeoutError as NotYetError
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
-from app.cli.progress_bar import Progress
-from app.programs.whole_file import FileError
-from app.transfer.serial_line import Transfer
-from core.ports import DriverError
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.transfer.serial_line import Received
+    from app.transfer.serial_line import Received, Transfer
     from core.machine.machine_model import Machine
     from core.machine.serial_table import DncModel
 
@@ -169,6 +163,7 @@ def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> 
 
 def _store(args: argparse.Namespace, received: Received) -> int:
     from app.desk.data_folder import data_folder
+    from app.programs.whole_file import FileError
     from app.transfer.serial_line import free_name, store_new
 
     out = Path(args.out) if args.out else None
@@ -193,8 +188,7 @@ def _found(received: Received) -> str:
     return f"proved without an error, cycle {received.cycle:.1f} s; nothing was started"
 
 
-# --- A transfer on the command line: progress on stderr, Ctrl-C gives it up.
-
+# --- a transfer on the command line: progress on stderr, Ctrl-C gives it up -----------------------------
 
 T = TypeVar("T")
 _LOOK = 0.1  # s
@@ -202,6 +196,13 @@ _LOOK = 0.1  # s
 
 def carry(transfer: Transfer[T], what: str) -> T | None:
     """What it answers; None when it came to nothing, which has then been said in one sentence."""
+    from concurrent.futures import ThreadPoolExecutor
+    from concurrent.futures import TimeoutError as NotYetError
+
+    from app.cli.progress_bar import Progress
+    from app.programs.whole_file import FileError
+    from core.ports import DriverError
+
     with ThreadPoolExecutor(1, thread_name_prefix="serial") as pool, Progress(what) as progress:
         future = pool.submit(transfer.run)
         try:

@@ -11,13 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
-from app.cli.toml_files import read_rows, read_zero
 from app.desk.data_folder import data_folder
-from core.store import backup, database, store_export
-from core.store.store import Store, StoreError
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
+    from core.store.store import Store
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -40,12 +38,14 @@ def run(args: argparse.Namespace) -> int:
     return STORE_ACTIONS[args.action](args)
 
 
-# --- The store of this installation, opened for one command.
+# --- the store of this installation, opened for one command ----------------------------------------------
 
 
 @contextmanager
 def told() -> Iterator[None]:
     """What the store refuses ends the command with its sentence."""
+    from core.store.store_errors import StoreError
+
     try:
         yield
     except StoreError as error:
@@ -55,14 +55,18 @@ def told() -> Iterator[None]:
 @contextmanager
 def opened_store(*, read_only: bool = False) -> Iterator[Store]:
     """The store, closed at the end. Raises CommandError for whatever the store refuses."""
+    from core.store.store import Store
+
     with told(), Store.open(data_folder(), read_only=read_only) as store:
         yield store
 
 
-# --- What ``turndesk store`` does.
+# --- the actions -----------------------------------------------------------------------------------------
 
 
 def _backup(args: argparse.Namespace) -> int:
+    from core.store import backup
+
     with told():
         backup.backup(data_folder(), Path(args.path))
     sys.stdout.write(f"{args.path} holds the store of {data_folder()}\n")
@@ -70,6 +74,8 @@ def _backup(args: argparse.Namespace) -> int:
 
 
 def _restore(args: argparse.Namespace) -> int:
+    from core.store import backup
+
     with told():
         kept = backup.restore(data_folder(), Path(args.path))
     beside = f"; the replaced store is kept as {kept}" if kept else ""
@@ -78,6 +84,8 @@ def _restore(args: argparse.Namespace) -> int:
 
 
 def _export(args: argparse.Namespace) -> int:
+    from core.store import store_export
+
     with opened_store(read_only=True) as store:
         count = store_export.export(store, Path(args.path))
     sys.stdout.write(f"{args.path} holds programs: {count}, the offsets, the events and the runs\n")
@@ -85,6 +93,9 @@ def _export(args: argparse.Namespace) -> int:
 
 
 def _import(args: argparse.Namespace) -> int:
+    from app.cli.toml_files import read_rows, read_zero
+    from core.store import store_export
+
     folder = Path(args.path)
     offsets_file = folder / store_export.OFFSETS
     tools, secondary = read_rows(offsets_file) if offsets_file.exists() else ({}, {})
@@ -98,6 +109,8 @@ def _import(args: argparse.Namespace) -> int:
 
 
 def _verify(args: argparse.Namespace) -> int:
+    from core.store import backup, database
+
     path = data_folder() / database.FILE_NAME
     with told():
         problems = backup.problems(path) if path.exists() else ()

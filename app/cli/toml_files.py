@@ -6,9 +6,9 @@ import tomllib
 from collections.abc import Collection, Iterable, Iterator
 from difflib import get_close_matches
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from app.cli.command_errors import CommandError
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.store.offset_fields import FIELDS, Field, Sort
 from core.store.store_rows import (
     MM_PER_INCH,
@@ -20,6 +20,9 @@ from core.store.store_rows import (
     Value,
     ZeroRow,
 )
+
+if TYPE_CHECKING:
+    from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 
 
 def read_toml(path: Path) -> dict[str, object]:
@@ -107,6 +110,8 @@ def read_offsets(path: Path) -> tuple[dict[int, ToolOffset], dict[int, Secondary
 
     Raises CommandError naming every mistake.
     """
+    from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+
     tools, secondary = read_rows(path)
     return (
         {n: ToolOffset(*row.offset, row.nose_radius) for n, row in tools.items()},
