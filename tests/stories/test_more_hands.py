@@ -123,7 +123,7 @@ def test_reset_pressed_twice_gives_nothing_up(story: Story, way: str) -> None:
         if way == "keys":
             operator.key("r")
         else:
-            operator.clicks("RESET", on="Strip")
+            operator.clicks("RESET", on="LampStrip")
     operator.keeps(lambda: operator.state == "FEED HOLD", 0.7, "the program")
     operator.clicks("YES", on="PromptLine")
     operator.reaches("READY")
