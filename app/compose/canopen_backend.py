@@ -27,7 +27,7 @@ from drivers.operator_station import PanelStation
 if TYPE_CHECKING:
     from drivers.canopen.canopen_machine import CanopenMachine
     from drivers.canopen.canopen_survey import Answer
-    from drivers.lookalikes.canopen_devices import Peers
+    from drivers.lookalikes.canopen_devices import CanopenDevices
 
 _LIBRARIES = frozenset(("can", "canopen", "msgpack"))
 
@@ -41,15 +41,15 @@ def canopen_machine(machine: Machine, clock: Clock, idle: Callable[[], None] | N
     return CanopenMachine(canopen_config(machine), clock, idle)
 
 
-def canopen_peers(machine: Machine, clock: Clock) -> Peers:
+def canopen_peers(machine: Machine, clock: Clock) -> CanopenDevices:
     """Simulated drives and terminals for the other end of that bus. Raises DriverError."""
     from app.compose.simulated_backend import sim_config
 
     try:
-        from drivers.lookalikes.canopen_devices import Peers
+        from drivers.lookalikes.canopen_devices import CanopenDevices
     except ImportError as error:
         raise DriverError(lacking(error)) from error
-    return Peers(canopen_config(machine), sim_config(machine), clock)
+    return CanopenDevices(canopen_config(machine), sim_config(machine), clock)
 
 
 def canopen_survey(machine: Machine, clock: Clock) -> list[Answer]:
@@ -184,7 +184,7 @@ class CanDriven:
 
     def __init__(self, machine: Machine, clock: Clock) -> None:
         can = machine.hardware.table(CanopenTable)
-        self._peers: Peers | None = None
+        self._peers: CanopenDevices | None = None
         if can is not None and not can.bus.own_process:
             self._peers = canopen_peers(machine, clock)
         # A clock that stands waits for nobody: the peers are looked after in between.

@@ -17,8 +17,8 @@ from drivers.clocks import StepClock
 from drivers.feeder.feeder_loop import keep_memory, real_time
 
 if TYPE_CHECKING:
-    from drivers.lookalikes.canopen_devices import Peers
-    from drivers.lookalikes.plant_hands import SimMachine
+    from drivers.lookalikes.canopen_devices import CanopenDevices
+    from drivers.lookalikes.plant_hands import PlantHands
 
 # --- Hands at a simulated machine that runs in another process: words typed where it plays.
 
@@ -54,7 +54,7 @@ class Typed:
                 yield words
 
 
-def obey(line: str, peers: Peers) -> str:
+def obey(line: str, peers: CanopenDevices) -> str:
     """Do what one line says; what was done or why not, in words."""
     name, *values = line.split()
     try:
@@ -67,7 +67,7 @@ def obey(line: str, peers: Peers) -> str:
     return f"{line}: done"
 
 
-def _start(peers: Peers) -> None:
+def _start(peers: CanopenDevices) -> None:
     hands = peers.machine
     hands.press_left()
     hands.press_right()
@@ -75,7 +75,7 @@ def _start(peers: Peers) -> None:
     hands.release_right()
 
 
-def _hold(peers: Peers) -> None:
+def _hold(peers: CanopenDevices) -> None:
     peers.machine.press_hold()
     peers.machine.release_hold()
 
@@ -88,11 +88,11 @@ def _percent(word: str) -> float:
     return float(word) / 100.0
 
 
-def _hand(act: Callable[[SimMachine, str], None]) -> Callable[[Peers, str], None]:
+def _hand(act: Callable[[PlantHands, str], None]) -> Callable[[CanopenDevices, str], None]:
     return lambda peers, word: act(peers.machine, word)
 
 
-def _jam(peers: Peers, axis: str, word: str) -> None:
+def _jam(peers: CanopenDevices, axis: str, word: str) -> None:
     if axis not in peers.plant.drives:
         raise DriverError(f"no drive is called {axis}: {', '.join(peers.plant.drives)}")
     peers.machine.jam(axis, _on(word))
@@ -120,7 +120,7 @@ def play_peers(
     going: Callable[[], bool],
     say: Callable[[str], None],
     typed: Callable[[], Iterable[str]],
-    make: Callable[[Machine, Clock], Peers],
+    make: Callable[[Machine, Clock], CanopenDevices],
 ) -> None:
     """Answer on the machine file's bus while ``going``; ``say`` tells what it is and what was ``typed``.
 

@@ -13,16 +13,16 @@ from drivers.canopen.canopen_bus import opened
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.lookalikes.canopen_axis_drive import AxisDrive
 from drivers.lookalikes.canopen_modules import EncoderDevice, TerminalBoard
-from drivers.lookalikes.canopen_node import Device, PeerNetwork, PeerNode
+from drivers.lookalikes.canopen_node import Device, DeviceNetwork, DeviceNode
 from drivers.lookalikes.canopen_spindle_drive import SpindleDrive
 from drivers.lookalikes.plant import Plant
 from drivers.lookalikes.plant_config import SimConfig
-from drivers.lookalikes.plant_hands import Schedule, SimMachine
+from drivers.lookalikes.plant_hands import PlantHands, Schedule
 
 _SETTLED = 1e-9
 
 
-class PeerPlant(Plant):
+class DevicePlant(Plant):
     """The simulated machine, its slides moved by drives that think for themselves."""
 
     def __init__(self, config: SimConfig, clock: Clock) -> None:
@@ -67,18 +67,18 @@ class PeerPlant(Plant):
             self.spindle.cut(now)
 
 
-class Peers:
+class CanopenDevices:
     """``pump`` takes in what has come and lets time pass; call it from one thread."""
 
     def __init__(self, config: CanopenConfig, sim: SimConfig, clock: Clock) -> None:
         self.config = config
         self.clock = clock
-        self.plant = PeerPlant(sim, clock)
-        self.machine = SimMachine(self.plant)
+        self.plant = DevicePlant(sim, clock)
+        self.machine = PlantHands(self.plant)
         if sim.faults:
             self.plant.due = Schedule(self.machine, sim.faults).due
-        self.network = PeerNetwork(opened(config.bus))
-        self.nodes: dict[str, PeerNode] = {}
+        self.network = DeviceNetwork(opened(config.bus))
+        self.nodes: dict[str, DeviceNode] = {}
         self.encoder: EncoderDevice | None = None
         self.cut = False  # the cable is off
         self.arrival: Callable[[float], float] | None = None  # a frame's time stamp to this clock's time
@@ -145,7 +145,7 @@ class Peers:
         objects = od.module_objects() if module else od.drive_objects()
         if isinstance(device, EncoderDevice):
             objects = od.encoder_objects()
-        self.nodes[name] = PeerNode(self.network, number, objects, device)
+        self.nodes[name] = DeviceNode(self.network, number, objects, device)
 
     def _emergency(self, name: str, code: int) -> None:
         self.nodes[name].emergency(code)

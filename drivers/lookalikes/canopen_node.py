@@ -39,8 +39,8 @@ class Device(Protocol):
         ...
 
 
-class PeerNetwork(canopen.Network):
-    """A bus without a reading thread and without periodic jobs: both are done by ``Peers.pump``."""
+class DeviceNetwork(canopen.Network):
+    """A bus without a reading thread and without periodic jobs: both are done by ``CanopenDevices.pump``."""
 
     def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
         """One frame; without a bus it is lost."""
@@ -66,10 +66,12 @@ class _NoTask(canopen.network.PeriodicMessageTask):
         """Nothing runs."""
 
 
-class PeerNode:
+class DeviceNode:
     """One device on the bus. Tests may make it ``silent``, or let it ``reboot``."""
 
-    def __init__(self, network: PeerNetwork, node_id: int, objects: ObjectDictionary, device: Device) -> None:
+    def __init__(
+        self, network: DeviceNetwork, node_id: int, objects: ObjectDictionary, device: Device
+    ) -> None:
         self.network = network
         self.id = node_id
         self.device = device

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from core.ports import Clock
 from drivers.lookalikes.grblhal_program import Modes, Program
 from drivers.lookalikes.grblhal_settings import Quirks
-from drivers.lookalikes.grblhal_slides import PeerBlock
+from drivers.lookalikes.grblhal_slides import PlannedBlock
 from drivers.lookalikes.grblhal_state import ControllerState
 
 # --- What the look-alike's real-time bytes do, in whatever state it is.
@@ -125,7 +125,7 @@ def _home(m: Firmware, until: float, axes: int) -> None:
         m.answer()
 
 
-def _wants_index(m: Firmware, block: PeerBlock) -> bool:
+def _wants_index(m: Firmware, block: PlannedBlock) -> bool:
     """A thread begins at the second index from now; until then nothing is heard and nothing is said."""
     if not block.thread or m.slides.begun:
         return False

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from drivers.lookalikes.grblhal_slides import PeerBlock, Place, Shape, circle, straight
+from drivers.lookalikes.grblhal_slides import Place, PlannedBlock, Shape, circle, straight
 from drivers.lookalikes.grblhal_state import ControllerState
 
 # --- The look-alike's modal state, and the words that change it.
@@ -218,7 +218,7 @@ class Program:
         target = self._target(words)
         length, way = straight(self.end, target)
         self.end = target
-        machine.queue(PeerBlock(0, length, words["F"] / 60.0, way, jog=True))
+        machine.queue(PlannedBlock(0, length, words["F"] / 60.0, way, jog=True))
         return 0
 
     def _carry_out(self, line: str) -> None:
@@ -312,12 +312,12 @@ class Program:
             self._cuts = True
             self._m.spindle_percent = 100
             self._m.turn(self._m.rpm)
-            block = PeerBlock(number, length, words.get("K", 0.0), way, per_rev=True, thread=True)
+            block = PlannedBlock(number, length, words.get("K", 0.0), way, per_rev=True, thread=True)
         elif motion == "G0":
-            block = PeerBlock(number, length, 1e9, way, rapid=True)
+            block = PlannedBlock(number, length, 1e9, way, rapid=True)
         else:
             per_rev = self.modes.feed_mode == "G95"
-            block = PeerBlock(number, length, self._f if per_rev else self._f / 60.0, way, per_rev=per_rev)
+            block = PlannedBlock(number, length, self._f if per_rev else self._f / 60.0, way, per_rev=per_rev)
         self._m.queue(block)
 
 

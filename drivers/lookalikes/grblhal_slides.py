@@ -19,7 +19,7 @@ _STRAIGHT = 0.999999  # cosine of a corner that is none, or that turns back
 
 
 @dataclass(slots=True)
-class PeerBlock:
+class PlannedBlock:
     """``way``: distance (mm) to place. ``per_rev``: ``speed`` is mm a turn; ``thread`` awaits the index."""
 
     number: int
@@ -82,7 +82,7 @@ class Slides:
     """Advanced in small steps by the firmware; ``turns_per_s`` is the spindle's."""
 
     def __init__(self, registers: Registers, capacity: int) -> None:
-        self.queue: deque[PeerBlock] = deque()
+        self.queue: deque[PlannedBlock] = deque()
         self.capacity = capacity
         self.place: Place = (0.0, 0.0)
         self.v = 0.0
@@ -125,7 +125,7 @@ class Slides:
             self.v = 0.0
         self._go(self.v * dt)
 
-    def _speed(self, block: PeerBlock, turns_per_s: float) -> float:
+    def _speed(self, block: PlannedBlock, turns_per_s: float) -> float:
         """A thread too is slowed by the feed override, beside its lead; a jog knows none."""
         most = min(self._registers[110], self._registers[112]) / 60.0
         speed = min(block.speed * turns_per_s if block.per_rev else block.speed, most)
@@ -149,7 +149,7 @@ class Slides:
             before, left = block, left + block.length
         return min(most, math.sqrt(2.0 * accel * max(left, 0.0))) + _CREEP
 
-    def _corner(self, before: PeerBlock, block: PeerBlock) -> float:
+    def _corner(self, before: PlannedBlock, block: PlannedBlock) -> float:
         """The fastest through the joint of two blocks, by the deviation of ``$11``; turning back stops."""
         (x0, z0), (x1, z1) = before.heading(before.length), block.heading(0.0)
         cosine = x0 * x1 + z0 * z1

@@ -6,7 +6,7 @@ import math
 
 from core.ports import Clock
 from drivers.lookalikes.grblhal_settings import Quirks, Registers
-from drivers.lookalikes.grblhal_slides import PeerBlock, Slides
+from drivers.lookalikes.grblhal_slides import PlannedBlock, Slides
 from drivers.lookalikes.plant_config import SimSpindle
 from drivers.lookalikes.spindle_motor import SpindleMotor
 
@@ -113,7 +113,7 @@ class ControllerState:
         self.rx = bytearray(rest)
         return line.decode("ascii", "replace").strip()
 
-    def queue(self, block: PeerBlock) -> None:
+    def queue(self, block: PlannedBlock) -> None:
         """Into the planner; nothing for a block without length."""
         if block.length > 0.0:
             self.slides.queue.append(block)

@@ -11,7 +11,7 @@ from drivers.lookalikes.servo_axis import Servo
 from drivers.operator_station import StationHands
 
 
-class SimMachine(StationHands):
+class PlantHands(StationHands):
     """Buttons of the station and faults of the machine; every method may be called from any thread."""
 
     def __init__(self, plant: Plant) -> None:
@@ -146,7 +146,7 @@ class SimMachine(StationHands):
 class Schedule:
     """Breaks and mends as time passes; the plant calls it with the clock's time."""
 
-    def __init__(self, machine: SimMachine, faults: Sequence[PlannedFault]) -> None:
+    def __init__(self, machine: PlantHands, faults: Sequence[PlannedFault]) -> None:
         self._acts: list[tuple[float, Callable[[], None]]] = []
         for fault in faults:
             breaks, mends = _acts(machine, fault)
@@ -161,7 +161,7 @@ class Schedule:
             self._acts.pop(0)[1]()
 
 
-def _acts(machine: SimMachine, fault: PlannedFault) -> tuple[Callable[[], None], Callable[[], None] | None]:
+def _acts(machine: PlantHands, fault: PlannedFault) -> tuple[Callable[[], None], Callable[[], None] | None]:
     """How it breaks, and how it is mended; a drive's fault stays until somebody clears it."""
     axis, value, text = fault.axis, fault.value, fault.text
     known: dict[str, tuple[Callable[[], None], Callable[[], None] | None]] = {

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from core.ports import AxisSample, Cam, Clock, DriverError, Geared, MachinePorts, Segments, StationState, Stop
 from drivers.lookalikes.plant import Plant
 from drivers.lookalikes.plant_config import SimConfig
-from drivers.lookalikes.plant_hands import Schedule, SimMachine
+from drivers.lookalikes.plant_hands import PlantHands, Schedule
 
 # --- The simulated machine behind the ports: thin fronts on one plant.
 
@@ -183,7 +183,7 @@ class Simulation(NamedTuple):
     """The ports for the executor, and the handle for whoever plays the operator."""
 
     ports: MachinePorts
-    machine: SimMachine
+    machine: PlantHands
 
 
 def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
@@ -198,7 +198,7 @@ def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
         gear=SimGear(plant),
         halt=plant.halt,
     )
-    machine = SimMachine(plant)
+    machine = PlantHands(plant)
     if config.faults:
         plant.due = Schedule(machine, config.faults).due
     return Simulation(ports, machine)

@@ -28,7 +28,7 @@ from core.executor.job import Proof, make_job
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
 from core.store.database import FILE_NAME
-from drivers.lookalikes.plant_hands import SimMachine
+from drivers.lookalikes.plant_hands import PlantHands
 
 SHOWN = 0.01  # s between two lines of the child
 STALLS = (0.1, 0.3, 0.5, 1.0, 5.0)
@@ -94,7 +94,7 @@ class Child:
         while True:
             shot, played = self.desk.snapshot(), self.desk.station
             rpm, on, at = shot.rpm_actual, set(shot.outputs), shot.actual[:2]
-            if isinstance(played, SimMachine):  # as the machine really is, also where nobody looks any more
+            if isinstance(played, PlantHands):  # as the machine really is, also where nobody looks any more
                 rpm, at = played.spindle_rpm(), played.true_position()[:2]
                 on = {name for name, lit in played.outputs().items() if lit}
             told = {

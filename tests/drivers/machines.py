@@ -9,7 +9,7 @@ import numpy as np
 from core.ports import Segments
 from drivers.clocks import StepClock
 from drivers.lookalikes.plant_config import SimAxis, SimConfig, SimOutput, SimSpindle
-from drivers.lookalikes.plant_hands import SimMachine
+from drivers.lookalikes.plant_hands import PlantHands
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 
 SLIDE = SimAxis(
@@ -67,4 +67,4 @@ def play(sim: Simulation, clock: StepClock, seconds: float, tick: float = 0.01) 
         sim.ports.axes.sample()
 
 
-__all__ = ["CONFIG", "SLIDE", "SimMachine", "play", "ramp", "simulation"]
+__all__ = ["CONFIG", "SLIDE", "PlantHands", "play", "ramp", "simulation"]

@@ -11,7 +11,7 @@ import pytest
 
 from core.store.store import Store
 from drivers.clocks import RealClock
-from drivers.lookalikes.canopen_devices import Peers
+from drivers.lookalikes.canopen_devices import CanopenDevices
 from tests.drivers.feeder.bus import SteadyClock, bus_file, peers_on
 from tests.killed.bench import PATIENCE, Process, process
 
@@ -27,7 +27,7 @@ ONE_BUTTON = ("two_hand_start = true", "two_hand_start = false")
 class Shop:
     """The machine's end of the bus."""
 
-    peers: Peers
+    peers: CanopenDevices
     clock: SteadyClock
 
     def until(self, ready: Callable[[], bool], what: Callable[[], object]) -> None:

@@ -27,7 +27,7 @@ from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store
 from drivers.clocks import StepClock
-from drivers.lookalikes.plant_hands import SimMachine
+from drivers.lookalikes.plant_hands import PlantHands
 
 Key = Qt.Key
 NONE, SHIFT = Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.ShiftModifier
@@ -74,7 +74,7 @@ class Day:
     @property
     def slides(self) -> tuple[float, float]:
         """Where X and Z of the lathe really stand, inches from home."""
-        assert isinstance(self.desk.station, SimMachine)
+        assert isinstance(self.desk.station, PlantHands)
         x, z = self.desk.station.true_position()[:2]
         return x / INCH, z / INCH
 

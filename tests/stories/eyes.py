@@ -25,7 +25,7 @@ from app.desk.desk import Desk
 from app.screen.keyboard import Keyboard
 from app.screen.main_window import MainWindow
 from app.screen.panel import Panel
-from drivers.lookalikes.plant_hands import SimMachine
+from drivers.lookalikes.plant_hands import PlantHands
 
 LOOK = 0.01  # s
 Told = dict[str, Any]
@@ -181,7 +181,7 @@ def _break(told: Told) -> None:
     """Something of the simulated lathe breaks, by the name of its method."""
     desk = _desk()
     assert desk is not None
-    assert isinstance(desk.station, SimMachine)
+    assert isinstance(desk.station, PlantHands)
     getattr(desk.station, told["name"])(*told["values"])
 
 
@@ -235,7 +235,7 @@ def _machine(desk: Desk) -> Told:
     """The machine of now: as the control has it, and where the simulated slides really stand (mm)."""
     shot = desk.snapshot()
     station = desk.station
-    played = isinstance(station, SimMachine)
+    played = isinstance(station, PlantHands)
     true = station.true_position() if played else shot.actual
     outputs = station.outputs() if played else dict.fromkeys(shot.outputs, True)
     return {

@@ -11,7 +11,7 @@ from app.compose.machine_files import parse_machine
 from core.machine.machine_model import Machine
 from drivers.canopen.canopen_machine import CanopenMachine
 from drivers.clocks import StepClock
-from drivers.lookalikes.canopen_devices import Peers
+from drivers.lookalikes.canopen_devices import CanopenDevices
 
 TICK = 0.005
 _channels = itertools.count()
@@ -36,7 +36,7 @@ class CanBench:
     def __init__(self, machine: Machine | None = None) -> None:
         self.model = machine or can_machine()
         self.clock = StepClock()
-        self.peers: Peers = canopen_peers(self.model, self.clock)
+        self.peers: CanopenDevices = canopen_peers(self.model, self.clock)
         try:
             self.machine: CanopenMachine = canopen_machine(self.model, self.clock, self.peers.pump)
         except Exception:

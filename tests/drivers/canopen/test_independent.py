@@ -14,7 +14,7 @@ from app.compose.canopen_backend import canopen_peers
 from drivers.canopen.canopen_objects import drive_objects
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import RealClock
-from drivers.lookalikes.canopen_devices import Peers
+from drivers.lookalikes.canopen_devices import CanopenDevices
 from tests.drivers.canopen.bench import can_machine
 
 _numbers = itertools.count()
@@ -38,7 +38,7 @@ for name in PATIENT:
 
 
 @pytest.fixture
-def shop() -> Iterator[tuple[Peers, BaseNode402]]:
+def shop() -> Iterator[tuple[CanopenDevices, BaseNode402]]:
     """X of the shipped machine under the library's master, each end with threads of its own."""
     machine = can_machine()
     table = machine.hardware.table(CanopenTable)
@@ -66,7 +66,7 @@ def shop() -> Iterator[tuple[Peers, BaseNode402]]:
 
 
 def test_the_librarys_profile_walks_it_up_and_changes_its_mode(
-    shop: tuple[Peers, BaseNode402],
+    shop: tuple[CanopenDevices, BaseNode402],
 ) -> None:
     peers, node = shop
     node.nmt.state = "PRE-OPERATIONAL"

@@ -12,7 +12,7 @@ from core.ports import DriverError
 from drivers.canopen import canopen_objects as od
 from drivers.clocks import StepClock
 from drivers.lookalikes.canopen_axis_drive import AxisDrive
-from drivers.lookalikes.canopen_devices import Peers
+from drivers.lookalikes.canopen_devices import CanopenDevices
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.machines import ramp
 
@@ -59,13 +59,13 @@ def test_a_drive_without_a_time_for_its_window_is_stricter_and_that_is_told() ->
 
 
 def test_a_drive_that_cannot_be_told_what_to_do_without_us_is_refused() -> None:
-    def spoil(peers: Peers) -> None:
+    def spoil(peers: CanopenDevices) -> None:
         del peers.nodes["X"].local.object_dictionary[od.ABORT_OPTION]
 
     assert "X: node 1, object 6007:0: refused by the node" in refused(spoil)
 
 
-def refused(spoil: Callable[[Peers], None], machine: Machine | None = None) -> str:
+def refused(spoil: Callable[[CanopenDevices], None], machine: Machine | None = None) -> str:
     """Why a machine with a spoilt node is not connected to."""
     model, clock = machine or can_machine(), StepClock()
     peers = canopen_peers(model, clock)
@@ -78,12 +78,12 @@ def refused(spoil: Callable[[Peers], None], machine: Machine | None = None) -> s
     return str(caught.value)
 
 
-def drive(peers: Peers, name: str = "Z") -> AxisDrive:
+def drive(peers: CanopenDevices, name: str = "Z") -> AxisDrive:
     return peers.plant.drives[name]
 
 
 def test_a_node_that_is_not_there() -> None:
-    def spoil(peers: Peers) -> None:
+    def spoil(peers: CanopenDevices) -> None:
         peers.nodes["Z"].silent = True
 
     why = refused(spoil)
@@ -92,14 +92,14 @@ def test_a_node_that_is_not_there() -> None:
 
 
 def test_a_terminal_block_where_a_drive_should_be() -> None:
-    def spoil(peers: Peers) -> None:
+    def spoil(peers: CanopenDevices) -> None:
         peers.nodes["Z"].device.read = lambda _index, _sub: 0x000F0191  # type: ignore[method-assign]
 
     assert "node 2 is a device of profile 401, expected 402" in refused(spoil)
 
 
 def test_a_drive_without_the_mode() -> None:
-    def spoil(peers: Peers) -> None:
+    def spoil(peers: CanopenDevices) -> None:
         read = drive(peers).read
         peers.nodes["Z"].device.read = (  # type: ignore[method-assign]
             lambda index, sub: 0x21 if index == od.SUPPORTED else read(index, sub)
@@ -109,7 +109,7 @@ def test_a_drive_without_the_mode() -> None:
 
 
 def test_a_drive_that_keeps_another_value() -> None:
-    def spoil(peers: Peers) -> None:
+    def spoil(peers: CanopenDevices) -> None:
         read = drive(peers).read
         peers.nodes["Z"].device.read = (  # type: ignore[method-assign]
             lambda index, sub: 0xFFFFFFFF if index == od.WINDOW else read(index, sub)

@@ -13,7 +13,7 @@ from core.ports import MachinePorts
 from drivers.canopen.canopen_machine import CanopenMachine
 from drivers.feeder.feeder_client import Line, feeder_ports
 from drivers.feeder.feeder_server import Feeder
-from drivers.lookalikes.plant_hands import SimMachine
+from drivers.lookalikes.plant_hands import PlantHands
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.simulated import FEEDER_FAULTS, FEEDER_WORDS, BrokenLink
@@ -71,7 +71,7 @@ class Canopen(Rig):
                 self.peers.pump()
 
     @property
-    def slides(self) -> SimMachine:
+    def slides(self) -> PlantHands:
         """Behind their drives."""
         return self.peers.machine
 

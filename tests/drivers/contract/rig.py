@@ -11,7 +11,7 @@ from typing import ClassVar
 from core.machine.machine_model import Machine
 from core.ports import BlockSink, MachinePorts
 from drivers.clocks import StepClock
-from drivers.lookalikes.plant_hands import SimMachine
+from drivers.lookalikes.plant_hands import PlantHands
 from tests.drivers.contract.moves import hand_over, start
 from tests.drivers.contract.world import World
 
@@ -84,7 +84,7 @@ class Rig(ABC):
         """Let everything go."""
 
     @property
-    def slides(self) -> SimMachine:
+    def slides(self) -> PlantHands:
         """What jams, pushes and drives away: ``missing["slides"]`` where the controller counts by itself."""
         raise NotImplementedError
 

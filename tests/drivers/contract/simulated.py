@@ -16,7 +16,7 @@ from drivers.feeder.feeder_client import Line, feeder_ports
 from drivers.feeder.feeder_links import LoopLink
 from drivers.feeder.feeder_messages import Message
 from drivers.feeder.feeder_server import Feeder
-from drivers.lookalikes.plant_hands import SimMachine
+from drivers.lookalikes.plant_hands import PlantHands
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import SimWorld
 
@@ -80,7 +80,7 @@ class Simulated(Rig):
         self.hands.jam("X", False)
 
     @property
-    def slides(self) -> SimMachine:
+    def slides(self) -> PlantHands:
         """The simulated ones."""
         return self.hands
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
-from drivers.lookalikes.plant_hands import SimMachine
+from drivers.lookalikes.plant_hands import PlantHands
 
 Readings = Mapping[str, bool]
 
@@ -59,7 +59,7 @@ class World(Protocol):
 class SimWorld:
     """The simulated lathe, as the machine itself or behind drives on a bus."""
 
-    def __init__(self, hands: SimMachine, outputs: Callable[[], Readings]) -> None:
+    def __init__(self, hands: PlantHands, outputs: Callable[[], Readings]) -> None:
         self.hands = hands
         self.outputs = outputs
         self.set_input = hands.set_input

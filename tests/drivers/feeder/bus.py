@@ -13,7 +13,7 @@ from app.compose.canopen_backend import canopen_peers
 from app.compose.machine_files import load_machine
 from core.ports import DriverError
 from drivers.clocks import StepClock
-from drivers.lookalikes.canopen_devices import Peers
+from drivers.lookalikes.canopen_devices import CanopenDevices
 
 # A bus whose times a loaded computer can keep: nothing here is about how fast Python is.
 TIMES = (
@@ -58,7 +58,7 @@ def bus_file(folder: Path, *changes: tuple[str, str]) -> Path:
     return path
 
 
-def peers_on(path: Path, clock: SteadyClock) -> Peers:
+def peers_on(path: Path, clock: SteadyClock) -> CanopenDevices:
     """Drives and terminals of the file; the test is skipped, and says so, where no bus is to be had."""
     try:
         peers = canopen_peers(load_machine(path), clock)

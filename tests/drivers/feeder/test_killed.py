@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from drivers.lookalikes.canopen_devices import Peers
+from drivers.lookalikes.canopen_devices import CanopenDevices
 from tests.drivers.feeder.bus import SteadyClock, bus_file, peers_on
 
 PATIENCE = 60.0  # s of a loaded computer
@@ -26,7 +26,7 @@ END = 20.0 * 1.42  # mm at which the path ends
 class Shop:
     """The drives here, the control and its feeder in processes of their own."""
 
-    peers: Peers
+    peers: CanopenDevices
     clock: SteadyClock
     control: subprocess.Popen[bytes]
     feeder: int = 0

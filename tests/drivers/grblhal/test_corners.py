@@ -7,7 +7,7 @@ import math
 import pytest
 
 from drivers.lookalikes.grblhal_settings import Quirks, Registers
-from drivers.lookalikes.grblhal_slides import PeerBlock, Place, Slides, straight
+from drivers.lookalikes.grblhal_slides import Place, PlannedBlock, Slides, straight
 
 STEP = 0.001
 ACCEL = 3000.0  # $120 and $122 of the look-alike, mm/s²
@@ -19,7 +19,7 @@ def way(*places: Place, speed: float = SPEED) -> Slides:
     slides = Slides(Registers(Quirks()), 100)
     for start, end in zip(((0.0, 0.0), *places), places, strict=False):
         length, shape = straight(start, end)
-        slides.queue.append(PeerBlock(0, length, speed, shape))
+        slides.queue.append(PlannedBlock(0, length, speed, shape))
     return slides
 
 
@@ -58,7 +58,7 @@ def test_a_right_angle_is_taken_by_the_deviation() -> None:
 def test_a_slower_block_begins_at_its_own_speed() -> None:
     slides = way((0.0, 20.0))
     length, shape = straight((0.0, 20.0), (0.0, 30.0))
-    slides.queue.append(PeerBlock(0, length, 5.0, shape))
+    slides.queue.append(PlannedBlock(0, length, 5.0, shape))
     seen = run(slides)
     assert max(v for (_, z), v in seen if z > 20.0) <= 5.0 + 2.0 * ACCEL * STEP
     assert max(v for (_, z), v in seen if z > 20.5) <= 5.0 + 1e-6
