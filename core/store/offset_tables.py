@@ -54,12 +54,11 @@ class _Log:
 
 @dataclass(frozen=True, slots=True)
 class _Table:
-    """A table of offsets: name, letter and numbers, what a refusal says of them, its rows and its history."""
+    """A table of offsets: name, letter and numbers, its rows and its history."""
 
     name: str
     letter: str
     numbers: range
-    those: str
     row: type[Row]
     log: _Log
 
@@ -74,9 +73,9 @@ _ZEROS = _Log(
     "zero_offset_changes", "code", _columns(Kind.ZERO), "'zero'", "there is no change of G54…G59 to undo"
 )
 _TABLES = {
-    Kind.TOOL: _Table("tool_offsets", "T", OFFSETS, "offsets are T1…32", ToolRow, _OFFSETS),
-    Kind.SECONDARY: _Table("secondary_offsets", "D", OFFSETS, "offsets are D1…32", SecondaryRow, _OFFSETS),
-    Kind.ZERO: _Table("zero_offsets", "G", ZERO_CODES, "settable offsets are G54…G59", ZeroRow, _ZEROS),
+    Kind.TOOL: _Table("tool_offsets", "T", OFFSETS, ToolRow, _OFFSETS),
+    Kind.SECONDARY: _Table("secondary_offsets", "D", OFFSETS, SecondaryRow, _OFFSETS),
+    Kind.ZERO: _Table("zero_offsets", "G", ZERO_CODES, ZeroRow, _ZEROS),
 }
 
 
@@ -137,8 +136,11 @@ def never_set(number: int) -> str:
 def check_number(kind: Kind, number: int) -> None:
     """Raises StoreError for an offset that does not exist."""
     table = _TABLES[kind]
-    if number not in table.numbers:
-        raise StoreError(f"{table.letter}{number} does not exist; {table.those}")
+    if number in table.numbers:
+        return
+    if kind is Kind.ZERO:
+        raise StoreError(f"G{number} does not exist; settable offsets are G54…G59")
+    raise StoreError(f"{table.letter}{number} does not exist; offsets are {table.letter}1…32")
 
 
 def changed(kind: Kind, number: int, old: Row | None, wanted: Mapping[str, Value]) -> Row:
@@ -146,11 +148,11 @@ def changed(kind: Kind, number: int, old: Row | None, wanted: Mapping[str, Value
     fields, table = FIELDS[kind], _TABLES[kind]
     for name, value in wanted.items():
         field = fields.get(name)
-        if field is None:
-            raise StoreError(f"{table.letter}{number} {name} is out of range; enter {', '.join(fields)}")
-        if not field.takes(value):
-            told = f"{table.letter}{number} {field.word} {_told(field, value)}"
-            raise StoreError(f"{told} is out of range; enter {field.range}")
+        if field is None or not field.takes(value):
+            word, shown = (field.word, _told(field, value)) if field else (name, value)
+            told = f"{table.letter}{number} {word} {shown}"
+            accepted = field.range if field else ", ".join(fields)
+            raise StoreError(f"{told} is out of range; enter {accepted}")
     before = old or table.row()
     return _row(kind, [wanted.get(name, getattr(before, name)) for name in fields])
 
