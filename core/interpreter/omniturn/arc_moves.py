@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import dist
 
 from core.geometry.lines_and_arcs import Point, arc_length, centre_from_radius
@@ -15,11 +14,6 @@ from core.interpreter.omniturn.straight_moves import check_tool, go, on_step, wa
 
 _TOLERANCE = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)
 _SAME = 1e-9  # mm
-
-
-def arc_blocks(state: State, made: Statement) -> Iterator[Block]:
-    """The block of G02 or G03. Raises ProgramError where its words give no arc."""
-    yield arc_move(state, made)
 
 
 def arc_move(state: State, made: Statement) -> Block:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.interpretation import ToolUse
+from core.interpreter.omniturn.arc_moves import arc_move
 from core.interpreter.omniturn.c_axis import c_move, lock, positions
 from core.interpreter.omniturn.canned_cycles import blocks_of_moves, check_ready
 from core.interpreter.omniturn.coarse_feeds import coarse_line
@@ -20,6 +21,7 @@ from core.interpreter.omniturn.straight_moves import geometry_modes, statement_m
 from core.interpreter.omniturn.tools_and_offsets import secondary, tool_change
 
 Ahead = Sequence[ReadyLine]
+_ARC = Acts.ARC  # asked of every line
 
 
 def execute(
@@ -77,7 +79,9 @@ def _start(state: State, made: Statement) -> Iterator[Block]:
 
 def _motion(state: State, made: Statement, contour: Sequence[Statement] = ()) -> Iterator[Block]:
     acts = made.entry.acts
-    if acts is Acts.ARC or acts is Acts.MOTION:
+    if acts is _ARC:
+        yield arc_move(state, made)
+    elif acts is Acts.MOTION:
         yield from carry_out(made.entry)(state, made)
     elif acts is Acts.CYCLE or acts is Acts.CONTOUR:
         check_ready(state, made)

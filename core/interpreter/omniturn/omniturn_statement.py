@@ -14,6 +14,13 @@ PlainMove = tuple[float | None, float | None, float | None, int, bool]
 """A line of G00 or G01, X, Z and F and no more: X, Z, F as written, 0 or 1 for the code (-1: none), and
 whether one of the numbers has a fifth decimal. Most lines of a long program."""
 
+_ARC, _LOCK, _MODE, _FEED, _LIMIT = (
+    Acts.ARC,
+    Acts.LOCK,
+    Acts.MODE,
+    FWord.FEED,
+    SWord.LIMIT,
+)  # asked of every line
 _C_WORDS = frozenset({"C", "CA", "CI"})
 UNREADABLE = "unreadable"
 PLANE = "plane"
@@ -32,6 +39,7 @@ class Statement:
     entry: Code = PLAIN  # of the one-shot code in the table
     code: Word | None = None  # the one-shot word
     m_word: Word | None = None
+    m_code: Code | None = None  # the entry of its M code, where the control itself knows it
     flow: str = ""  # a key of FLOW_CODES, UNREADABLE, or PLANE
     comment: str | None = None
     block_delete: bool = False
@@ -44,9 +52,7 @@ class Statement:
     @property
     def moves(self) -> bool:
         """Whether the line asks the slides to move."""
-        return self.entry.acts is Acts.ARC or (
-            self.one_shot is None and ("X" in self.words or "Z" in self.words)
-        )
+        return self.entry.acts is _ARC or (self.one_shot is None and ("X" in self.words or "Z" in self.words))
 
     @property
     def turns(self) -> bool:
@@ -57,28 +63,22 @@ class Statement:
     def locks(self) -> bool:
         """Whether the line makes the spindle the axis C."""
         m_code = self.m_code
-        return self.entry.acts is Acts.LOCK or (m_code is not None and m_code.acts is Acts.LOCK)
-
-    @property
-    def m_code(self) -> Code | None:
-        """The entry of its M code; None without one, or where only the machine file can know it."""
-        return None if self.m is None else M_CODES.get(self.m)
+        return self.entry.acts is _LOCK or (m_code is not None and m_code.acts is _LOCK)
 
     @property
     def ends_program(self) -> bool:
         """Whether the line holds M30 or M02."""
-        m_code = self.m_code
-        return m_code is not None and m_code.ends_program
+        return self.m_code is not None and self.m_code.ends_program
 
     @property
     def calls(self) -> bool:
         """Whether the line calls a subroutine, on condition or not."""
-        return self.flow in FLOW_CODES and FLOW_CODES[self.flow].calls
+        return bool(self.flow) and self.flow in FLOW_CODES and FLOW_CODES[self.flow].calls
 
     @property
     def asks(self) -> bool:
         """Whether the line asks an input whether to call."""
-        return self.flow in FLOW_CODES and FLOW_CODES[self.flow].asks
+        return bool(self.flow) and self.flow in FLOW_CODES and FLOW_CODES[self.flow].asks
 
     @property
     def contour_cycle(self) -> bool:
@@ -173,6 +173,7 @@ def _sort(made: Statement, line: Line) -> None:
             if made.m_word is not None:
                 raise _refused(line, word, "two-m-codes", "holds two M codes", "Split the line.")
             made.m, made.m_word = int(word.value or 0), word
+            made.m_code = M_CODES.get(made.m)
         elif letter in words:
             raise _refused(line, word, "word-twice", f"holds {letter} twice", "Take one out.")
         else:
@@ -193,15 +194,12 @@ def _check_groups(made: Statement, line: Line, modal: list[Word]) -> None:
 def _sort_g(made: Statement, word: Word, modal: list[Word]) -> None:
     code = int(word.value or 0)
     entry = G_CODES.get(code)
-    if entry is not None:
-        made.f_is_feed = made.f_is_feed and entry.f is FWord.FEED
-        made.s_is_limit = made.s_is_limit or entry.s is SWord.LIMIT
-    if entry is not None and entry.acts is Acts.MODE:
-        modal.append(word)
-    elif entry is None:
+    if entry is None:
         habit, hint = other_controls.here(word.text.upper()) or ("", "Look it up.")
         message = f"{word.text} is no code of this control. {habit}".rstrip()
         raise ProgramError(Diagnostic(made.line, word.column, Severity.ERROR, "g-unknown", message, hint))
+    if entry.acts is _MODE:
+        modal.append(word)
     elif made.code is not None:
         message = f"{made.code.text} and {word.text} cannot act on one line."
         raise ProgramError(
@@ -209,6 +207,10 @@ def _sort_g(made: Statement, word: Word, modal: list[Word]) -> None:
         )
     else:
         made.one_shot, made.code, made.entry = code, word, entry
+    if entry.f is not _FEED:
+        made.f_is_feed = False
+    if entry.s is _LIMIT:
+        made.s_is_limit = True
 
 
 def _flow(made: Statement) -> str:

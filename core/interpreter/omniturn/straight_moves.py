@@ -58,8 +58,14 @@ def line_to(state: State, line: int, text: str, x: float | None, z: float | None
     length. Raises ProgramError.
     """
     x0, z0 = state.x, state.z
-    go(state, x, z)
-    x1, z1 = state.x, state.z
+    if state.absolute:  # as ``go``, without the call
+        state.px = state.px if x is None else x
+        state.pz = state.pz if z is None else z
+    else:
+        state.px += x or 0.0
+        state.pz += z or 0.0
+    state.x = x1 = state.px + state.dx
+    state.z = z1 = state.pz + state.dz
     if state.fast:
         if state.cut and abs(x1 - x0) + abs(z1 - z0) > state.slow_length:
             check_move(state, line, x0, x1, hypot(x1 - x0, z1 - z0))
