@@ -11,7 +11,6 @@ from PySide6.QtWidgets import QWidget
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.prompt_line import MOVING, NONE_NAMED
-from app.editor.editor import Editor
 from app.path.measuring import measuring_words
 from app.path.path_aspects import tip_of
 from app.path.path_view import PathView
@@ -155,6 +154,8 @@ class AutomaticPage(Page):
 
     def _edit(self) -> None:
         """The program on the desk, or whatever name stands in the question for a file."""
+        from app.editor.editor import Editor
+
         wanted = self.files.wanted if self.files.isVisible() else ""
         if self.files.isVisible() and not wanted:
             self.desk.say(NONE_NAMED)

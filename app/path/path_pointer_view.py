@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QPointF, Qt
 from PySide6.QtGui import QNativeGestureEvent, QTouchEvent
 
-from app.path.path_pane_view import Pane
 from app.screen.look import Look
+
+if TYPE_CHECKING:
+    from app.path.path_pane_view import Pane
 
 STILL = 0.8  # units: a press that moves less is a touch, not a drag
 NEAR = 8.0  # pixels: fingers that lie closer tell no spread

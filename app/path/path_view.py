@@ -8,21 +8,24 @@ the machine is, and call ``advance`` once a frame. Nothing here computes but whe
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import QFocusEvent, QKeyEvent, QMouseEvent, QPainter, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.path import path_marks_view as marks
-from app.path.measuring_view import Measure
 from app.path.path_aspects import Aspect, DrawnLeg, Tip
-from app.path.path_pane_view import Pane, Panes, Place
-from app.path.path_picture import Picture
 from app.path.path_pointer_view import Pointer
-from app.path.path_projection import Projection
 from app.screen.look import LEFT, Look, put
 from app.screen.panel import Panel
+
+if TYPE_CHECKING:
+    from app.path import path_marks_view as marks
+    from app.path.measuring_view import Measure
+    from app.path.path_pane_view import Pane, Panes, Place
+    from app.path.path_picture import Picture
+    from app.path.path_projection import Projection
 
 COLUMN = 6.4  # units at the right of a view that are the buttons'
 Picked = Callable[[int], None]
@@ -41,7 +44,7 @@ class PathView(Panel):
     def __init__(self, look: Look, parent: QWidget | None = None, picked: Picked | None = None) -> None:
         super().__init__(look, parent)
         self._picked = picked
-        self._panes = Panes(look, self.keeps)
+        self._set: Panes | None = None  # comes with the first picture, and what draws it with it
         self._tip: Tip | None = None  # not drawn before somebody tells it
         self.legs: tuple[DrawnLeg, ...] = ()  # of an approach
         self.ruler: Measure | None = None  # what one measures with; None while one does not
@@ -51,7 +54,7 @@ class PathView(Panel):
     @property
     def panes(self) -> Sequence[Pane]:
         """What is side by side now."""
-        return self._panes.now
+        return self._set.now if self._set is not None else ()
 
     @property
     def view(self) -> Projection | None:
@@ -61,17 +64,17 @@ class PathView(Panel):
     @property
     def several(self) -> bool:
         """Whether there is another choice of panes."""
-        return self._panes.several
+        return self._set is not None and self._set.several
 
     @property
     def comparing(self) -> bool:
         """Whether two pictures are shown."""
-        return self._panes.before is not None
+        return self._set is not None and self._set.before is not None
 
     @property
     def picture(self) -> Picture | None:
         """The picture that is shown; None while there is none."""
-        return self._panes.picture
+        return self._set.picture if self._set is not None else None
 
     @property
     def drawn(self) -> bool:
@@ -118,15 +121,19 @@ class PathView(Panel):
 
     def advance(self) -> None:
         """Once a frame: draw on what is not drawn yet, for a few milliseconds at most."""
-        if self._panes.advance():
+        if self._set is not None and self._set.advance():
             self.update()
 
     def _show(self, picture: Picture | None, before: Picture | None) -> None:
-        if picture is self._panes.picture and before is self._panes.before:
+        from app.path.path_pane_view import Panes
+
+        if self._set is None:
+            self._set = Panes(self.look, self.keeps)
+        if picture is self._set.picture and before is self._set.before:
             return
         if self._tip is not None:
             self._tip = self._tip._replace(block=0)
-        self._panes.show(picture, before)
+        self._set.show(picture, before)
         if self.ruler is not None and self.ruler.pane in self.panes:
             self.ruler.renew()  # what is held stays where it is
         else:
@@ -134,9 +141,10 @@ class PathView(Panel):
         self._lay_out()
 
     def _lay_out(self) -> None:
-        self._include()
-        self._panes.lay(self.room().adjusted(0, 0, -COLUMN * self.look.u, 0))
-        self._show_tool()
+        if self._set is not None:
+            self._include()
+            self._set.lay(self.room().adjusted(0, 0, -COLUMN * self.look.u, 0))
+            self._show_tool()
         self.update()
 
     def _include(self) -> None:
@@ -179,10 +187,10 @@ class PathView(Panel):
 
     def next_view(self) -> None:
         """Another choice of panes, where the program gives one."""
-        if self.several:
+        if self._set is not None and self.several:
             measuring = self.ruler is not None
             self.measure(on=False)
-            self._panes.next_view()
+            self._set.next_view()
             self._lay_out()
             self.measure(on=measuring)
 
@@ -209,7 +217,7 @@ class PathView(Panel):
 
     def pane_at(self, at: QPointF | None) -> Pane | None:
         """The pane under a point, or else the one that is measured in, or the first."""
-        found = self._panes.at(at) if at is not None else None
+        found = self._set.at(at) if self._set is not None and at is not None else None
         if found is None:
             found = self.ruler.pane if self.ruler is not None else next(iter(self.panes), None)
         return found
@@ -232,6 +240,8 @@ class PathView(Panel):
         self.update()
 
     def _measure_in(self, pane: Pane) -> Measure:
+        from app.path.measuring_view import Measure
+
         ruler = self.ruler = Measure(pane)
         self.setMouseTracking(True)
         return ruler
@@ -301,6 +311,8 @@ class PathView(Panel):
 
     def draw(self, painter: QPainter) -> None:
         """Panes, title, buttons, legend; a sentence where there is nothing."""
+        from app.path import path_marks_view as marks
+
         look, panes = self.look, self.panes
         if not panes:
             why = tr("The path is shown when a program is loaded.")
@@ -320,6 +332,8 @@ class PathView(Panel):
             marks.draw_words(painter, look, panes[0].room, marks.apart_words(apart, self.in_mm))
 
     def _draw_pane(self, painter: QPainter, pane: Pane) -> None:
+        from app.path import path_marks_view as marks
+
         look = self.look
         painter.save()
         painter.setClipRect(pane.room)
@@ -341,15 +355,16 @@ class PathView(Panel):
                 marks.draw_border(painter, look, pane.room)
 
     def _buttons(self) -> list[marks.Button]:
-        button = marks.Button
+        from app.path.path_marks_view import Button
+
         found = [
-            button("+", lambda: self.zoom(1)),
-            button("−", lambda: self.zoom(-1)),
-            button(tr("FIT"), self.fit),
-            button(tr("MEAS"), self.measure, self.ruler is not None),
+            Button("+", lambda: self.zoom(1)),
+            Button("−", lambda: self.zoom(-1)),
+            Button(tr("FIT"), self.fit),
+            Button(tr("MEAS"), self.measure, self.ruler is not None),
         ]
         if self.several:
-            found.append(button(tr("VIEW"), self.next_view))
+            found.append(Button(tr("VIEW"), self.next_view))
         return found
 
     def _draw_title(self, painter: QPainter) -> None:
