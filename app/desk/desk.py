@@ -110,6 +110,8 @@ class Desk:
     changes: FileChanges = field(default_factory=FileChanges)  # of the machine file, to be accepted
     stop_held: Callable[[], bool] = bool  # whether a key that stops is held down
     starts_here: bool = True  # whether the page in front is one on which cycles are started
+    field_open: Callable[[], bool] = bool  # whether a field of that page has the letters
+    keyboard_away: bool = False  # another window has the keyboard: no key comes here
     hands: StationHands = field(init=False)
     log: AlarmLog = field(init=False)
     answers: PromptAnswers = field(init=False)
@@ -174,6 +176,9 @@ class Desk:
     @property
     def release_words(self) -> str:
         """How the E-stop is freed at this machine."""
+        if self.field_open():
+            by_hand = "RELEASE THE BUTTON BY HAND, U WRITES HERE; F1 LEAVES THE PAGE"
+            return by_hand if self.station is not None else "RELEASE THE BUTTON, F1 LEAVES THE PAGE"
         return "RELEASE THE BUTTON" if self.station is None else "RELEASE THE BUTTON (U)"
 
     @property
@@ -256,6 +261,8 @@ class Desk:
             return prompt_line.CONTROL_SILENT
         if self.answers.outlived(snapshot):
             self.clear()
+        if self.keyboard_away and snapshot.state in prompt_line.MOVING:
+            return prompt_line.KEYBOARD_AWAY
         return prompt_line.announced(snapshot) + self._prompt(snapshot, loaded, page)
 
     def _prompt(self, snapshot: Snapshot, loaded: Loaded, page: str) -> str:

@@ -165,12 +165,16 @@ class ProgramList:
         self.order = names[(names.index(self.order) + 1) % len(names)]
         self._narrow(self.here.name if self.here else "")
 
-    def load(self) -> bool:
-        """The marked program becomes that of the desk; True when it does."""
+    def may_load(self) -> bool:
+        """Whether the marked program can become that of the desk; why not is said."""
         if self.here is None:
             self.desk.say(NONE)
             return False
-        return self.desk.may_choose() and self.desk.choose(str(self.here.path))
+        return self.desk.may_choose() and self.desk.program_folders.find(str(self.here.path)) is not None
+
+    def load(self) -> bool:
+        """The marked program becomes that of the desk, or that is asked; True when it can."""
+        return self.may_load() and self.here is not None and self.desk.choose(str(self.here.path))
 
     def _changed(self, name: str) -> None:
         self._after = name

@@ -142,8 +142,9 @@ class ProgramsPage(ListPage):
         """Return on a program loads it and leads to Automatic; everything else is the model's."""
         model = self.model
         if key == "Enter" and not model.transfer.open and not model.question:
-            if model.load():
-                self.host.go(page_table.AUTOMATIC)
+            # The page first: what is asked about an interrupted job belongs to the page that stays.
+            if model.may_load() and self.host.go(page_table.AUTOMATIC):
+                model.load()
             return True
         return model.typed(key)
 

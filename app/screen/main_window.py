@@ -263,11 +263,16 @@ class MainWindow(QWidget):
     def changeEvent(self, event: QEvent) -> None:
         """Losing the keyboard lets every held button go: the release would be somebody else's to see."""
         if event.type() == QEvent.Type.ActivationChange:
+            self._tell_keyboard()
             if self.isActiveWindow():
                 self.keyboard.back()
             else:
                 self.let_go()
         super().changeEvent(event)
+
+    def _tell_keyboard(self) -> None:
+        if self.frame is not None:
+            self.frame.desk.keyboard_away = not self.isActiveWindow()
 
     def let_go(self) -> None:
         """Hands off everything that is held."""

@@ -93,7 +93,7 @@ class Frame(QWidget):
 
     def _front(self) -> None:
         page = self.page
-        self.desk.starts_here = page.STARTS
+        self.desk.starts_here, self.desk.field_open = page.STARTS, page.has_field
         self.keys.show_labels(page.labels())
         self._lay_out()
         self.log.hide()

@@ -163,6 +163,8 @@ class CommandHandler:
         self._control.program_run.interruption.withdraw()
         status.starts, status.start_refused = command.starts, ""
         status.prepared, status.prepared_proof = command.job, command.proof
+        if command.job is not None and command.starts is Starts.RESTART:
+            self._control.meant_at = self._context.now
 
     def _confirm(self, command: ConfirmStart) -> None:
         why = self._control.program_run.interruption.answer(command.at)
@@ -170,6 +172,7 @@ class CommandHandler:
         if why:
             self._refuse(why)
         elif command.at:
+            self._control.meant_at = self._context.now
             self._context.log("confirmed", "a start at the first line is meant")
 
     def _count(self, command: PartsMade) -> None:

@@ -28,6 +28,7 @@ from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal
 
 _GOES_ON = frozenset({State.RUN, State.WAIT, State.IDLE, State.DISABLED, State.JOG, State.HOME})
+MEANT = 0.8  # s from an answer to a start by hands: half a second between two palms, and time to read
 _STOPPED = frozenset({State.ESTOP, State.FAULT, State.DISABLED})
 
 
@@ -54,6 +55,7 @@ class MachineControl:
         self.announcement = Announcement()
         self.disturbance = OutputsWatch(context, self.program_run)
         self.announcement.sources += [self._spindle_starts, self.disturbance.starts]
+        self.meant_at = -MEANT  # when what the next start begins was answered for
         self._giving_up = False
         self._hindered = ""  # by what a start was kept, a tick ago
 
@@ -101,6 +103,13 @@ class MachineControl:
         elif not self.refuse(self.program_run.refusal(state) or self._unannounced()):
             self.announcement.begin()
             self.program_run.begin()
+
+    def start_by_hands(self) -> None:
+        """Cycle Start at the station: what it begins was asked for before the first hand came down."""
+        if self._context.now - self.meant_at < MEANT:
+            self.refuse("that was meant just now: let both palms go, read the prompt, press them again")
+        else:
+            self.start()
 
     def refuse(self, why: str) -> bool:
         """Keep and log why a start is refused; False when there is no reason."""

@@ -430,6 +430,11 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
+      <source>REFUSED: %1</source>
+      <translation>RECHAZADO: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
       <source>RELEASE THE BUTTON</source>
       <translation>SUELTE EL BOTÓN</translation>
     </message>
@@ -437,6 +442,16 @@
       <location filename="app/desk/desk.py" />
       <source>RELEASE THE BUTTON (U)</source>
       <translation>SUELTE EL BOTÓN (U)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>RELEASE THE BUTTON BY HAND, U WRITES HERE; F1 LEAVES THE PAGE</source>
+      <translation>SUELTE EL BOTÓN A MANO, AQUÍ LA U ESCRIBE; F1 SALE DE LA PÁGINA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>RELEASE THE BUTTON, F1 LEAVES THE PAGE</source>
+      <translation>SUELTE EL BOTÓN, F1 SALE DE LA PÁGINA</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -477,6 +492,11 @@
       <location filename="app/desk/desk.py" />
       <source>{name} IS NOT LOADED: A JOB WAS INTERRUPTED</source>
       <translation>{name} NO SE CARGA: HAY UN TRABAJO INTERRUMPIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/formats.py" />
+      <source>%1 GB</source>
+      <translation>%1 GB</translation>
     </message>
     <message>
       <location filename="app/desk/interrupted_notice.py" />
@@ -789,11 +809,6 @@
       <translation>NO HAY PRÓXIMA PIEZA CON LAS COMPENSACIONES CAMBIADAS: {why}</translation>
     </message>
     <message>
-      <location filename="app/desk/program_renewal.py" />
-      <source>REFUSED: %1</source>
-      <translation>RECHAZADO: %1</translation>
-    </message>
-    <message>
       <location filename="app/desk/prompt_line.py" />
       <source> %1 BLOCKS</source>
       <translation> %1 BLOQUES</translation>
@@ -822,6 +837,11 @@
       <location filename="app/desk/prompt_line.py" />
       <source>ALARM: PUT THE CAUSE RIGHT, THEN PRESS R TO ACKNOWLEDGE</source>
       <translation>ALARMA: CORRIJA LA CAUSA Y OPRIMA R PARA RECONOCERLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompt_line.py" />
+      <source>ANOTHER WINDOW HAS THE KEYBOARD: NO KEY STOPS HERE. PRESS THE BUTTONS, OR TOUCH THIS WINDOW</source>
+      <translation>OTRA VENTANA TIENE EL TECLADO: AQUÍ NO PARA NINGUNA TECLA. PULSE LOS BOTONES O TOQUE ESTA VENTANA</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -1150,6 +1170,21 @@
     </message>
     <message>
       <location filename="app/editor/edited_path_view.py" />
+      <source>FARTHER</source>
+      <translation>ALEJAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/edited_path_view.py" />
+      <source>HOLD</source>
+      <translation>RETENER</translation>
+    </message>
+    <message>
+      <location filename="app/editor/edited_path_view.py" />
+      <source>NEARER</source>
+      <translation>ACERCAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/edited_path_view.py" />
       <source>PATH TO THE CURSOR</source>
       <translation>TRAYECTORIA HASTA EL CURSOR</translation>
     </message>
@@ -1157,6 +1192,11 @@
       <location filename="app/editor/edited_path_view.py" />
       <source>THE CROSS STANDS ON NO LINE OF THE PATH: AN ARROW TAKES IT TO ONE</source>
       <translation>LA CRUZ NO ESTÁ SOBRE NINGUNA LÍNEA DE LA TRAYECTORIA: UNA FLECHA LA LLEVA A UNA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/edited_path_view.py" />
+      <source>VIEW</source>
+      <translation>VISTA</translation>
     </message>
     <message>
       <location filename="app/editor/editor.py" />
@@ -1169,154 +1209,174 @@
       <translation>%1; ESC</translation>
     </message>
     <message>
-      <location filename="app/editor/editor_keys_view.py" />
+      <location filename="app/editor/editor_messages.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE EDITING</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>A SAMPLE IS NOT CHANGED: UNDER WHAT NAME SHALL IT BE SAVED?</source>
+      <translation>UNA MUESTRA NO SE CAMBIA: ¿CON QUÉ NOMBRE SE GUARDA?</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>AN EMPTY PROGRAM IS NOT SAVED: WRITE SOMETHING, OR LEAVE WITH F10</source>
+      <translation>UN PROGRAMA VACÍO NO SE GUARDA: ESCRIBA ALGO, O SALGA CON F10</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>ARROWS MARK A VERSION, RETURN PUTS IT INTO THE EDITOR; ESC: BACK</source>
+      <translation>LAS FLECHAS MARCAN UNA VERSIÓN, RETURN LA PONE EN EL EDITOR; ESC: REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>CHOOSE A PROGRAM FIRST (F2), OR TYPE THE NAME OF A NEW ONE THERE</source>
+      <translation>ELIJA PRIMERO UN PROGRAMA (F2), O ESCRIBA AHÍ EL NOMBRE DE UNO NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>F3 SAVES AND PUTS WHAT WAS WRITTEN ON THE DESK; F1 SAVES AND LEAVES THE DESK AS IT IS</source>
+      <translation>F3 GUARDA Y CARGA LO ESCRITO; F1 GUARDA Y DEJA CARGADO LO QUE HAY</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>F6 LEAVES WITHOUT SAVING, F3 SAVES AND LEAVES, ESC GOES ON</source>
+      <translation>F6 SALE SIN GUARDAR, F3 GUARDA Y SALE, ESC SIGUE</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>NOT SAVED YET: F3 SAVES AND LEAVES, F10 LEAVES WITHOUT SAVING</source>
+      <translation>AÚN SIN GUARDAR: F3 GUARDA Y SALE, F10 SALE SIN GUARDAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>PRESS F1 TO CREATE A NEW FILE, ESC TO ABORT</source>
+      <translation>OPRIMA F1 PARA CREAR UN ARCHIVO NUEVO, ESC PARA CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>RETURN: NEXT   SHIFT+RETURN: THE ONE BEFORE   TAB: THE OTHER FIELD   ESC: BACK</source>
+      <translation>RETURN: SIGUIENTE   SHIFT+RETURN: ANTERIOR   TAB: EL OTRO CAMPO   ESC: REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>SAVED. WHAT RUNS IS THE PROGRAM AS IT WAS LOADED: LOAD IT AGAIN (F2) WHEN THE RUN HAS ENDED</source>
+      <translation>GUARDADO. LO QUE CORRE ES EL PROGRAMA COMO SE CARGÓ: CÁRGUELO DE NUEVO (F2) CUANDO TERMINE</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>THE MACHINE RUNS THE PROGRAM AS IT WAS LOADED, NOT THIS TEXT: ESC FOR FEED HOLD</source>
+      <translation>LA MÁQUINA CORRE EL PROGRAMA COMO SE CARGÓ, NO ESTE TEXTO: ESC PARA RETENCIÓN DE AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>THE SPINDLE IS ON: SWITCH IT OFF (M05, OR R FOR RESET) AND LET IT COME TO REST BEFORE EDITING</source>
+      <translation>EL HUSILLO ESTÁ ENCENDIDO: APÁGUELO (M05, O R PARA RESET) Y ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>THE SPINDLE STILL COASTS: WAIT UNTIL IT STANDS BEFORE EDITING</source>
+      <translation>EL HUSILLO AÚN GIRA POR INERCIA: ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>THERE IS NO PATH TO LOOK AT YET: WRITE A MOVE</source>
+      <translation>AÚN NO HAY TRAYECTORIA QUE VER: ESCRIBA UN MOVIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>TYPE A LINE NUMBER AND PRESS RETURN; ESC: BACK</source>
+      <translation>ESCRIBA UN NÚMERO DE LÍNEA Y OPRIMA RETURN; ESC: REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>VERSION {} IS IN THE EDITOR; SAVE TO KEEP IT, UNDO TO TAKE IT BACK</source>
+      <translation>LA VERSIÓN {} ESTÁ EN EL EDITOR; GUARDE PARA CONSERVARLA, DESHAGA PARA QUITARLA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>WHAT WAS TYPED HERE LAST TIME AND NOT SAVED IS IN THE HISTORY</source>
+      <translation>LO QUE SE ESCRIBIÓ AQUÍ LA ÚLTIMA VEZ Y NO SE GUARDÓ ESTÁ EN EL HISTORIAL</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>no history is kept here</source>
+      <translation>aquí no se guarda historial</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>{name} IS SAVED; F2 PUTS IT ON THE DESK</source>
+      <translation>{name} ESTÁ GUARDADO; F2 LO CARGA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>{name} IS SAVED; {other} STAYS ON THE DESK</source>
+      <translation>{name} ESTÁ GUARDADO; {other} SIGUE CARGADO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>{name} WAS ONLY LOOKED AT: {other} STAYS ON THE DESK</source>
+      <translation>{name} SÓLO SE MIRÓ: {other} SIGUE CARGADO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>{} IS THERE ALREADY: TAKE ANOTHER NAME</source>
+      <translation>{} YA EXISTE: USE OTRO NOMBRE</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>{} WAS CHANGED BY ANOTHER PROGRAM MEANWHILE: F6 REPLACES IT (IT STAYS IN HISTORY), ESC GOES ON</source>
+      <translation>OTRO PROGRAMA CAMBIÓ {} MIENTRAS TANTO: F6 LO REEMPLAZA (QUEDA EN LA HISTORIA), ESC SIGUE</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
+      <source>A NUMBER FROM 1 TO %1</source>
+      <translation>UN NÚMERO DE 1 A %1</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
       <source>ABORT</source>
       <translation>CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>ALL</source>
-      <translation>TODO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
+      <location filename="app/editor/editor_view.py" />
       <source>BACK</source>
       <translation>ATRÁS</translation>
     </message>
     <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>BEFORE</source>
-      <translation>ANTERIOR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
+      <location filename="app/editor/editor_view.py" />
       <source>CREATE</source>
       <translation>CREAR</translation>
     </message>
     <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>DOWN</source>
-      <translation>ABAJO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>FARTHER</source>
-      <translation>ALEJAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
+      <location filename="app/editor/editor_view.py" />
       <source>FIND</source>
       <translation>BUSCAR</translation>
     </message>
     <message>
-      <location filename="app/editor/editor_keys_view.py" />
+      <location filename="app/editor/editor_view.py" />
       <source>GO</source>
       <translation>IR</translation>
     </message>
     <message>
-      <location filename="app/editor/editor_keys_view.py" />
+      <location filename="app/editor/editor_view.py" />
       <source>GO TO</source>
       <translation>IR A</translation>
     </message>
     <message>
-      <location filename="app/editor/editor_keys_view.py" />
+      <location filename="app/editor/editor_view.py" />
+      <source>GO TO LINE</source>
+      <translation>IR A LA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
       <source>HISTORY</source>
       <translation>HISTORIA</translation>
     </message>
     <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>HOLD</source>
-      <translation>RETENER</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
+      <location filename="app/editor/editor_view.py" />
       <source>LEAVE</source>
       <translation>SALIR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>NEARER</source>
-      <translation>ACERCAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>NEWER</source>
-      <translation>MÁS NVA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>NEXT</source>
-      <translation>SIGUE</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>NEXT ERR</source>
-      <translation>SIG ERR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>NO SAVE</source>
-      <translation>NO GUARD</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>OLDER</source>
-      <translation>MÁS ANT</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>PARTS</source>
-      <translation>PIEZAS</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>REDO</source>
-      <translation>REHACER</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>REPLACE</source>
-      <translation>CAMBIAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>RESTORE</source>
-      <translation>RESTAURAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>SAVE</source>
-      <translation>GUARDAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>TO LINE</source>
-      <translation>A LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>UNDO</source>
-      <translation>DESHACER</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>UP</source>
-      <translation>ARRIBA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>VIEW</source>
-      <translation>VISTA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>WHOLE</source>
-      <translation>COMPLETA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_keys_view.py" />
-      <source>go to</source>
-      <translation>ir a</translation>
     </message>
     <message>
       <location filename="app/editor/editor_view.py" />
@@ -1325,8 +1385,58 @@
     </message>
     <message>
       <location filename="app/editor/editor_view.py" />
+      <source>NEXT ERR</source>
+      <translation>SIG ERR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
+      <source>NO SAVE</source>
+      <translation>NO GUARD</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
       <source>NOTHING WAS FOUND THAT IS WRONG</source>
       <translation>NO SE HALLÓ NADA MAL</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
+      <source>REDO</source>
+      <translation>REHACER</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
+      <source>REPLACE BY</source>
+      <translation>CAMBIAR POR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
+      <source>RESTORE</source>
+      <translation>RESTAURAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
+      <source>SAVE</source>
+      <translation>GUARDAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
+      <source>SAVE AS</source>
+      <translation>GUARDAR COMO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
+      <source>TO LINE</source>
+      <translation>A LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
+      <source>UNDO</source>
+      <translation>DESHACER</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
+      <source>go to</source>
+      <translation>ir a</translation>
     </message>
     <message>
       <location filename="app/editor/find_replace.py" />
@@ -1384,149 +1494,39 @@
       <translation>FALLÓ LA COMPROBACIÓN: %1</translation>
     </message>
     <message>
-      <location filename="app/editor/messages.py" />
-      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE EDITING</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE EDITAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>A SAMPLE IS NOT CHANGED: UNDER WHAT NAME SHALL IT BE SAVED?</source>
-      <translation>UNA MUESTRA NO SE CAMBIA: ¿CON QUÉ NOMBRE SE GUARDA?</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>AN EMPTY PROGRAM IS NOT SAVED: WRITE SOMETHING, OR LEAVE WITH F10</source>
-      <translation>UN PROGRAMA VACÍO NO SE GUARDA: ESCRIBA ALGO, O SALGA CON F10</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>ARROWS MARK A VERSION, RETURN PUTS IT INTO THE EDITOR; ESC: BACK</source>
-      <translation>LAS FLECHAS MARCAN UNA VERSIÓN, RETURN LA PONE EN EL EDITOR; ESC: REGRESA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>CHOOSE A PROGRAM FIRST (F2), OR TYPE THE NAME OF A NEW ONE THERE</source>
-      <translation>ELIJA PRIMERO UN PROGRAMA (F2), O ESCRIBA AHÍ EL NOMBRE DE UNO NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>F3 SAVES AND PUTS WHAT WAS WRITTEN ON THE DESK; F1 SAVES AND LEAVES THE DESK AS IT IS</source>
-      <translation>F3 GUARDA Y CARGA LO ESCRITO; F1 GUARDA Y DEJA CARGADO LO QUE HAY</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>F6 LEAVES WITHOUT SAVING, F3 SAVES AND LEAVES, ESC GOES ON</source>
-      <translation>F6 SALE SIN GUARDAR, F3 GUARDA Y SALE, ESC SIGUE</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>NOT SAVED YET: F3 SAVES AND LEAVES, F10 LEAVES WITHOUT SAVING</source>
-      <translation>AÚN SIN GUARDAR: F3 GUARDA Y SALE, F10 SALE SIN GUARDAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>PRESS F1 TO CREATE A NEW FILE, ESC TO ABORT</source>
-      <translation>OPRIMA F1 PARA CREAR UN ARCHIVO NUEVO, ESC PARA CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>RETURN: NEXT   SHIFT+RETURN: THE ONE BEFORE   TAB: THE OTHER FIELD   ESC: BACK</source>
-      <translation>RETURN: SIGUIENTE   SHIFT+RETURN: ANTERIOR   TAB: EL OTRO CAMPO   ESC: REGRESA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>SAVED. WHAT RUNS IS THE PROGRAM AS IT WAS LOADED: LOAD IT AGAIN (F2) WHEN THE RUN HAS ENDED</source>
-      <translation>GUARDADO. LO QUE CORRE ES EL PROGRAMA COMO SE CARGÓ: CÁRGUELO DE NUEVO (F2) CUANDO TERMINE</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>THE MACHINE RUNS THE PROGRAM AS IT WAS LOADED, NOT THIS TEXT: ESC FOR FEED HOLD</source>
-      <translation>LA MÁQUINA CORRE EL PROGRAMA COMO SE CARGÓ, NO ESTE TEXTO: ESC PARA RETENCIÓN DE AVANCE</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>THE SPINDLE IS ON: SWITCH IT OFF (M05, OR R FOR RESET) AND LET IT COME TO REST BEFORE EDITING</source>
-      <translation>EL HUSILLO ESTÁ ENCENDIDO: APÁGUELO (M05, O R PARA RESET) Y ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>THE SPINDLE STILL COASTS: WAIT UNTIL IT STANDS BEFORE EDITING</source>
-      <translation>EL HUSILLO AÚN GIRA POR INERCIA: ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>THERE IS NO PATH TO LOOK AT YET: WRITE A MOVE</source>
-      <translation>AÚN NO HAY TRAYECTORIA QUE VER: ESCRIBA UN MOVIMIENTO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>TYPE A LINE NUMBER AND PRESS RETURN; ESC: BACK</source>
-      <translation>ESCRIBA UN NÚMERO DE LÍNEA Y OPRIMA RETURN; ESC: REGRESA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>VERSION {} IS IN THE EDITOR; SAVE TO KEEP IT, UNDO TO TAKE IT BACK</source>
-      <translation>LA VERSIÓN {} ESTÁ EN EL EDITOR; GUARDE PARA CONSERVARLA, DESHAGA PARA QUITARLA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>WHAT WAS TYPED HERE LAST TIME AND NOT SAVED IS IN THE HISTORY</source>
-      <translation>LO QUE SE ESCRIBIÓ AQUÍ LA ÚLTIMA VEZ Y NO SE GUARDÓ ESTÁ EN EL HISTORIAL</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>no history is kept here</source>
-      <translation>aquí no se guarda historial</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>{name} IS SAVED; F2 PUTS IT ON THE DESK</source>
-      <translation>{name} ESTÁ GUARDADO; F2 LO CARGA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>{name} IS SAVED; {other} STAYS ON THE DESK</source>
-      <translation>{name} ESTÁ GUARDADO; {other} SIGUE CARGADO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>{name} WAS ONLY LOOKED AT: {other} STAYS ON THE DESK</source>
-      <translation>{name} SÓLO SE MIRÓ: {other} SIGUE CARGADO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>{} IS THERE ALREADY: TAKE ANOTHER NAME</source>
-      <translation>{} YA EXISTE: USE OTRO NOMBRE</translation>
-    </message>
-    <message>
-      <location filename="app/editor/messages.py" />
-      <source>{} WAS CHANGED BY ANOTHER PROGRAM MEANWHILE: F6 REPLACES IT (IT STAYS IN HISTORY), ESC GOES ON</source>
-      <translation>OTRO PROGRAMA CAMBIÓ {} MIENTRAS TANTO: F6 LO REEMPLAZA (QUEDA EN LA HISTORIA), ESC SIGUE</translation>
-    </message>
-    <message>
       <location filename="app/editor/question_view.py" />
       <source>%1 REPLACED</source>
       <translation>%1 CAMBIADOS</translation>
     </message>
     <message>
       <location filename="app/editor/question_view.py" />
-      <source>A NUMBER FROM 1 TO %1</source>
-      <translation>UN NÚMERO DE 1 A %1</translation>
+      <source>ALL</source>
+      <translation>TODO</translation>
     </message>
     <message>
       <location filename="app/editor/question_view.py" />
-      <source>GO TO LINE</source>
-      <translation>IR A LA LÍNEA</translation>
+      <source>BEFORE</source>
+      <translation>ANTERIOR</translation>
     </message>
     <message>
       <location filename="app/editor/question_view.py" />
-      <source>REPLACE BY</source>
-      <translation>CAMBIAR POR</translation>
+      <source>NEXT</source>
+      <translation>SIGUE</translation>
     </message>
     <message>
       <location filename="app/editor/question_view.py" />
-      <source>SAVE AS</source>
-      <translation>GUARDAR COMO</translation>
+      <source>PARTS</source>
+      <translation>PIEZAS</translation>
+    </message>
+    <message>
+      <location filename="app/editor/question_view.py" />
+      <source>REPLACE</source>
+      <translation>CAMBIAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/question_view.py" />
+      <source>WHOLE</source>
+      <translation>COMPLETA</translation>
     </message>
     <message>
       <location filename="app/editor/text_view.py" />
@@ -1567,6 +1567,26 @@
       <location filename="app/editor/versions_view.py" />
       <source>%1 bytes</source>
       <translation>%1 bytes</translation>
+    </message>
+    <message>
+      <location filename="app/editor/versions_view.py" />
+      <source>DOWN</source>
+      <translation>ABAJO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/versions_view.py" />
+      <source>NEWER</source>
+      <translation>MÁS NVA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/versions_view.py" />
+      <source>OLDER</source>
+      <translation>MÁS ANT</translation>
+    </message>
+    <message>
+      <location filename="app/editor/versions_view.py" />
+      <source>UP</source>
+      <translation>ARRIBA</translation>
     </message>
     <message>
       <location filename="app/jog/held_jog.py" />
@@ -1844,6 +1864,41 @@
       <translation>mm</translation>
     </message>
     <message>
+      <location filename="app/jog/jog_touch_off.py" />
+      <source>, alone</source>
+      <translation>, sola</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_touch_off.py" />
+      <source>TOUCH OFF WITH THE MACHINE AT REST AND READY</source>
+      <translation>TOQUE LA HERRAMIENTA CON LA MÁQUINA EN REPOSO Y LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_touch_off.py" />
+      <source>touched Z</source>
+      <translation>tocada en Z</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_touch_off.py" />
+      <source>touched off, new tool</source>
+      <translation>tocada, herramienta nueva</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_touch_off.py" />
+      <source>touched Ø</source>
+      <translation>tocada en Ø</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_touch_off.py" />
+      <source>{axis} IS NOT HOMED: ITS POSITION MEANS NOTHING YET</source>
+      <translation>{axis} NO TIENE REFERENCIA: SU POSICIÓN AÚN NO VALE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_touch_off.py" />
+      <source>{axis} would be out of range</source>
+      <translation>{axis} quedaría fuera de alcance</translation>
+    </message>
+    <message>
       <location filename="app/jog/jog_view.py" />
       <source>ALONE</source>
       <translation>SOLA</translation>
@@ -1959,41 +2014,6 @@
       <translation>ninguna</translation>
     </message>
     <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>, alone</source>
-      <translation>, sola</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>TOUCH OFF WITH THE MACHINE AT REST AND READY</source>
-      <translation>TOQUE LA HERRAMIENTA CON LA MÁQUINA EN REPOSO Y LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>touched Z</source>
-      <translation>tocada en Z</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>touched off, new tool</source>
-      <translation>tocada, herramienta nueva</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>touched Ø</source>
-      <translation>tocada en Ø</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>{axis} IS NOT HOMED: ITS POSITION MEANS NOTHING YET</source>
-      <translation>{axis} NO TIENE REFERENCIA: SU POSICIÓN AÚN NO VALE</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>{axis} would be out of range</source>
-      <translation>{axis} quedaría fuera de alcance</translation>
-    </message>
-    <message>
       <location filename="app/mdi/mdi_model.py" />
       <source>A LINE IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R</source>
       <translation>HAY UNA LÍNEA EN CURSO: DEJE QUE TERMINE, O PÁRELA Y OPRIMA R</translation>
@@ -2104,59 +2124,9 @@
       <translation>PARO HUS</translation>
     </message>
     <message>
-      <location filename="app/offsets/effect_shown.py" />
-      <source>DRAWING THE PATH BEFORE AND AFTER</source>
-      <translation>DIBUJANDO LA TRAYECTORIA ANTES Y DESPUÉS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/effect_shown.py" />
-      <source>LOAD A PROGRAM FIRST: THE EFFECT IS SHOWN ON ITS PATH</source>
-      <translation>CARGUE PRIMERO UN PROGRAMA: EL EFECTO SE VE SOBRE SU TRAYECTORIA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/effect_shown.py" />
-      <source>NOTHING HAS CHANGED HERE YET: TYPE A VALUE OR CHANGE ONE, THEN PRESS F6</source>
-      <translation>AQUÍ AÚN NO CAMBIÓ NADA: ESCRIBA UN VALOR O CAMBIE UNO, Y OPRIMA F6</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/effect_shown.py" />
-      <source>THE EFFECT CANNOT BE DRAWN: {why}</source>
-      <translation>EL EFECTO NO SE PUEDE DIBUJAR: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/effect_shown.py" />
-      <source>THE PATHS DIFFER IN KIND; F6 SHOWS THE TABLE</source>
-      <translation>LAS TRAYECTORIAS DIFIEREN EN CLASE; F6 MUESTRA LA TABLA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/effect_shown.py" />
-      <source>THIS CHANGE DOES NOTHING TO THE LOADED PROGRAM; F6 SHOWS THE TABLE</source>
-      <translation>ESTE CAMBIO NO HACE NADA EN EL PROGRAMA CARGADO; F6 MUESTRA LA TABLA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/effect_shown.py" />
-      <source>UP TO {far} APART, AT THE CIRCLE; F6 GOES NEAR, Z ZOOMS, ESC SHOWS THE TABLE</source>
-      <translation>HASTA {far} DE DIFERENCIA, EN EL CÍRCULO; F6 SE ACERCA, Z AMPLÍA, ESC MUESTRA LA TABLA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/effect_shown.py" />
-      <source>UP TO {far} APART; Z ZOOMS, F6 SHOWS THE TABLE</source>
-      <translation>HASTA {far} DE DIFERENCIA; Z AMPLÍA, F6 MUESTRA LA TABLA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_book.py" />
-      <source>C: all offsets cleared</source>
-      <translation>C: todas las compensaciones a cero</translation>
-    </message>
-    <message>
       <location filename="app/offsets/offset_book.py" />
       <source>NO OFFSETS ARE KEPT HERE</source>
       <translation>AQUÍ NO SE GUARDAN COMPENSACIONES</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_book.py" />
-      <source>NO ZERO OFFSETS ARE KEPT HERE</source>
-      <translation>AQUÍ NO SE GUARDAN CEROS DE PIEZA</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_book.py" />
@@ -2169,34 +2139,64 @@
       <translation>EL CAMBIO ANTERIOR TODAVÍA SE ESTÁ GUARDANDO: OPRIMA RETURN OTRA VEZ</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_changes.py" />
+      <location filename="app/offsets/offset_effect.py" />
+      <source>DRAWING THE PATH BEFORE AND AFTER</source>
+      <translation>DIBUJANDO LA TRAYECTORIA ANTES Y DESPUÉS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>LOAD A PROGRAM FIRST: THE EFFECT IS SHOWN ON ITS PATH</source>
+      <translation>CARGUE PRIMERO UN PROGRAMA: EL EFECTO SE VE SOBRE SU TRAYECTORIA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>NOTHING HAS CHANGED HERE YET: TYPE A VALUE OR CHANGE ONE, THEN PRESS F6</source>
+      <translation>AQUÍ AÚN NO CAMBIÓ NADA: ESCRIBA UN VALOR O CAMBIE UNO, Y OPRIMA F6</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>THE EFFECT CANNOT BE DRAWN: {why}</source>
+      <translation>EL EFECTO NO SE PUEDE DIBUJAR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>THE PATHS DIFFER IN KIND; F6 SHOWS THE TABLE</source>
+      <translation>LAS TRAYECTORIAS DIFIEREN EN CLASE; F6 MUESTRA LA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>THIS CHANGE DOES NOTHING TO THE LOADED PROGRAM; F6 SHOWS THE TABLE</source>
+      <translation>ESTE CAMBIO NO HACE NADA EN EL PROGRAMA CARGADO; F6 MUESTRA LA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>UP TO {far} APART, AT THE CIRCLE; F6 GOES NEAR, Z ZOOMS, ESC SHOWS THE TABLE</source>
+      <translation>HASTA {far} DE DIFERENCIA, EN EL CÍRCULO; F6 SE ACERCA, Z AMPLÍA, ESC MUESTRA LA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>UP TO {far} APART; Z ZOOMS, F6 SHOWS THE TABLE</source>
+      <translation>HASTA {far} DE DIFERENCIA; Z AMPLÍA, F6 MUESTRA LA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_history.py" />
       <source>; IT COUNTS FROM THE NEXT CYCLE START</source>
       <translation>; CUENTA DESDE EL PRÓXIMO INICIO DE CICLO</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_changes.py" />
+      <location filename="app/offsets/offset_history.py" />
       <source>; IT COUNTS FROM THE NEXT PART</source>
       <translation>; CUENTA DESDE LA PRÓXIMA PIEZA</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_changes.py" />
+      <location filename="app/offsets/offset_history.py" />
       <source>A PROGRAM IS UNDER WAY: ONLY WEAR AND F9 CORRECTIONS MAY CHANGE</source>
       <translation>HAY UN PROGRAMA EN MARCHA: SÓLO EL DESGASTE Y LAS CORRECCIONES DE F9 PUEDEN CAMBIAR</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_changes.py" />
+      <location filename="app/offsets/offset_history.py" />
       <source>PARTS RUN: A CORRECTION COUNTS FROM THE NEXT PART, ONCE IT IS PROVED</source>
       <translation>HAY PIEZAS EN MARCHA: UNA CORRECCIÓN CUENTA DESDE LA PRÓXIMA PIEZA, UNA VEZ COMPROBADA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_changes.py" />
-      <source>THE PART UNDER WAY KEEPS ITS OFFSETS: A CORRECTION COUNTS FROM THE NEXT CYCLE START</source>
-      <translation>LA PIEZA EN MARCHA CONSERVA SUS COMPENSACIONES: UNA CORRECCIÓN CUENTA DESDE EL PRÓXIMO ARRANQUE DE CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_changes.py" />
-      <source>THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST</source>
-      <translation>LOS CARROS SE MUEVEN: LAS COMPENSACIONES CAMBIAN EN REPOSO</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
@@ -2205,13 +2205,13 @@
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
-      <source>no</source>
-      <translation>no</translation>
+      <source>THE PART UNDER WAY KEEPS ITS OFFSETS: A CORRECTION COUNTS FROM THE NEXT CYCLE START</source>
+      <translation>LA PIEZA EN MARCHA CONSERVA SUS COMPENSACIONES: UNA CORRECCIÓN CUENTA DESDE EL PRÓXIMO ARRANQUE DE CICLO</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
-      <source>yes</source>
-      <translation>sí</translation>
+      <source>THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST</source>
+      <translation>LOS CARROS SE MUEVEN: LAS COMPENSACIONES CAMBIAN EN REPOSO</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
@@ -2234,14 +2234,9 @@
       <translation>{names} RETIRADAS</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_history_view.py" />
-      <source>HISTORY  ·  NEWEST ON TOP</source>
-      <translation>HISTORIA  ·  LO NUEVO ARRIBA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history_view.py" />
-      <source>No offset was changed yet.</source>
-      <translation>Todavía no se cambia ninguna compensación.</translation>
+      <location filename="app/offsets/offset_table.py" />
+      <source>F5 OR ESC LEAVES THE HISTORY; PAGE UP AND PAGE DOWN LOOK ON</source>
+      <translation>F5 O ESC DEJA LA HISTORIA; RE PÁG Y AV PÁG SIGUEN VIENDO</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
@@ -2290,13 +2285,18 @@
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
-      <source>degrees</source>
-      <translation>grados</translation>
+      <source>no</source>
+      <translation>no</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
       <source>not set</source>
       <translation>sin poner</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>yes</source>
+      <translation>sí</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
@@ -2314,49 +2314,14 @@
       <translation>{field} quedaría en {value} {unit}; puede ser {low}…{high}</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>{name} would become {value} {unit}; it may be {low}…{high}</source>
-      <translation>{name} quedaría en {value} {unit}; puede ser {low}…{high}</translation>
+      <location filename="app/offsets/offsets_view.py" />
+      <source>HISTORY  ·  NEWEST ON TOP</source>
+      <translation>HISTORIA  ·  LO NUEVO ARRIBA</translation>
     </message>
     <message>
-      <location filename="app/offsets/secondary_dialogue.py" />
-      <source>D{number:g} does not exist; offsets are D1…32</source>
-      <translation>D{number:g} no existe; las compensaciones son D1…32</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_dialogue.py" />
-      <source>D{number} IS AS IT WAS</source>
-      <translation>D{number} QUEDA COMO ESTABA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_dialogue.py" />
-      <source>FINISH D{number} FIRST, OR PRESS ESC</source>
-      <translation>TERMINE PRIMERO D{number}, U OPRIMA ESC</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_dialogue.py" />
-      <source>Offset Number?</source>
-      <translation>¿Número de compensación?</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_dialogue.py" />
-      <source>R?</source>
-      <translation>¿R?</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_dialogue.py" />
-      <source>THE CONTROL HAS CHANGED ITS UNIT: NOTHING WAS CHANGED, ENTER IT AGAIN</source>
-      <translation>EL CONTROL HA CAMBIADO SU UNIDAD: NO SE CAMBIÓ NADA, INTRODÚZCALO OTRA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_dialogue.py" />
-      <source>X DIAMETER CORRECTION?</source>
-      <translation>¿CORRECCIÓN EN DIÁMETRO X?</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_dialogue.py" />
-      <source>Z CORRECTION?</source>
-      <translation>¿CORRECCIÓN Z?</translation>
+      <location filename="app/offsets/offsets_view.py" />
+      <source>No offset was changed yet.</source>
+      <translation>Todavía no se cambia ninguna compensación.</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
@@ -2365,13 +2330,33 @@
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
+      <source>C: all offsets cleared</source>
+      <translation>C: todas las compensaciones a cero</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
+      <source>D{number:g} does not exist; offsets are D1…32</source>
+      <translation>D{number:g} no existe; las compensaciones son D1…32</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
+      <source>D{number} IS AS IT WAS</source>
+      <translation>D{number} QUEDA COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
       <source>EVERY VALUE TAKES ARITHMETIC, SUCH AS .5-.002; RETURN ALONE KEEPS THE VALUE</source>
       <translation>TODO VALOR ACEPTA OPERACIONES, COMO .5-.002; RETURN SOLO CONSERVA EL VALOR</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
-      <source>F5 OR ESC LEAVES THE HISTORY; PAGE UP AND PAGE DOWN LOOK ON</source>
-      <translation>F5 O ESC DEJA LA HISTORIA; RE PÁG Y AV PÁG SIGUEN VIENDO</translation>
+      <source>FINISH D{number} FIRST, OR PRESS ESC</source>
+      <translation>TERMINE PRIMERO D{number}, U OPRIMA ESC</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
+      <source>Offset Number?</source>
+      <translation>¿Número de compensación?</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
@@ -2387,6 +2372,31 @@
       <location filename="app/offsets/secondary_offsets.py" />
       <source>Press Esc to exit offset adjustment screen</source>
       <translation>Oprima Esc para salir del ajuste de compensaciones</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
+      <source>R?</source>
+      <translation>¿R?</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
+      <source>Secondary offset number:</source>
+      <translation>Número de compensación secundaria:</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
+      <source>THE CONTROL HAS CHANGED ITS UNIT: NOTHING WAS CHANGED, ENTER IT AGAIN</source>
+      <translation>EL CONTROL HA CAMBIADO SU UNIDAD: NO SE CAMBIÓ NADA, INTRODÚZCALO OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
+      <source>X DIAMETER CORRECTION?</source>
+      <translation>¿CORRECCIÓN EN DIÁMETRO X?</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
+      <source>Z CORRECTION?</source>
+      <translation>¿CORRECCIÓN Z?</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets_view.py" />
@@ -2405,38 +2415,8 @@
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets_view.py" />
-      <source>Secondary offset number:</source>
-      <translation>Número de compensación secundaria:</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_offsets_view.py" />
       <source>ZERO</source>
       <translation>CEROS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_cells.py" />
-      <source>NOW {axis}: T{number} IS SET WHEN BOTH ARE THERE</source>
-      <translation>AHORA {axis}: T{number} QUEDA PUESTA CUANDO ESTÉN LAS DOS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_cells.py" />
-      <source>T{number} WAS NEVER SET: TYPE X AND Z FIRST, OR TOUCH IT OFF ON THE JOG PAGE</source>
-      <translation>T{number} NUNCA SE PUSO: ESCRIBA PRIMERO X Y Z, O TÓQUELA EN LA PÁGINA MANUAL</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_cells.py" />
-      <source>chosen as master</source>
-      <translation>elegida como maestra</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_cells.py" />
-      <source>entered by hand</source>
-      <translation>escrito a mano</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_cells.py" />
-      <source>no master</source>
-      <translation>sin maestra</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
@@ -2445,8 +2425,18 @@
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
+      <source>F2 adds what is typed; F3 shows X and Z from the master; Esc leaves</source>
+      <translation>F2 suma lo escrito; F3 muestra X y Z desde la maestra; Esc sale</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets.py" />
       <source>NO TOOL IS THE MASTER: CHOOSE ONE IN ITS COLUMN WITH RETURN</source>
       <translation>NINGUNA HERRAMIENTA ES LA MAESTRA: ELIJA UNA EN SU COLUMNA CON RETURN</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets.py" />
+      <source>NOW {axis}: T{number} IS SET WHEN BOTH ARE THERE</source>
+      <translation>AHORA {axis}: T{number} QUEDA PUESTA CUANDO ESTÉN LAS DOS</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
@@ -2475,18 +2465,33 @@
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
+      <source>T{number} WAS NEVER SET: TYPE X AND Z FIRST, OR TOUCH IT OFF ON THE JOG PAGE</source>
+      <translation>T{number} NUNCA SE PUSO: ESCRIBA PRIMERO X Y Z, O TÓQUELA EN LA PÁGINA MANUAL</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets.py" />
       <source>X AND Z ARE SHOWN FROM THE MASTER: PRESS F3, THEN TYPE THEM FROM HOME</source>
       <translation>X Y Z SE MUESTRAN DESDE LA MAESTRA: OPRIMA F3, Y ESCRÍBALAS DESDE LA REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets.py" />
+      <source>chosen as master</source>
+      <translation>elegida como maestra</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets.py" />
+      <source>entered by hand</source>
+      <translation>escrito a mano</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets.py" />
+      <source>no master</source>
+      <translation>sin maestra</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
       <source>ADD</source>
       <translation>SUMAR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets_view.py" />
-      <source>F2 adds what is typed; F3 shows X and Z from the master; Esc leaves</source>
-      <translation>F2 suma lo escrito; F3 muestra X y Z desde la maestra; Esc sale</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
@@ -2512,6 +2517,11 @@
       <location filename="app/offsets/zero_offsets.py" />
       <source>C: all cleared</source>
       <translation>C: todo borrado</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>F2: where the machine stands reads what is typed        C: clear G54 to G59        Esc: exit</source>
+      <translation>F2: donde está la máquina lee lo que se escribe        C: borra G54 a G59        Esc: sale</translation>
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
@@ -2545,6 +2555,11 @@
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
+      <source>degrees</source>
+      <translation>grados</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
       <source>reads {value}</source>
       <translation>lee {value}</translation>
     </message>
@@ -2552,11 +2567,6 @@
       <location filename="app/offsets/zero_offsets.py" />
       <source>{axis} DOES NOT KNOW ITS POSITION: HOME IT FIRST</source>
       <translation>{axis} NO CONOCE SU POSICIÓN: REFERÉNCIELO PRIMERO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets_view.py" />
-      <source>F2: where the machine stands reads what is typed        C: clear G54 to G59        Esc: exit</source>
-      <translation>F2: donde está la máquina lee lo que se escribe        C: borra G54 a G59        Esc: sale</translation>
     </message>
     <message>
       <location filename="app/offsets/zero_offsets_view.py" />
@@ -2630,11 +2640,6 @@
     </message>
     <message>
       <location filename="app/path/path_marks_view.py" />
-      <source>MEAS</source>
-      <translation>MEDIR</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_marks_view.py" />
       <source>NOTHING THAT IS CUT HAS CHANGED</source>
       <translation>NO CAMBIÓ NADA DE LO QUE SE CORTA</translation>
     </message>
@@ -2642,11 +2647,6 @@
       <location filename="app/path/path_marks_view.py" />
       <source>SIDE  ·  UNROLLED AT Ø {diameter}</source>
       <translation>LADO  ·  DESARROLLADO EN Ø {diameter}</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_marks_view.py" />
-      <source>The path is shown when a program is loaded.</source>
-      <translation>La trayectoria se muestra cuando hay un programa cargado.</translation>
     </message>
     <message>
       <location filename="app/path/path_marks_view.py" />
@@ -2672,6 +2672,46 @@
       <location filename="app/path/path_marks_view.py" />
       <source>to come</source>
       <translation>por hacer</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_view.py" />
+      <source>MEAS</source>
+      <translation>MEDIR</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_view.py" />
+      <source>The path is shown when a program is loaded.</source>
+      <translation>La trayectoria se muestra cuando hay un programa cargado.</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>%1 CANNOT BE DELETED: %2</source>
+      <translation>NO SE PUEDE BORRAR %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>%1 CANNOT BE RENAMED: %2</source>
+      <translation>NO SE PUEDE CAMBIAR EL NOMBRE DE %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>%1 IS ITS NAME ALREADY</source>
+      <translation>%1 YA ES SU NOMBRE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>%1 IS NOT THERE ANY MORE</source>
+      <translation>%1 YA NO ESTÁ</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>%1 IS THERE ALREADY; TAKE ANOTHER NAME</source>
+      <translation>%1 YA EXISTE; USE OTRO NOMBRE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>%1 WOULD BE HIDDEN; TAKE A NAME WITHOUT A POINT IN FRONT</source>
+      <translation>%1 QUEDARÍA OCULTO; USE UN NOMBRE SIN PUNTO AL PRINCIPIO</translation>
     </message>
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
@@ -2700,8 +2740,23 @@
     </message>
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
+      <source>NOT DELETED, BECAUSE ITS TEXT CANNOT BE KEPT: %1</source>
+      <translation>NO SE BORRÓ, PORQUE SU TEXTO NO SE PUEDE GUARDAR: %1</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>NOTHING IS ENTERED; TYPE A NAME</source>
+      <translation>NO SE ESCRIBIÓ NADA; ESCRIBA UN NOMBRE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
       <source>PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT</source>
       <translation>OPRIMA Y PARA BORRAR {name} (SUS VERSIONES SE GUARDAN), ESC PARA DEJARLO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
+      <source>RENAMED, BUT ITS VERSIONS STAY UNDER %1: %2</source>
+      <translation>CAMBIÓ DE NOMBRE, PERO SUS VERSIONES QUEDAN EN %1: %2</translation>
     </message>
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
@@ -2729,51 +2784,6 @@
       <translation>{name} ESTÁ EN CURSO: DEJE QUE TERMINE</translation>
     </message>
     <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>%1 CANNOT BE DELETED: %2</source>
-      <translation>NO SE PUEDE BORRAR %1: %2</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>%1 CANNOT BE RENAMED: %2</source>
-      <translation>NO SE PUEDE CAMBIAR EL NOMBRE DE %1: %2</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>%1 IS ITS NAME ALREADY</source>
-      <translation>%1 YA ES SU NOMBRE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>%1 IS NOT THERE ANY MORE</source>
-      <translation>%1 YA NO ESTÁ</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>%1 IS THERE ALREADY; TAKE ANOTHER NAME</source>
-      <translation>%1 YA EXISTE; USE OTRO NOMBRE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>%1 WOULD BE HIDDEN; TAKE A NAME WITHOUT A POINT IN FRONT</source>
-      <translation>%1 QUEDARÍA OCULTO; USE UN NOMBRE SIN PUNTO AL PRINCIPIO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>NOT DELETED, BECAUSE ITS TEXT CANNOT BE KEPT: %1</source>
-      <translation>NO SE BORRÓ, PORQUE SU TEXTO NO SE PUEDE GUARDAR: %1</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>NOTHING IS ENTERED; TYPE A NAME</source>
-      <translation>NO SE ESCRIBIÓ NADA; ESCRIBA UN NOMBRE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/file_changes.py" />
-      <source>RENAMED, BUT ITS VERSIONS STAY UNDER %1: %2</source>
-      <translation>CAMBIÓ DE NOMBRE, PERO SUS VERSIONES QUEDAN EN %1: %2</translation>
-    </message>
-    <message>
       <location filename="app/programs/file_prompt_view.py" />
       <source>%1 programs</source>
       <translation>%1 programas</translation>
@@ -2790,23 +2800,33 @@
     </message>
     <message>
       <location filename="app/programs/folder_chooser.py" />
+      <source>FOLDER</source>
+      <translation>CARPETA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/folder_chooser.py" />
+      <source>NAME</source>
+      <translation>NOMBRE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/folder_chooser.py" />
+      <source>PLACES</source>
+      <translation>LUGARES</translation>
+    </message>
+    <message>
+      <location filename="app/programs/folder_chooser.py" />
+      <source>PROGRAM</source>
+      <translation>PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/folder_chooser.py" />
+      <source>SIZE</source>
+      <translation>TAMAÑO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/folder_chooser.py" />
       <source>THIS CONTROL</source>
       <translation>ESTE CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>%1 CANNOT BE BROUGHT TO THE DISK: %2</source>
-      <translation>%1 NO SE PUEDE LLEVAR AL DISCO: %2</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>%1 CANNOT BE WRITTEN: %2</source>
-      <translation>NO SE PUEDE ESCRIBIR %1: %2</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
-      <source>%1 DOES NOT READ BACK AS IT WAS WRITTEN: TAKE ANOTHER STICK</source>
-      <translation>%1 NO SE LEE COMO SE ESCRIBIÓ: USE OTRA MEMORIA</translation>
     </message>
     <message>
       <location filename="app/programs/import_export.py" />
@@ -2910,6 +2930,26 @@
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
+      <source>%1 OF %2 PROGRAMS</source>
+      <translation>%1 DE %2 PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>%1 PROGRAMS</source>
+      <translation>%1 PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>BEST</source>
+      <translation>MEJOR</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>BEST CYCLE</source>
+      <translation>MEJOR CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
       <source>COPY</source>
       <translation>COPIAR</translation>
     </message>
@@ -2925,8 +2965,43 @@
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
-      <source>NAME</source>
-      <translation>NOMBRE</translation>
+      <source>LAST CYCLE</source>
+      <translation>ÚLTIMO CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>LAST PROOF</source>
+      <translation>ÚLTIMA PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>LAST RUN</source>
+      <translation>ÚLTIMA CORRIDA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>NEVER PROVED</source>
+      <translation>NUNCA COMPROBADO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>OWN PROGRAM</source>
+      <translation>PROGRAMA PROPIO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>PLANNED</source>
+      <translation>PREVISTO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>PROGRAMS  ·  %1  ·  BY %2</source>
+      <translation>PROGRAMAS  ·  %1  ·  POR %2</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>PROVED</source>
+      <translation>COMPROBADO</translation>
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
@@ -2954,99 +3029,14 @@
       <translation>ESCRIBA PARTE DEL NOMBRE, O MÁRQUELO CON FLECHAS; RETURN LO CARGA; ESC A AUTOMÁTICO</translation>
     </message>
     <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>%1 GB</source>
-      <translation>%1 GB</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>%1 OF %2 PROGRAMS</source>
-      <translation>%1 DE %2 PROGRAMAS</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>%1 PROGRAMS</source>
-      <translation>%1 PROGRAMAS</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>BEST</source>
-      <translation>MEJOR</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>BEST CYCLE</source>
-      <translation>MEJOR CICLO</translation>
+      <location filename="app/programs/program_list.py" />
+      <source>WHERE</source>
+      <translation>DÓNDE</translation>
     </message>
     <message>
       <location filename="app/programs/program_rows.py" />
       <source>DATE</source>
       <translation>FECHA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>FOLDER</source>
-      <translation>CARPETA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>LAST CYCLE</source>
-      <translation>ÚLTIMO CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>LAST PROOF</source>
-      <translation>ÚLTIMA PRUEBA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>LAST RUN</source>
-      <translation>ÚLTIMA CORRIDA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>NEVER PROVED</source>
-      <translation>NUNCA COMPROBADO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>OWN PROGRAM</source>
-      <translation>PROGRAMA PROPIO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>PLACES</source>
-      <translation>LUGARES</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>PLANNED</source>
-      <translation>PREVISTO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>PROGRAM</source>
-      <translation>PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>PROGRAMS  ·  %1  ·  BY %2</source>
-      <translation>PROGRAMAS  ·  %1  ·  POR %2</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>PROVED</source>
-      <translation>COMPROBADO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>SIZE</source>
-      <translation>TAMAÑO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_rows.py" />
-      <source>WHERE</source>
-      <translation>DÓNDE</translation>
     </message>
     <message>
       <location filename="app/programs/programs_view.py" />
@@ -3102,6 +3092,21 @@
       <location filename="app/programs/run_record.py" />
       <source>NOT COUNTED</source>
       <translation>NO CONTADO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/whole_file.py" />
+      <source>%1 CANNOT BE BROUGHT TO THE DISK: %2</source>
+      <translation>%1 NO SE PUEDE LLEVAR AL DISCO: %2</translation>
+    </message>
+    <message>
+      <location filename="app/programs/whole_file.py" />
+      <source>%1 CANNOT BE WRITTEN: %2</source>
+      <translation>NO SE PUEDE ESCRIBIR %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/programs/whole_file.py" />
+      <source>%1 DOES NOT READ BACK AS IT WAS WRITTEN: TAKE ANOTHER STICK</source>
+      <translation>%1 NO SE LEE COMO SE ESCRIBIÓ: USE OTRA MEMORIA</translation>
     </message>
     <message>
       <location filename="app/programs/whole_file.py" />
@@ -4344,14 +4349,14 @@
       <translation>unidades, idioma, colores, estación</translation>
     </message>
     <message>
-      <location filename="app/special/section.py" />
-      <source>ESC GOES BACK TO THE LIST</source>
-      <translation>ESC REGRESA A LA LISTA</translation>
-    </message>
-    <message>
       <location filename="app/special/special_functions.py" />
       <source>ARROWS OR A FIGURE CHOOSE A FUNCTION, RETURN OPENS IT; ESC FOR AUTOMATIC</source>
       <translation>FLECHAS O UNA CIFRA ELIGEN UNA FUNCIÓN, RETURN LA ABRE; ESC A AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/special/special_functions.py" />
+      <source>ESC GOES BACK TO THE LIST</source>
+      <translation>ESC REGRESA A LA LISTA</translation>
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
@@ -4434,7 +4439,7 @@
       <translation>un tope hasta reiniciar</translation>
     </message>
     <message>
-      <location filename="app/transfer/received_program.py" />
+      <location filename="app/transfer/serial_line.py" />
       <source>RECEIVED</source>
       <translation>RECIBIDO</translation>
     </message>
@@ -6380,11 +6385,6 @@
     </message>
     <message>
       <location filename="core/executor/cycle.py" />
-      <source>SPINDLE NOT AT ITS SPEED</source>
-      <translation>EL HUSILLO NO ESTÁ A SU VELOCIDAD</translation>
-    </message>
-    <message>
-      <location filename="core/executor/cycle.py" />
       <source>THE CONTROLLER HOLDS</source>
       <translation>EL CONTROLADOR RETIENE</translation>
     </message>
@@ -6412,6 +6412,11 @@
       <location filename="core/executor/executor.py" />
       <source>the control was away for %1 s</source>
       <translation>el control estuvo ausente %1 s</translation>
+    </message>
+    <message>
+      <location filename="core/executor/feed_hold.py" />
+      <source>SPINDLE NOT AT ITS SPEED</source>
+      <translation>EL HUSILLO NO ESTÁ A SU VELOCIDAD</translation>
     </message>
     <message>
       <location filename="core/executor/following_error.py" />
@@ -6690,18 +6695,13 @@
     </message>
     <message>
       <location filename="core/executor/machine_control.py" />
+      <source>that was meant just now: let both palms go, read the prompt, press them again</source>
+      <translation>eso se ha contestado ahora mismo: suelte los dos pulsadores, lea el aviso y vuelva a pulsarlos</translation>
+    </message>
+    <message>
+      <location filename="core/executor/machine_control.py" />
       <source>while giving the program up: %1</source>
       <translation>al abandonar el programa: %1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/station_signals.py" />
-      <source>OPERATOR STATION SILENT</source>
-      <translation>LA ESTACIÓN DEL OPERADOR NO RESPONDE</translation>
-    </message>
-    <message>
-      <location filename="core/executor/station_signals.py" />
-      <source>OVERRIDE POT JUMPS</source>
-      <translation>LA PERILLA SALTA</translation>
     </message>
     <message>
       <location filename="core/executor/parts_made.py" />
@@ -7054,6 +7054,16 @@
       <translation>la compensación de herramienta %1 nunca se puso</translation>
     </message>
     <message>
+      <location filename="core/executor/station_signals.py" />
+      <source>OPERATOR STATION SILENT</source>
+      <translation>LA ESTACIÓN DEL OPERADOR NO RESPONDE</translation>
+    </message>
+    <message>
+      <location filename="core/executor/station_signals.py" />
+      <source>OVERRIDE POT JUMPS</source>
+      <translation>LA PERILLA SALTA</translation>
+    </message>
+    <message>
       <location filename="core/executor/supervision.py" />
       <source>%1 BY ITSELF</source>
       <translation>%1 POR SÍ SOLO</translation>
@@ -7219,11 +7229,6 @@
       <translation>los tres puntos están en una línea</translation>
     </message>
     <message>
-      <location filename="core/interpreter/diagnostic_log.py" />
-      <source>The program makes more than %1 blocks or %2 executed lines.</source>
-      <translation>El programa hace más de %1 bloques o %2 líneas ejecutadas.</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/dialects.py" />
       <source>A %1 program begins with its first block.</source>
       <translation>Un programa %1 empieza por su primer bloque.</translation>
@@ -7257,6 +7262,11 @@
       <location filename="core/interpreter/dialects.py" />
       <source>Start it from the beginning.</source>
       <translation>Empiécelo desde el principio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/interpretation.py" />
+      <source>The program makes more than %1 blocks or %2 executed lines.</source>
+      <translation>El programa hace más de %1 bloques o %2 líneas ejecutadas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_interpreter.py" />
@@ -12120,8 +12130,18 @@
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
+      <source>G%1 does not exist; settable offsets are G54…G59</source>
+      <translation>G%1 no existe; los ceros ajustables son G54…G59</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
       <source>T%1 was never set, so nothing can be relative to it; touch it off first</source>
       <translation>T%1 nunca se puso, nada puede ser relativo a ella; tóquela primero</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>there is no change of G54…G59 to undo</source>
+      <translation>no hay cambio de G54…G59 que deshacer</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
@@ -12252,21 +12272,6 @@
       <location filename="core/store/touch_off.py" />
       <source>T%1 was never set; touch both X and Z</source>
       <translation>T%1 nunca se puso; toque X y Z</translation>
-    </message>
-    <message>
-      <location filename="core/store/zero_offset_table.py" />
-      <source>G%1 %2 %3 is out of range; enter -%4…%5 %6</source>
-      <translation>G%1 %2 %3 está fuera de alcance; escriba -%4…%5 %6</translation>
-    </message>
-    <message>
-      <location filename="core/store/zero_offset_table.py" />
-      <source>G%1 does not exist; settable offsets are G54…G59</source>
-      <translation>G%1 no existe; los ceros ajustables son G54…G59</translation>
-    </message>
-    <message>
-      <location filename="core/store/zero_offset_table.py" />
-      <source>there is no change of G54…G59 to undo</source>
-      <translation>no hay cambio de G54…G59 que deshacer</translation>
     </message>
   </context>
 </TS>

@@ -297,3 +297,27 @@ def test_a_thread_on_a_spindle_without_an_encoder(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(rig.sim.ports.spindle, "angle", lambda: None)
     rig.post(LoadJob(job, Proof(job.digest, (), tools=(1,), needs=(Need(THREAD, 5),))))
     assert refused(rig) == "line 5: a thread needs an encoder on the spindle, and there is none"
+
+
+def slapped(rig: Rig, seconds: float) -> None:
+    """Both palms come down so long after what the hands have just done."""
+    rig.run(seconds)
+    rig.sim.machine.press_start()
+    rig.run(0.1)
+
+
+@pytest.mark.parametrize(("seconds", "starts"), [(0.0, False), (0.3, False), (0.7, False), (0.9, True)])
+def test_an_answer_and_palms_in_one_slap_start_nothing(seconds: float, starts: bool) -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nM03S900\nG01X.5Z.5F5\nM30\n")
+    rig.run(3.0)
+    rig.sim.machine.press_estop()
+    rig.run(0.1)
+    rig.sim.machine.release_estop()
+    rig.run(0.1)
+    rig.ready()
+    rig.run(2.0)
+    rig.confirm()
+    slapped(rig, seconds)
+    assert (rig.state is not State.IDLE) is starts
+    assert bool(rig.shot.start_refused) is not starts

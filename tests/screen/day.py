@@ -98,6 +98,7 @@ class Day:
 
     def palms(self) -> None:
         """Both palm buttons and hands off; their relay wants them up for a while before it works again."""
+        self.run(0.9)  # what is started was read
         for press, pause in ((QTest.keyPress, 0.1), (QTest.keyRelease, 0.4)):
             for key in (Key.Key_F11, Key.Key_F12):
                 press(QApplication.focusWidget() or self.window, key)

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -18,6 +19,8 @@ from tests.stories.patience import PATIENCE, throughout, until
 from tests.stories.x11 import MODIFIERS, Server
 
 INCH = 25.4  # mm
+READS = 1.2  # s of looking at the prompt before the palms
+MEANS = {"y", "F10"}
 _TRIES = 20  # of a hand that the screen has forgotten behind a stall
 NEAR = 0.01  # mm: what a slide at rest may tremble
 Told = dict[str, Any]
@@ -32,6 +35,7 @@ class Operator:
 
     def __init__(self, server: Server, home: Path, *arguments: str) -> None:
         self.server, self.home = server, home
+        self._meant = 0.0  # when a key was pressed that answers
         self.once = False  # keys are pressed once, whatever the screen says of them
         self.seen: list[Told] = []  # every change of the machine since the start
         self._answers: dict[int, Any] = {}
@@ -210,6 +214,8 @@ class Operator:
 
         Where the screen says that it stood still and has forgotten it, it is pressed again, as anybody would.
         """
+        if key in MEANS:
+            self._meant = time.monotonic()
         held = [MODIFIERS[each] for each in modifiers]
         before = self._forgotten()
         while True:
@@ -357,8 +363,11 @@ class Operator:
         self.reaches("READY")
 
     def cycle_start(self) -> None:
-        """Both palms at once, and hands off; they are held as long as a relay wants it."""
-        self.during(0.1)
+        """Both palms at once, and hands off; they are held as long as a relay wants it.
+
+        Who has just meant something looks before he starts it.
+        """
+        self.during(max(0.1, self._meant + READS - time.monotonic()))
         self.down("F11", "F12")
         self.during(0.15)
         self.up("F11", "F12")

@@ -9,6 +9,7 @@ import pytest
 
 from tests.stories.conftest import Story
 from tests.stories.operator import Operator
+from tests.stories.x11 import another_client
 
 PART = "G90G94F300G72\nT3\nX1.2Z.2\nM03S900\nX.8\nG95F.005Z-.2\nZ-1.4\nX1.2\nG94F300Z.2\nM05\nX2Z2\nM30\n"
 TOOLS = {3: (-0.5, -2.0)}
@@ -133,6 +134,7 @@ def test_the_part_is_finished_by_searchto_and_the_row_goes(story: Story) -> None
     operator.sees("F10 CONFIRMS")
     operator.key("F10")
     operator.sees("TO START THE RESTART")
+    operator.during(1.0)  # what starts was read
     operator.cycle_start()
     operator.until(lambda: operator.machine["parts"] == 1, "the part")
     operator.reaches("READY")
@@ -141,6 +143,50 @@ def test_the_part_is_finished_by_searchto_and_the_row_goes(story: Story) -> None
     with operator.store() as store:
         assert store.setting("under_way") is None
         assert store.parts("part.nc") == 1
+
+
+@pytest.mark.parametrize("keys", [("y", "F11", "F12"), ("F11", "y", "F12")], ids=" ".join)
+def test_an_answer_and_the_palms_in_one_slap_begin_nothing(story: Story, keys: tuple[str, ...]) -> None:
+    operator = story.begins(PART, tools=TOOLS)
+    in_the_cut(operator)
+    operator.key("e")
+    operator.reaches("E-STOP")
+    operator.key("u")
+    answers_yes(operator, "PRESS Y TO TWIST THE E-STOP OUT")
+    operator.drives_on()
+    operator.sees("INTERRUPTED: part.nc LINE 7")
+    operator.during(1.0)
+    stood = operator.rests()
+    operator.once = True
+    operator.down(*keys)
+    operator.keeps(lambda: operator.is_at(stood) and operator.state == "READY", 1.5, "nothing begins")
+    operator.up(*keys)
+    operator.keeps(lambda: operator.is_at(stood) and operator.state == "READY", 0.5, "nothing begins")
+
+
+def test_under_an_estop_the_prompt_of_a_field_names_keys_that_work_there(story: Story) -> None:
+    operator = story.begins(PART, tools=TOOLS)
+    operator.drives_on()
+    operator.keys("F1", "F4")
+    operator.opens("MDI")
+    operator.key("Scroll_Lock")
+    operator.reaches("E-STOP")
+    operator.sees("U WRITES HERE; F1 LEAVES THE PAGE")
+    operator.key("F1")
+    operator.sees("RELEASE THE BUTTON (U), THEN PRESS D")
+    operator.key("u")
+    answers_yes(operator, "PRESS Y TO TWIST THE E-STOP OUT")
+    operator.reaches("DRIVES OFF")
+
+
+def test_while_another_window_has_the_keyboard_the_prompt_promises_no_key(story: Story) -> None:
+    operator = story.begins(PART, tools=TOOLS)
+    in_the_cut(operator)
+    operator.sees("PAUSE HOLDS THE FEED")
+    with another_client(operator.server, "window"):
+        operator.until(lambda: "ANOTHER WINDOW HAS THE KEYBOARD" in operator.prompt, "the truth")
+    operator.comes_back()
+    operator.until(lambda: "PAUSE HOLDS THE FEED" in operator.prompt or operator.state != "RUNNING", "back")
 
 
 def test_another_program_takes_its_place_only_when_that_is_meant(story: Story) -> None:
@@ -155,6 +201,11 @@ def test_another_program_takes_its_place_only_when_that_is_meant(story: Story) -
     operator.sees("Y GIVES THAT JOB UP FOR other.nc")
     operator.key("Escape")
     operator.keeps(lambda: operator.shows("INTERRUPTED: part.nc LINE 7"), 0.5, "the job")
+    operator.keys("F1", "F6")
+    operator.opens("PROGRAMS")
+    operator.enters("other")
+    operator.sees("Y GIVES THAT JOB UP FOR other.nc")  # from the list too
+    operator.key("Escape")
     operator.key("F2")
     operator.enters("other.nc")
     answers_yes(operator, "Y GIVES THAT JOB UP FOR other.nc")

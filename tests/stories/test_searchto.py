@@ -78,7 +78,7 @@ def stopped_there(operator: Operator) -> None:
 
 def confirms(operator: Operator) -> None:
     presses(operator, "F10", lambda: operator.shows("CONFIRMED"))
-    operator.during(0.4)  # what starts was read before it starts
+    operator.during(1.0)  # what starts was read before it starts
     operator.cycle_start()
     operator.until(lambda: operator.state != "READY", "the start")
 
