@@ -128,6 +128,19 @@ def test_the_map_names_only_what_is_there() -> None:
     assert sorted(path for path in named if not (HOUSE / path).exists()) == []
 
 
+def test_the_documents_name_only_files_that_are_there() -> None:
+    named = [
+        (document.name, path)
+        for document in [HOUSE / "README.md", *sorted((HOUSE / "docs").rglob("*.md"))]
+        for path in re.findall(
+            r"\b((?:app|core|drivers|tests|resources)/[\w/]+\.(?:py|toml|sh|nc))\b",
+            document.read_text(encoding="utf-8"),
+        )
+    ]
+    assert len(named) > 150
+    assert [each for each in named if not (HOUSE / each[1]).exists()] == []
+
+
 def test_every_room_is_on_the_map() -> None:
     text = MAP.read_text(encoding="utf-8")
     rooms = {path.parent.relative_to(HOUSE) for room in ROOMS for path in (HOUSE / room).rglob("*.py")}

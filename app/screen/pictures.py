@@ -148,8 +148,6 @@ def _pictures(out: Path, sizes: tuple[tuple[int, int], ...], themes: tuple[str, 
 
     from app.compose.journal import Journal
 
-    pass
-
     _app = QApplication.instance() or QApplication(sys.argv[:1])
     journal = Journal.at_home()
     stage = Stage(journal)
@@ -166,7 +164,6 @@ def _pictures(out: Path, sizes: tuple[tuple[int, int], ...], themes: tuple[str, 
 
 def _of_the_mill(out: Path, sizes: tuple[tuple[int, int], ...], themes: tuple[str, ...]) -> Iterator[Path]:
     """A tilted program, standing and caught in a cut of its second slope."""
-    pass
 
     stage = Stage(machine=MILL)
     stage.make_ready(TILTED)

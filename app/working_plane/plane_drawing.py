@@ -17,13 +17,8 @@ import numpy.typing as npt
 from app.working_plane.plane_scene import Ink, Scene
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
     from app.working_plane.plane_instant import Instant
     from core.geometry.rotary_axes import Kinematics, Place
-
-# --- camera -------------------------------------------------------------------------------------------
-
 
 FloatArray = npt.NDArray[np.float64]
 _STEP = 1.25  # of a zoom
