@@ -147,6 +147,7 @@ class GrblBench:
         self.load(text)
         if self.shot.interrupted is not None:  # read, and meant all the same
             self.post(ConfirmStart(self.shot.interrupted.at))
+            self.run(0.9)  # a start counts when it was meant before the hands came down
         self.press()
 
     def said(self, kind: str) -> list[str]:
