@@ -4,6 +4,7 @@ import importlib
 import subprocess
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -98,3 +99,13 @@ def _circles(imports: dict[str, set[str]]) -> Iterator[list[str]]:
     for module in sorted(imports):
         if module not in number:
             yield from visit(module)
+
+
+def test_every_folder_of_a_driver_is_in_its_contracts() -> None:
+    house = Path(__file__).parents[1]
+    text = (house / "setup.cfg").read_text(encoding="utf-8")
+    folders = sorted(path.parent.name for path in (house / "drivers").glob("*/__init__.py"))
+    assert len(folders) > 5
+    for contract, apart in (("lookalikes", {"lookalikes", "simulated"}), ("drivers-apart", {"lookalikes"})):
+        held = text.partition(f"[importlinter:contract:{contract}]")[2].partition("\n[importlinter:")[0]
+        assert [name for name in folders if f"drivers.{name}\n" not in held and name not in apart] == []

@@ -135,7 +135,10 @@ def _spindle(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
     beside = {
         driver.spindle: driver.tables[0].path for driver in drivers if driver.spindle and not driver.backend
     }
-    allowed = [*(driver.spindle for driver in drivers if driver.backend == backend), *beside]
+    allowed = [
+        *(driver.spindle for driver in drivers if driver.spindle and driver.backend == backend),
+        *beside,
+    ]
     if word not in allowed:
         expected = f"expected {' or '.join(allowed)} with machine.backend = {written(backend)}"
         yield Finding(path, written(word), expected)
