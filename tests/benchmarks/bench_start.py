@@ -22,7 +22,7 @@ import os, sys, time
 begun = float(sys.argv[1])
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
-from app.screen import main as screen
+from app.screen import run_screen as screen
 from app.compose.stored_offsets import chosen_offsets
 from app.compose.screen_desk import build_desk
 desks, usable = [], []
@@ -56,7 +56,7 @@ from core.executor.commands import CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job
 from core.language.source import load_source
-from drivers.simulated import StepClock
+from drivers.clocks import StepClock
 machine = read_machine(None)
 tools, secondary = chosen_offsets(sys.argv[3])()
 clock = StepClock()
