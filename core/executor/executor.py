@@ -187,7 +187,7 @@ class Executor:
         elif self._context.spindle.guard_open and control.state in ACTIVE:
             control.feed_hold("GUARD OPEN")  # a jog in setting is the builder's to limit
         if signals.start:
-            control.start_by_hands()
+            control.start()
         if signals.turned_on:
             control.spindle_switch()
         control.follow_wheel()

@@ -100,16 +100,9 @@ class MachineControl:
                 waits = bool(self._context.spindle.waits)
                 self.announcement.begin()
                 cycle.go_on(starts_spindle=waits)
-        elif not self.refuse(self.program_run.refusal(state) or self._unannounced()):
+        elif not self.refuse(self.program_run.refusal(state) or self._unannounced() or self._just_meant()):
             self.announcement.begin()
             self.program_run.begin()
-
-    def start_by_hands(self) -> None:
-        """Cycle Start at the station: what it begins was asked for before the first hand came down."""
-        if self._context.now - self.meant_at < MEANT:
-            self.refuse("that was meant just now: let both palms go, read the prompt, press them again")
-        else:
-            self.start()
 
     def refuse(self, why: str) -> bool:
         """Keep and log why a start is refused; False when there is no reason."""
@@ -138,6 +131,12 @@ class MachineControl:
             self._context.log("refused", why)
         else:
             self.announcement.begin(SPINDLE)
+
+    def _just_meant(self) -> str:
+        """An answer is no start: what it begins was asked for before the first hand came down."""
+        if self._context.now - self.meant_at >= MEANT:
+            return ""
+        return "that was meant just now: let both palms go, read the prompt, press them again"
 
     def _unannounced(self) -> str:
         unclamped = start_conditions.unclamped(self._context) if self._context.spindle.waits else ""

@@ -141,6 +141,7 @@ class Rig:
         """The operator has read what was interrupted, and means to begin at the first line."""
         if self.shot.interrupted is not None:
             self.post(ConfirmStart(self.shot.interrupted.at))
+            self.run(0.9)  # a start counts when it was meant before the hands came down
 
     def said(self, kind: str) -> list[str]:
         return [event.text for event in self.events if event.kind == kind]

@@ -9,6 +9,7 @@ import pytest
 from app.compose.machine_files import load_machine
 from core.executor.commands import (
     Command,
+    ConfirmStart,
     CycleStart,
     EnableDrives,
     FeedHold,
@@ -317,7 +318,29 @@ def test_an_answer_and_palms_in_one_slap_start_nothing(seconds: float, starts: b
     rig.run(0.1)
     rig.ready()
     rig.run(2.0)
-    rig.confirm()
+    assert rig.shot.interrupted is not None
+    rig.post(ConfirmStart(rig.shot.interrupted.at))
     slapped(rig, seconds)
     assert (rig.state is not State.IDLE) is starts
     assert bool(rig.shot.start_refused) is not starts
+
+
+@pytest.mark.parametrize(("seconds", "starts"), [(0.0, False), (0.7, False), (0.9, True)])
+def test_an_answer_and_the_one_button_in_one_slap_start_nothing(seconds: float, starts: bool) -> None:
+    machine = load_machine()
+    rig = Rig(
+        machine=dataclasses.replace(
+            machine, interlocks=dataclasses.replace(machine.interlocks, two_hand_start=False)
+        )
+    )
+    rig.start("G90G94F300\nM03S900\nG01X.5Z.5F5\nM30\n")
+    rig.run(3.0)
+    rig.post(FeedHold())
+    rig.run(2.0)
+    rig.post(Reset())
+    rig.run(3.0)
+    assert rig.shot.interrupted is not None
+    rig.post(ConfirmStart(rig.shot.interrupted.at))
+    rig.run(seconds)
+    rig.post(CycleStart())
+    assert (rig.state is not State.IDLE) is starts
