@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import sys
+import time
 from collections.abc import Iterator
 
 from PySide6.QtCore import Qt, QTimer
@@ -47,6 +48,9 @@ class Operator:
         while True:
             if self._asked:
                 self._key(Key.Key_Y)  # he has read which job was interrupted, and means to begin anew
+                read = time.monotonic() + 1.2  # an answer is no start: he looks before his hands come down
+                while time.monotonic() < read:
+                    yield False
             elif self._state is State.IDLE:
                 for key in (Key.Key_F11, Key.Key_F12):
                     QTest.keyPress(self._window, key)
