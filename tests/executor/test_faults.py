@@ -175,11 +175,11 @@ def test_reset_does_not_clear_a_fault_that_stays() -> None:
     alarm(rig, "following")
     rig.post(Reset())
     rig.post(EnableDrives())
-    rig.load("G90G94F300\nX-3\nM30\n")
+    rig.load("G90G94F300\nG01F30X-3\nM30\n")
     rig.run(0.4)
     rig.confirm()
     rig.post(CycleStart())
-    alarm(rig, "encoder-still")  # from rest it has not moved at all
+    alarm(rig, "encoder-still")  # a rapid would trip the drive in the same tick
 
 
 # --- spindle and collet -------------------------------------------------------------------------------------
