@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import random
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 
 from core.ports import Clock, Station, StationState
@@ -84,15 +84,9 @@ class Panel:
     def state(self, now: float) -> StationState:
         """What the control reads; when silent, the last that came, with its age."""
         if self._silent is not None:
-            return StationState(
-                estop=self._silent.estop or self.estop,  # the E-stop has a wire of its own
-                hold=self._silent.hold,
-                spindle_auto=self._silent.spindle_auto,
-                spindle_pot=self._silent.spindle_pot,
-                feed_pot=self._silent.feed_pot,
-                handwheel=self._silent.handwheel,
-                age=now - self._silent_since,
-            )
+            estop = self._silent.estop or self.estop  # the E-stop has a wire of its own
+            age = now - self._silent_since
+            return dataclasses.replace(self._silent, estop=estop, start=False, age=age)
         return StationState(
             estop=self.estop,
             start=self.relay.output(now),
@@ -186,23 +180,28 @@ class StationHands:
 class PanelStation(StationHands):
     """Hands on one side, ``core.ports.Station`` on the other; any thread may call.
 
-    ``estop`` reads the real E-stop where the machine has an input for it; it is pressed when either is.
+    ``inputs`` are those of the machine: its own E-stop, start and hold count as well, where it has any.
     ``wired`` is a station of which there is only a handwheel: it counts on.
     """
 
-    def __init__(self, clock: Clock, estop: Callable[[], bool], wired: Station | None = None) -> None:
+    def __init__(
+        self, clock: Clock, inputs: Callable[[], Mapping[str, bool]], wired: Station | None = None
+    ) -> None:
         super().__init__(Panel(_WINDOW, _PULSE, seed=0), threading.Lock(), clock)
-        self._estop = estop
+        self._inputs = inputs
         self._wired = wired
 
     def snapshot(self) -> StationState:
         """The station now."""
         with self._lock:
             state = self._panel.state(self._clock.now())
+        inputs = self._inputs()
         wired = self._wired.snapshot() if self._wired is not None else StationState()
         return dataclasses.replace(
             state,
-            estop=state.estop or self._estop(),
+            estop=state.estop or inputs.get("estop", False),
+            start=state.start or inputs.get("start", False),
+            hold=state.hold or inputs.get("hold", False),
             handwheel=state.handwheel + wired.handwheel,
             age=max(state.age, wired.age),
         )

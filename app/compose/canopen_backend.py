@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from app.compose.backend_entry import Backend, has_station
 from core.machine.machine_model import Axis, Machine
-from core.ports import Clock, DriverError, MachinePorts
+from core.ports import Clock, DriverError
 from drivers.canopen.canopen_config import (
     AxisConfig,
     CanopenConfig,
@@ -22,6 +22,7 @@ from drivers.canopen.canopen_config import (
     Terminal,
 )
 from drivers.canopen.canopen_table import PLAIN_MODULE, CanNode, CanopenTable, EncoderTable, can_terminal
+from drivers.feeder.feeder_server import Driven
 from drivers.operator_station import PanelStation
 
 if TYPE_CHECKING:
@@ -179,48 +180,41 @@ def _terminal(text: str, first: str, *, active_low: bool = False) -> Terminal:
     return Terminal(node, found.index, found.sub, found.bit, active_low)
 
 
-class CanDriven:
-    """The machine on its bus. On a virtual bus the other end is here too: there is none elsewhere."""
-
-    def __init__(self, machine: Machine, clock: Clock) -> None:
-        can = machine.hardware.table(CanopenTable)
-        self._peers: CanopenDevices | None = None
-        if can is not None and not can.bus.own_process:
-            self._peers = canopen_peers(machine, clock)
-        # A clock that stands waits for nobody: the peers are looked after in between.
-        idle = self._peers.pump if self._peers is not None else None
-        try:
-            self._machine = canopen_machine(machine, clock, idle)
-        except DriverError:
-            if self._peers is not None:
-                self._peers.close()
-            raise
-        ports = self._machine.ports
-        self.hands: object | None = self._peers.machine if self._peers is not None else None
-        if not has_station(machine):
-            wired = ports.station if "handwheel" in machine.hardware.analog else None
-            panel = PanelStation(clock, lambda: bool(ports.io.inputs().get("estop")), wired)
-            self.hands, ports = self.hands or panel, dataclasses.replace(ports, station=panel)
-        self.ports: MachinePorts = ports
-
-    def tick(self) -> None:
-        """One round of the bus."""
-        if self._peers is not None:
-            self._peers.pump()
-        self._machine.tick()
-        if self._peers is not None:
-            self._peers.pump()
-
-    def close(self) -> None:
-        """Power off, and let the bus go."""
-        self._machine.close()
-        if self._peers is not None:
-            self._peers.close()
-
-
 def _played(machine: Machine) -> bool:
+    """On a virtual bus the other end is here too: there is none elsewhere."""
     can = machine.hardware.table(CanopenTable)
     return can is not None and not can.bus.own_process
+
+
+def can_driven(machine: Machine, clock: Clock) -> Driven:
+    """The machine on its bus, for the feeder. Raises DriverError."""
+    peers = canopen_peers(machine, clock) if _played(machine) else None
+    try:
+        # A clock that stands waits for nobody: the peers are looked after in between.
+        owned = canopen_machine(machine, clock, peers.pump if peers is not None else None)
+    except DriverError:
+        if peers is not None:
+            peers.close()
+        raise
+    ports = owned.ports
+    hands: object | None = peers.machine if peers is not None else None
+    if not has_station(machine):
+        wired = ports.station if "handwheel" in machine.hardware.analog else None
+        panel = PanelStation(clock, ports.io.inputs, wired)
+        hands, ports = hands or panel, dataclasses.replace(ports, station=panel)
+    if peers is None:
+        return Driven(ports, owned.tick, owned.close, hands)
+
+    def tick() -> None:
+        peers.pump()
+        owned.tick()
+        peers.pump()
+
+    def close() -> None:
+        owned.close()
+        peers.close()
+
+    return Driven(ports, tick, close, hands)
 
 
 def _play(
@@ -234,7 +228,7 @@ def _play(
     play_peers(machine, going, say, typed, canopen_peers)
 
 
-BACKEND = Backend("bus", driven=CanDriven, played=_played, play=_play, survey=canopen_survey)
+BACKEND = Backend("bus", driven=can_driven, played=_played, play=_play, survey=canopen_survey)
 
 
 # --- What a control writes to the nodes of a bus at each start, to be compared with what it wrote before.

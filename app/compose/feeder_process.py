@@ -6,10 +6,10 @@ import pickle
 import socket
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 from app.compose.backend_entry import backend_of
-from app.compose.inverter_backend import WithInverter, has_inverter
+from app.compose.inverter_backend import has_inverter, with_inverter
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError
 from drivers.clocks import RealClock
@@ -19,9 +19,6 @@ from drivers.feeder.feeder_loop import keep_memory, real_time, serve
 from drivers.feeder.feeder_messages import NOTHING, Inbox, Message, packed, text
 from drivers.feeder.feeder_server import Driven
 
-if TYPE_CHECKING:
-    pass
-
 
 def driven(machine: Machine, clock: Clock) -> Driven:
     """What the machine file's backend and its spindle are driven by. Raises DriverError."""
@@ -29,7 +26,10 @@ def driven(machine: Machine, clock: Clock) -> Driven:
     if make is None:
         raise DriverError(f"{machine.source}: the feeder has no backend {machine.backend}")
     inner = make(machine, clock)
-    return WithInverter(inner, machine, clock) if has_inverter(machine) else inner
+    if not has_inverter(machine):
+        return inner
+    ports, close = with_inverter(machine, inner.ports, clock, inner.close)
+    return replace(inner, ports=ports, close=close)
 
 
 _START = 20.0  # s for the first answer: the process has to start and to configure every drive

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Protocol
 
 from app.compose.backend_entry import Backend, Connected
 from app.compose.inverter_backend import has_inverter, with_inverter
-from app.desk.station_hands import StationPanel
 from core.machine.machine_model import Axis, Machine
-from core.ports import Clock, DriverError, MachinePorts
+from core.ports import Clock, DriverError
 from drivers.clocks import RealClock
 from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig, GrblInput, GrblOutput
 from drivers.grblhal.grblhal_machine import GrblMachine
@@ -21,48 +19,6 @@ from drivers.lookalikes.grblhal_firmware import Firmware
 
 _WIRED = frozenset(("X", "Z"))
 _HERE = frozenset((35, 37))  # homing methods of CiA 402 that take the present place
-
-
-class Controlled(Protocol):
-    """A connected controller, with what else drives this machine. ``panel`` is the station on the screen."""
-
-    @property
-    def ports(self) -> MachinePorts: ...
-
-    @property
-    def panel(self) -> StationPanel: ...
-
-    def close(self) -> None: ...
-
-
-def grblhal_machine(machine: Machine, clock: Clock) -> Controlled:
-    """Connect to the controller of a machine file, and to its inverter. Raises DriverError."""
-    controller = GrblMachine(grblhal_config(machine), clock)
-    return BesideInverter(controller, machine, clock) if has_inverter(machine) else controller
-
-
-class BesideInverter:
-    """``Controlled``: an inverter turns the spindle; the controller's encoder, if any, measures it."""
-
-    def __init__(self, inner: GrblMachine, machine: Machine, clock: Clock) -> None:
-        self._inner = inner
-        self.panel: StationPanel = inner.panel
-        encoder = inner.encoder
-        try:
-            self.ports, self._let_go = with_inverter(
-                machine, inner.ports, clock, encoder if encoder.there else None
-            )
-        except DriverError:
-            inner.close()
-            raise
-        assert isinstance(self.ports.spindle, InverterSpindle)
-        spindle = self.ports.spindle
-        encoder.way = lambda: spindle.given
-
-    def close(self) -> None:
-        """Spindle first."""
-        self._let_go()
-        self._inner.close()
 
 
 def grblhal_config(machine: Machine) -> GrblConfig:
@@ -109,9 +65,18 @@ def _axis(axis: Axis, machine: Machine) -> GrblAxis:
 
 
 def _connect(machine: Machine, clock: Clock) -> Connected:
-    """A controller that plans by itself; it knows no buttons, so the station is the screen's."""
-    controller = grblhal_machine(machine, clock)
-    return Connected(controller.ports, controller.panel, None, controller.close)
+    """A controller that plans by itself; it knows no buttons, so the station is the screen's.
+
+    Where an inverter turns the spindle, the controller's encoder, if any, measures it.
+    """
+    controller = GrblMachine(grblhal_config(machine), clock)
+    ports, close, encoder = controller.ports, controller.close, controller.encoder
+    if has_inverter(machine):
+        ports, close = with_inverter(machine, ports, clock, close, encoder if encoder.there else None)
+        spindle = ports.spindle
+        assert isinstance(spindle, InverterSpindle)
+        encoder.way = lambda: spindle.given
+    return Connected(ports, controller.panel, None, close)
 
 
 BACKEND = Backend("controller", connect=_connect, play=_play)

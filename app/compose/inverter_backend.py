@@ -8,9 +8,8 @@ from functools import partial
 
 from app.compose.serial_ports import open_wire
 from core.machine.machine_model import Machine
-from core.ports import AxisSample, AxisSink, Clock, DriverError, MachinePorts, Segments, Stop
+from core.ports import AxisSink, Clock, DriverError, MachinePorts
 from drivers.clocks import StepClock
-from drivers.feeder.feeder_server import Driven
 from drivers.inverter.inverter_attendant import Keeper
 from drivers.inverter.inverter_spindle import Encoder, InverterSpindle, attendant, well
 from drivers.inverter.inverter_table import InverterTable
@@ -27,12 +26,33 @@ def has_inverter(machine: Machine) -> bool:
 
 
 def with_inverter(
-    machine: Machine, ports: MachinePorts, clock: Clock, measures: Encoder | None = None
+    machine: Machine,
+    ports: MachinePorts,
+    clock: Clock,
+    close: Callable[[], None],
+    measures: Encoder | None = None,
 ) -> tuple[MachinePorts, Callable[[], None]]:
-    """The ports with the inverter for their spindle, and how to let it go.
+    """The ports with the inverter for their spindle, and how to let all of it go: the spindle first.
 
-    ``measures`` is an encoder beside the backend's spindle. Raises DriverError for one that does not answer.
+    ``close`` lets the rest go, also where the inverter does not answer: DriverError. ``measures`` is an
+    encoder beside the backend's spindle.
     """
+    try:
+        keeper, joined = _attended(machine, ports, clock, measures)
+    except DriverError:
+        close()
+        raise
+
+    def let_go() -> None:
+        keeper.close()
+        close()
+
+    return joined, let_go
+
+
+def _attended(
+    machine: Machine, ports: MachinePorts, clock: Clock, measures: Encoder | None
+) -> tuple[Keeper, MachinePorts]:
     if isinstance(clock, StepClock):
         raise DriverError(
             "an inverter on a line needs real time; it cannot follow a clock that is moved by hand"
@@ -68,7 +88,7 @@ def with_inverter(
         warnings=(*ports.warnings, *said),
         halt=partial(halt_with, ports, spindle),
     )
-    return joined, keeper.close
+    return keeper, joined
 
 
 def halt_with(ports: MachinePorts, spindle: InverterSpindle) -> None:
@@ -78,68 +98,17 @@ def halt_with(ports: MachinePorts, spindle: InverterSpindle) -> None:
         ports.halt()
 
 
-class WithInverter:
-    """``Driven``: a set of drivers whose spindle is on a line of its own, for the process that owns both."""
-
-    def __init__(self, inner: Driven, machine: Machine, clock: Clock) -> None:
-        self._inner = inner
-        self.hands = inner.hands
-        try:
-            self.ports, self._let_go = with_inverter(machine, inner.ports, clock)
-        except DriverError:
-            inner.close()
-            raise
-
-    def tick(self) -> None:
-        """The inverter has its own thread."""
-        self._inner.tick()
-
-    def close(self) -> None:
-        """Spindle first."""
-        self._let_go()
-        self._inner.close()
-
-
 class ClearingAxes:
     """``AxisSink``: the same axes, whose fault is cleared together with the spindle's."""
 
     def __init__(self, inner: AxisSink, beside: Callable[[], None]) -> None:
-        self._inner, self._beside = inner, beside
+        self._clear, self._beside = inner.clear_fault, beside
         self.axes, self.commit = inner.axes, inner.commit
-
-    def now(self) -> float:
-        """The machine's clock."""
-        return self._inner.now()
-
-    def horizon(self) -> float:
-        """End of what is queued."""
-        return self._inner.horizon()
-
-    def splice(self, segments: Segments) -> None:
-        """As the port says."""
-        self._inner.splice(segments)
-
-    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """As the port says."""
-        return self._inner.demand_at(t)
-
-    def sample(self) -> AxisSample:
-        """The axes now."""
-        return self._inner.sample()
-
-    def enable(self, on: bool) -> None:
-        """Drives on or off."""
-        self._inner.enable(on)
-
-    def stop(self, how: Stop) -> None:
-        """The drives' own stop."""
-        self._inner.stop(how)
-
-    def home(self, axis: str) -> None:
-        """Start homing."""
-        self._inner.home(axis)
+        self.now, self.horizon, self.demand_at = inner.now, inner.horizon, inner.demand_at
+        self.splice, self.sample, self.enable = inner.splice, inner.sample, inner.enable
+        self.stop, self.home = inner.stop, inner.home
 
     def clear_fault(self) -> None:
         """Both. Raises DriverError."""
         self._beside()
-        self._inner.clear_fault()
+        self._clear()

@@ -5,7 +5,8 @@ from __future__ import annotations
 from app.compose.backend_entry import Backend, Connected
 from app.compose.inverter_backend import has_inverter, with_inverter
 from core.machine.machine_model import Axis, Machine
-from core.ports import Clock, MachinePorts
+from core.ports import Clock
+from drivers.feeder.feeder_server import Driven
 from drivers.lookalikes.plant_config import SimAxis, SimCollet, SimConfig, SimOutput, SimSpindle
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.simulated.simulated_table import SimulatedTable
@@ -52,30 +53,23 @@ def _axis(axis: Axis, machine: Machine) -> SimAxis:
     )
 
 
-class SimDriven:
-    """The simulated machine."""
-
-    def __init__(self, machine: Machine, clock: Clock) -> None:
-        simulation = simulated(machine, clock)
-        self.ports: MachinePorts = simulation.ports
-        self.hands: object | None = simulation.machine
-
-    def tick(self) -> None:
-        """The plant goes on also when nobody looks."""
-        self.ports.axes.sample()
-
-    def close(self) -> None:
-        """Nothing to let go."""
+def _driven(machine: Machine, clock: Clock) -> Driven:
+    """For the feeder; the plant goes on also when nobody looks."""
+    ports, hands = simulated(machine, clock)
+    return Driven(ports, ports.axes.sample, _nothing, hands)
 
 
 def _in_process(machine: Machine, clock: Clock) -> Connected:
     """The simulated machine, whose spindle may be a real one."""
-    simulation = simulated(machine, clock)
-    ports, hands = simulation.ports, simulation.machine
-    if not has_inverter(machine):
-        return Connected(ports, hands, hands.set_input, lambda: None)
-    ports, close = with_inverter(machine, ports, clock)
+    ports, hands = simulated(machine, clock)
+    close = _nothing
+    if has_inverter(machine):
+        ports, close = with_inverter(machine, ports, clock, close)
     return Connected(ports, hands, hands.set_input, close)
 
 
-BACKEND = Backend("feeder", driven=SimDriven, connect=_in_process, played=lambda _machine: True)
+def _nothing() -> None:
+    """There is nothing to let go."""
+
+
+BACKEND = Backend("feeder", driven=_driven, connect=_in_process, played=lambda _machine: True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import queue
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Protocol
 
 from core.ports import (
@@ -115,11 +115,18 @@ class Line:
 # --- ``core.ports`` through the feeder: each call a message.
 
 
-class FeederAxes:
+class _OnLine:
+    """What asks the feeder."""
+
+    def __init__(self, line: Line) -> None:
+        self._line = line
+
+
+class FeederAxes(_OnLine):
     """``core.ports.AxisSink``."""
 
     def __init__(self, line: Line, hello: Mapping[str, object]) -> None:
-        self._line = line
+        super().__init__(line)
         self.axes = tuple(texts(hello.get("axes")))
         self.commit = number(hello, "commit")
 
@@ -174,11 +181,8 @@ class FeederAxes:
         self._line.order("clear_fault")
 
 
-class FeederGear:
+class FeederGear(_OnLine):
     """``core.ports.Gear``."""
-
-    def __init__(self, line: Line) -> None:
-        self._line = line
 
     def mesh(self, cam: Cam) -> None:
         """Follow the spindle. Raises DriverError."""
@@ -190,11 +194,8 @@ class FeederGear:
         return None if shown is None or self._line.lost else Geared(*floats(shown))
 
 
-class FeederSpindle:
+class FeederSpindle(_OnLine):
     """``core.ports.Spindle``."""
-
-    def __init__(self, line: Line) -> None:
-        self._line = line
 
     def run(self, rpm: float) -> None:
         """Turn at ``rpm``, signed."""
@@ -222,11 +223,8 @@ class FeederSpindle:
         return self._line.lost or fault_of(self._line.look(), "spindle", "spindle")
 
 
-class FeederLock:
+class FeederLock(_OnLine):
     """``core.ports.SpindleHold``."""
-
-    def __init__(self, line: Line) -> None:
-        self._line = line
 
     def hold(self, on: bool, orient: bool = False) -> None:
         """Ask for the spindle's drive as C, or let it turn again."""
@@ -237,11 +235,8 @@ class FeederLock:
         return self._line.look().get("held") is True and not self._line.lost
 
 
-class FeederIO:
+class FeederIO(_OnLine):
     """``core.ports.DigitalIO``."""
-
-    def __init__(self, line: Line) -> None:
-        self._line = line
 
     def inputs(self) -> Mapping[str, bool]:
         """All inputs by name."""
@@ -260,11 +255,8 @@ class FeederIO:
         self._line.order("safe")
 
 
-class FeederStation:
+class FeederStation(_OnLine):
     """``core.ports.Station``."""
-
-    def __init__(self, line: Line) -> None:
-        self._line = line
 
     def snapshot(self) -> StationState:
         """The station now; without the feeder nothing is pressed, and it has been silent for ever."""
@@ -274,11 +266,8 @@ class FeederStation:
         return StationState(**shown)
 
 
-class FeederTrips:
+class FeederTrips(_OnLine):
     """``core.ports.Tripping``."""
-
-    def __init__(self, line: Line) -> None:
-        self._line = line
 
     def tripped(self) -> Trip | None:
         """What the feeder has switched off since it was last acknowledged."""
@@ -324,69 +313,31 @@ def _flags(value: object) -> dict[str, bool]:
 # --- The hands at a station that lives in the feeder: the simulated one, or the one on the screen.
 
 
-class FeederHands:
-    """Any thread may act; it goes out with the executor's next look, and nobody waits."""
+def _hand(name: str) -> Callable[..., None]:
+    """The method of this name at that station: it goes out with the executor's next look, nobody waits."""
 
-    def __init__(self, line: Line) -> None:
-        self._line = line
+    def use(self: FeederHands, *values: object) -> None:
+        self.post(name, *values)
 
-    def press_left(self) -> None:
-        """Left palm button down."""
-        self._do("press_left")
+    return use
 
-    def release_left(self) -> None:
-        """Left palm button up."""
-        self._do("release_left")
 
-    def press_right(self) -> None:
-        """Right palm button down."""
-        self._do("press_right")
+class FeederHands(_OnLine):
+    """Any thread may act; what an act means stands at ``app.desk.station_hands.StationPanel``."""
 
-    def release_right(self) -> None:
-        """Right palm button up."""
-        self._do("release_right")
-
-    def press_hold(self) -> None:
-        """Feed hold button down."""
-        self._do("press_hold")
-
-    def release_hold(self) -> None:
-        """Feed hold button up."""
-        self._do("release_hold")
-
-    def press_estop(self) -> None:
-        """Hit the E-stop."""
-        self._do("press_estop")
-
-    def release_estop(self) -> None:
-        """Twist it free."""
-        self._do("release_estop")
-
-    def set_spindle_auto(self, auto: bool) -> None:
-        """Spindle AUTO/OFF."""
-        self._do("set_spindle_auto", auto)
-
-    def set_spindle_pot(self, fraction: float) -> None:
-        """Spindle override, 0…1."""
-        self._do("set_spindle_pot", fraction)
-
-    def set_feed_pot(self, fraction: float) -> None:
-        """Feed override, 0…1.5."""
-        self._do("set_feed_pot", fraction)
-
-    def turn_handwheel(self, counts: int) -> None:
-        """Turn the handwheel on by so many counts, signed."""
-        self._do("turn_handwheel", counts)
+    press_left, release_left = _hand("press_left"), _hand("release_left")
+    press_right, release_right = _hand("press_right"), _hand("release_right")
+    press_hold, release_hold = _hand("press_hold"), _hand("release_hold")
+    press_estop, release_estop = _hand("press_estop"), _hand("release_estop")
+    set_spindle_auto, set_spindle_pot = _hand("set_spindle_auto"), _hand("set_spindle_pot")
+    set_feed_pot, turn_handwheel = _hand("set_feed_pot"), _hand("turn_handwheel")
 
     def set_input(self, name: str, on: bool) -> None:
         """Make an input of a simulated machine true or false, at once. Raises DriverError."""
         self._line.ask(_act("set_input", name, on))
 
-    def break_something(self, what: str, *values: object) -> None:
-        """A fault of the simulated machine, by the name of its method."""
-        self._do(what, *values)
-
-    def _do(self, name: str, *values: object) -> None:
+    def post(self, name: str, *values: object) -> None:
+        """Use the method of this name at the station."""
         self._line.post(_act(name, *values))
 
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from functools import partial
-from typing import Protocol
 
 import numpy as np
 
@@ -131,20 +130,17 @@ _STANDS = 5.0  # rpm
 _RUNS_DOWN = 8.0  # s for a spindle to brake; one that has not by then is let go
 
 
-class Driven(Protocol):
-    """A set of drivers that one loop owns. ``hands`` is a simulated machine's handle, where it is one."""
+@dataclass(frozen=True, slots=True)
+class Driven:
+    """A set of drivers that one loop owns; ``tick`` is called every few milliseconds and raises nothing.
 
-    @property
-    def ports(self) -> MachinePorts: ...
+    ``hands`` is a simulated machine's handle, or the station on the screen.
+    """
 
-    @property
-    def hands(self) -> object | None: ...
-
-    def tick(self) -> None:
-        """Called every few milliseconds; raises nothing."""
-        ...
-
-    def close(self) -> None: ...
+    ports: MachinePorts
+    tick: Callable[[], object]
+    close: Callable[[], None]
+    hands: object | None = None
 
 
 class Feeder:

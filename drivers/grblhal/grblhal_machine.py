@@ -11,8 +11,9 @@ from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_config import GrblConfig
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_spindle import GrblEncoder, GrblSpindle
-from drivers.grblhal.grblhal_terminals import GrblInputs, GrblIO, GrblStation, panel_of
+from drivers.grblhal.grblhal_terminals import GrblInputs, GrblIO
 from drivers.grblhal.grblhal_wire import Wire, open_wire
+from drivers.operator_station import PanelStation
 
 _ROUND = 0.005  # s between two looks while it connects
 _CONNECTING = 15.0
@@ -51,13 +52,13 @@ class GrblMachine:
 
         self.controller.on_void = void
         self._connect()
-        self.panel = panel_of(clock, self.inputs)
+        self.panel = PanelStation(clock, self.inputs.states)
         self.ports = MachinePorts(
             clock=clock,
             axes=self.axes,
             spindle=self.spindle,
             io=self.io,
-            station=GrblStation(self.panel, self.inputs),
+            station=self.panel,
             warnings=self._warnings(),
             blocks=self.blocks,
             halt=self.controller.halt,

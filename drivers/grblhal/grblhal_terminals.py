@@ -1,17 +1,15 @@
-"""Inputs and outputs of the controller by the names of the machine file, and the operator station."""
+"""Inputs and outputs of the controller by the names of the machine file."""
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping
 
-from core.ports import Clock, DriverError, StationState
+from core.ports import DriverError
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_dialogue import Ask
-from drivers.operator_station import PanelStation
 
-# --- Inputs: pins come with every report, auxiliary ones are asked for while nothing moves; and the station.
+# --- Inputs: pins come with every report, auxiliary ones are asked for while nothing moves.
 
 
 _PIN, _AUX = "pn.", "in."
@@ -83,28 +81,6 @@ class GrblInputs:
         text = self._c.config.inputs[name].terminal
         number = text.removeprefix(_AUX)
         return int(number) if text.startswith(_AUX) and number.isdecimal() else None
-
-
-class GrblStation:
-    """The station on the screen; pins of the controller that are named for it count too."""
-
-    def __init__(self, panel: PanelStation, inputs: GrblInputs) -> None:
-        self._panel = panel
-        self._inputs = inputs
-
-    def snapshot(self) -> StationState:
-        """The station now."""
-        state, pins = self._panel.snapshot(), self._inputs.states()
-        return dataclasses.replace(
-            state,
-            start=state.start or pins.get("start", False),
-            hold=state.hold or pins.get("hold", False),
-        )
-
-
-def panel_of(clock: Clock, inputs: GrblInputs) -> PanelStation:
-    """The hands on the screen, with the E-stop of the controller."""
-    return PanelStation(clock, lambda: bool(inputs.states().get("estop")))
 
 
 _COOLANT = {"flood": "M8", "mist": "M7"}

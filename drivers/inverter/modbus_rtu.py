@@ -11,8 +11,8 @@ from drivers.serial_line import Wire
 # --- Frames of Modbus RTU (Modbus over Serial Line V1.02): unit, function, data, CRC-16 low byte first.
 
 
-READ_COILS, READ_INPUTS, READ_REGISTERS, READ_INPUT_REGISTERS = 1, 2, 3, 4
-WRITE_COIL, WRITE_REGISTER, LOOPBACK, WRITE_COILS, WRITE_REGISTERS = 5, 6, 8, 15, 16
+READ_COILS, READ_REGISTERS = 1, 3
+WRITE_COIL, WRITE_REGISTER, LOOPBACK, WRITE_REGISTERS = 5, 6, 8, 16
 FAILED = 0x80
 _SHORTEST = 5
 
@@ -52,13 +52,6 @@ def write_register(address: int, value: int) -> bytes:
     return struct.pack(">BHH", WRITE_REGISTER, address, value)
 
 
-def write_coils(address: int, on: Sequence[bool]) -> bytes:
-    """0F: the first coil is the lowest bit of the first byte."""
-    packed = sum(1 << number for number, state in enumerate(on) if state)
-    size = (len(on) + 7) // 8
-    return struct.pack(">BHHB", WRITE_COILS, address, len(on), size) + packed.to_bytes(size, "little")
-
-
 def write_registers(address: int, values: Sequence[int]) -> bytes:
     """10."""
     head = struct.pack(">BHHB", WRITE_REGISTERS, address, len(values), 2 * len(values))
@@ -87,18 +80,7 @@ def answer_in(buffer: bytes, unit: int, function: int) -> bytes | None:
 def _length(frame: bytes) -> int:
     if frame[1] & FAILED:
         return 5
-    return 5 + frame[2] if frame[1] <= READ_INPUT_REGISTERS else 8
-
-
-def registers_of(frame: bytes) -> list[int]:
-    """The words of an answer to 03 or 04."""
-    return [word for (word,) in struct.iter_unpack(">H", frame[3:-2])]
-
-
-def bits_of(frame: bytes, count: int) -> list[bool]:
-    """The bits of an answer to 01 or 02."""
-    packed = int.from_bytes(frame[3:-2], "little")
-    return [bool(packed >> number & 1) for number in range(count)]
+    return 5 + frame[2] if frame[1] <= READ_REGISTERS else 8
 
 
 # --- What can go wrong between a request and its answer.
@@ -145,19 +127,13 @@ class Modbus:
 
     def registers(self, address: int, count: int = 1) -> list[int]:
         """03. Raises NoAnswerError, RefusedError, WireError; so do all others."""
-        return self._words(READ_REGISTERS, address, count)
-
-    def input_registers(self, address: int, count: int = 1) -> list[int]:
-        """04."""
-        return self._words(READ_INPUT_REGISTERS, address, count)
+        frame = self._read(read(READ_REGISTERS, address, count), 2 * count)
+        return [word for (word,) in struct.iter_unpack(">H", frame[3:-2])]
 
     def coils(self, address: int, count: int = 1) -> list[bool]:
         """01."""
-        return self._bits(READ_COILS, address, count)
-
-    def inputs(self, address: int, count: int = 1) -> list[bool]:
-        """02."""
-        return self._bits(READ_INPUTS, address, count)
+        packed = self._read(read(READ_COILS, address, count), (count + 7) // 8)[3:-2]
+        return [bool(int.from_bytes(packed, "little") >> number & 1) for number in range(count)]
 
     def write_coil(self, address: int, on: bool) -> None:
         """05."""
@@ -167,21 +143,9 @@ class Modbus:
         """06; ``tries`` 1: what must not be said twice."""
         self._write(write_register(address, value), tries)
 
-    def write_coils(self, address: int, on: Sequence[bool]) -> None:
-        """0F."""
-        self._write(write_coils(address, on))
-
     def write_registers(self, address: int, values: Sequence[int]) -> None:
         """10."""
         self._write(write_registers(address, values))
-
-    def _words(self, function: int, address: int, count: int) -> list[int]:
-        frame = self._read(read(function, address, count), 2 * count)
-        return registers_of(frame)
-
-    def _bits(self, function: int, address: int, count: int) -> list[bool]:
-        frame = self._read(read(function, address, count), (count + 7) // 8)
-        return bits_of(frame, count)
 
     def _read(self, pdu: bytes, size: int) -> bytes:
         """An answer says nothing of what was asked: after a doubt an echo comes first."""

@@ -13,11 +13,18 @@ from drivers.lookalikes.plant_hands import PlantHands, Schedule
 # --- The simulated machine behind the ports: thin fronts on one plant.
 
 
-class SimAxes:
-    """``core.ports.AxisSink`` on the plant."""
+class _OnPlant:
+    """What looks at the plant."""
 
     def __init__(self, plant: Plant) -> None:
         self._plant = plant
+
+
+class SimAxes(_OnPlant):
+    """``core.ports.AxisSink`` on the plant."""
+
+    def __init__(self, plant: Plant) -> None:
+        super().__init__(plant)
         self.axes = plant.names
         self.commit = plant.config.commit
 
@@ -80,11 +87,8 @@ class SimAxes:
             self._plant.clear_fault()
 
 
-class SimGear:
+class SimGear(_OnPlant):
     """``core.ports.Gear`` on the plant."""
-
-    def __init__(self, plant: Plant) -> None:
-        self._plant = plant
 
     def mesh(self, cam: Cam) -> None:
         """Follow the spindle; raises DriverError as the port says."""
@@ -97,11 +101,8 @@ class SimGear:
             return self._plant.queue.geared()
 
 
-class SimSpindlePort:
+class SimSpindlePort(_OnPlant):
     """``core.ports.Spindle`` on the plant."""
-
-    def __init__(self, plant: Plant) -> None:
-        self._plant = plant
 
     def run(self, rpm: float) -> None:
         """Turn at ``rpm``, signed; raises DriverError in E-stop or inverter fault, unless asked to stop."""
@@ -140,11 +141,8 @@ class SimSpindlePort:
         return self._plant.spindle.faults.fault
 
 
-class SimIO:
+class SimIO(_OnPlant):
     """``core.ports.DigitalIO`` on the plant."""
-
-    def __init__(self, plant: Plant) -> None:
-        self._plant = plant
 
     def inputs(self) -> Mapping[str, bool]:
         """All inputs by name, active is True."""
@@ -167,11 +165,8 @@ class SimIO:
             self._plant.terminals.safe(self._plant.advance())
 
 
-class SimStation:
+class SimStation(_OnPlant):
     """``core.ports.Station`` on the plant."""
-
-    def __init__(self, plant: Plant) -> None:
-        self._plant = plant
 
     def snapshot(self) -> StationState:
         """The station as the control reads it now."""
@@ -202,8 +197,3 @@ def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
     if config.faults:
         plant.due = Schedule(machine, config.faults).due
     return Simulation(ports, machine)
-
-
-def build_ports(config: SimConfig, clock: Clock) -> MachinePorts:
-    """The ports alone."""
-    return build_simulation(config, clock).ports

@@ -8,7 +8,7 @@ import pytest
 
 import resources
 from app.compose.backends import connect
-from app.compose.canopen_backend import CanDriven
+from app.compose.canopen_backend import can_driven
 from app.compose.machine_files import load_machine, parse_machine
 from core.machine.machine_model import Machine
 from core.ports import DriverError
@@ -28,7 +28,7 @@ def without_station() -> Machine:
 
 def test_a_machine_without_buttons_gets_those_on_the_screen() -> None:
     clock = StepClock()
-    owned = CanDriven(without_station(), clock)
+    owned = can_driven(without_station(), clock)
     assert isinstance(owned.ports.station, PanelStation)
     owned.ports.station.press_hold()
     assert owned.ports.station.snapshot().hold
@@ -37,7 +37,7 @@ def test_a_machine_without_buttons_gets_those_on_the_screen() -> None:
 
 def test_the_real_estop_counts_on_a_screen_station_too() -> None:
     clock, pressed = StepClock(), [False]
-    station = PanelStation(clock, lambda: pressed[0])
+    station = PanelStation(clock, lambda: {"estop": pressed[0]})
     assert not station.snapshot().estop
     pressed[0] = True
     station.release_estop()
@@ -49,7 +49,7 @@ def test_the_real_estop_counts_on_a_screen_station_too() -> None:
 
 def test_both_palms_on_the_screen_are_one_start() -> None:
     clock = StepClock()
-    station = PanelStation(clock, lambda: False)
+    station = PanelStation(clock, dict)
     station.press_left()
     assert not station.snapshot().start
     clock.advance(0.6)
@@ -64,7 +64,7 @@ def test_both_palms_on_the_screen_are_one_start() -> None:
 
 def test_a_machine_with_buttons_has_none_on_the_screen() -> None:
     clock = StepClock()
-    owned = CanDriven(can_machine(), clock)
+    owned = can_driven(can_machine(), clock)
     assert not isinstance(owned.ports.station, PanelStation)
     owned.close()
 

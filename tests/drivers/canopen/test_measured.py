@@ -15,11 +15,11 @@ from core.ports import MachinePorts
 from drivers.canopen.canopen_encoder import MeasuredSpindle
 from drivers.inverter.inverter_obedience import Agreement
 from drivers.inverter.inverter_spindle import InverterSpindle, attendant
-from drivers.lookalikes.inverters import Inverter
 from tests.drivers.canopen.bench import can_machine
 from tests.drivers.canopen.test_encoder import OWN
 from tests.drivers.canopen.test_executor import BusRig
 from tests.drivers.inverter.benches import Bench, config, far_end
+from tests.drivers.inverter.inverter_lookalikes import Inverter
 from tests.drivers.inverter.wires import BenchWire
 from tests.executor.rig import INCH
 

@@ -13,12 +13,12 @@ from app.compose.inverter_backend import ClearingAxes, halt_with
 from app.compose.machine_files import parse_machine
 from drivers.inverter.inverter_attendant import Keeper
 from drivers.inverter.inverter_spindle import InverterSpindle, attendant
-from drivers.lookalikes.inverters import Inverter
 from tests.drivers.contract.lockstep import LockstepClock
 from tests.drivers.contract.rig import Fault
 from tests.drivers.contract.simulated import Simulated
 from tests.drivers.contract.world import SimWorld
 from tests.drivers.inverter.benches import config, far_end
+from tests.drivers.inverter.inverter_lookalikes import Inverter
 from tests.drivers.inverter.wires import BenchWire
 
 _RTU, _NO_WATCH = 2.2, "it has no time-out of its own: a watchdog relay on its run terminal"

@@ -19,9 +19,9 @@ from core.table_schema import MachineFileError
 from drivers.clocks import RealClock
 from drivers.lookalikes.grblhal_far_end import TcpEnd, serve
 from drivers.lookalikes.grblhal_firmware import Firmware
-from drivers.lookalikes.inverters import HuanyangSlave, Inverter
 from drivers.lookalikes.spindle_motor import SpindleFaults
 from tests.drivers.grblhal.bench import SHIPPED, quirky
+from tests.drivers.inverter.inverter_lookalikes import HuanyangSlave, Inverter
 from tests.drivers.inverter.lines import HuanyangEnd, Pair, inverter, until
 
 Captured = pytest.CaptureFixture[str]

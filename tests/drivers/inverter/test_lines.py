@@ -19,8 +19,8 @@ from app.compose.machine_files import load_machine
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.clocks import RealClock, StepClock
-from drivers.lookalikes.inverters import DeltaMemory, HitachiMemory, HuanyangSlave, Inverter
 from tests.drivers.inverter.benches import FAMILIES
+from tests.drivers.inverter.inverter_lookalikes import DeltaMemory, HitachiMemory, HuanyangSlave, Inverter
 from tests.drivers.inverter.lines import HuanyangEnd, ModbusServer, Pair, inverter, until
 
 

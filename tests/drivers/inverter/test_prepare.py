@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from core.ports import DriverError
-from drivers.lookalikes.inverters import DeltaMemory, HitachiMemory, HuanyangSlave
 from tests.drivers.inverter.benches import bench
+from tests.drivers.inverter.inverter_lookalikes import DeltaMemory, HitachiMemory, HuanyangSlave
 
 
 def test_delta_gets_its_time_out_and_is_written_once() -> None:
