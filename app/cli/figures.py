@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from core.language.source import Dialect
+
+if TYPE_CHECKING:
+    from core.interpreter.elementary_blocks import Block
 
 MM_PER_INCH = 25.4
 
@@ -12,6 +16,17 @@ MM_PER_INCH = 25.4
 MM_S_PER_FT_MIN = 12 * MM_PER_INCH / 60
 
 Json = dict[str, object]
+
+
+def block_head(block: Block, source_line: str) -> Json:
+    """What stands first in the object of every elementary block."""
+    return {
+        "n": block.n,
+        "line": block.line,
+        "source": source_line,
+        "text": block.text,
+        "kind": str(block.kind),
+    }
 
 
 def inches(mm: float) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from app.cli.figures import Json, degrees, millimetres, seconds
+from app.cli.figures import Json, block_head, degrees, millimetres, seconds
 
 if TYPE_CHECKING:
     from core.interpreter.elementary_blocks import Block
@@ -25,11 +25,7 @@ def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
     feed, mode = _feed(block)
     swivel = block.swivel
     shown = {
-        "n": block.n,
-        "line": block.line,
-        "source": source_line,
-        "text": block.text,
-        "kind": str(block.kind),
+        **block_head(block, source_line),
         "units": "mm",
         **({} if swivel is None else _places(swivel)),
         "feed": feed,

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.cli.figures import MM_S_PER_FT_MIN, Json, degrees, inches, per_minute, seconds
+from app.cli.figures import MM_S_PER_FT_MIN, Json, block_head, degrees, inches, per_minute, seconds
 
 if TYPE_CHECKING:
     from core.interpreter.elementary_blocks import Block
+
+HEAD = "    n  line  kind        X radius          Z         feed      rpm       t  block\n"
 
 
 def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
@@ -17,11 +19,7 @@ def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
     turned = block.kind == "rotate"  # its speed is rpm
     feed = per_minute(block.feed) if not block.per_rev else inches(block.feed)
     return {
-        "n": block.n,
-        "line": block.line,
-        "source": source_line,
-        "text": block.text,
-        "kind": str(block.kind),
+        **block_head(block, source_line),
         "x": inches(block.x),
         "z": inches(block.z),
         "c": degrees(block.c),
@@ -38,6 +36,15 @@ def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
         "t0": seconds(t0),
         "t1": seconds(t1),
     }
+
+
+def row(block: Block, t0: float) -> str:
+    """One line of the table for a person."""
+    feed = f"{inches(block.feed):.5f}/r" if block.per_rev else f"{per_minute(block.feed):.2f}/m"
+    return (
+        f"{block.n:5d} {block.line:5d}  {block.kind:10s}{inches(block.x):11.5f}{inches(block.z):11.5f}"
+        f"{feed:>13s}{block.rpm:9.0f}{t0:8.2f}  {block.text}\n"
+    )
 
 
 def _plane_json(block: Block) -> Json:

@@ -51,16 +51,16 @@ class Circumstances:
 def circumstances(args: argparse.Namespace) -> Circumstances:
     """Read machine, offsets and inputs that the options name; raises CommandError with one sentence."""
     from app.compose.machine_setup import read_machine, setup_for
-    from app.compose.stored_offsets import chosen_offsets, chosen_zero
+    from app.compose.stored_offsets import chosen_offsets
 
     machine = read_machine(args.machine)
-    tools, secondary = chosen_offsets(args.offsets)()
+    tools, secondary, zero = chosen_offsets(args.offsets)()
     inputs = input_states(args.inputs, machine.inputs)
     setup = setup_for(
         machine,
         tools=tools,
         secondary=secondary,
-        zero=chosen_zero(args.offsets)(),
+        zero=zero,
         inputs=inputs,
         block_delete=args.block_delete,
         strict=args.strict,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.cli.figures import Json, degrees, millimetres, seconds
+from app.cli.figures import Json, block_head, degrees, millimetres, seconds
 
 if TYPE_CHECKING:
     from core.interpreter.elementary_blocks import Block
@@ -24,11 +24,7 @@ def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
     arc, doubled = block.kind == "arc", 2.0 if block.modal.diameter else 1.0
     feed, mode = _feed(block)
     return {
-        "n": block.n,
-        "line": block.line,
-        "source": source_line,
-        "text": block.text,
-        "kind": str(block.kind),
+        **block_head(block, source_line),
         "units": "mm",
         "x": millimetres(block.x * doubled),
         "z": millimetres(block.z),

@@ -93,13 +93,12 @@ def _export(args: argparse.Namespace) -> int:
 
 
 def _import(args: argparse.Namespace) -> int:
-    from app.cli.toml_files import read_rows, read_zero
+    from app.cli.toml_files import read_rows
     from core.store import store_export
 
     folder = Path(args.path)
     offsets_file = folder / store_export.OFFSETS
-    tools, secondary = read_rows(offsets_file) if offsets_file.exists() else ({}, {})
-    zero = read_zero(offsets_file) if offsets_file.exists() else {}
+    tools, secondary, zero = read_rows(offsets_file) if offsets_file.exists() else ({}, {}, {})
     with opened_store() as store:
         programs = store_export.program_files(folder)
         store.import_all(programs, tools, secondary, f"import of {folder.name}", zero).result()

@@ -6,7 +6,6 @@ import tomllib
 from collections.abc import Collection, Iterable, Iterator
 from difflib import get_close_matches
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from app.cli.command_errors import CommandError
 from core.store.offset_fields import FIELDS, Field, Sort
@@ -20,9 +19,6 @@ from core.store.store_rows import (
     Value,
     ZeroRow,
 )
-
-if TYPE_CHECKING:
-    from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 
 
 def read_toml(path: Path) -> dict[str, object]:
@@ -96,31 +92,8 @@ _EXPECTED = {
 }
 
 
-def read_zero(path: Path) -> dict[int, ZeroRow]:
-    """The zero offsets of the file; a missing key is 0. Raises CommandError naming every mistake."""
-    mistakes: list[str] = []
-    rows = _table(read_toml(path), Kind.ZERO, mistakes)
-    found = {code: ZeroRow(**values) for code, values in rows}  # type: ignore[arg-type]
-    refuse(path, mistakes)
-    return found
-
-
-def read_offsets(path: Path) -> tuple[dict[int, ToolOffset], dict[int, SecondaryOffset]]:
-    """Tool (geometry and wear together) and secondary offsets in mm by number, for the interpreter.
-
-    Raises CommandError naming every mistake.
-    """
-    from core.interpreter.job_setup import SecondaryOffset, ToolOffset
-
-    tools, secondary = read_rows(path)
-    return (
-        {n: ToolOffset(*row.offset, row.nose_radius) for n, row in tools.items()},
-        {n: SecondaryOffset(*row) for n, row in secondary.items()},
-    )
-
-
-def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow]]:
-    """Every field of the file as the store keeps it, lengths in mm; a missing key is 0 or empty.
+def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], dict[int, ZeroRow]]:
+    """Tool, secondary and zero offsets of the file as the store keeps them; a missing key is 0 or empty.
 
     Raises CommandError naming every mistake.
     """
@@ -135,7 +108,9 @@ def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow]]:
     if len(masters) > 1:
         mistakes.append(f"{' and '.join(masters)} are both master; one tool at most is")
     refuse(path, mistakes)
-    return tools, secondary
+    zero = {code: ZeroRow(**values) for code, values in _table(data, Kind.ZERO, mistakes)}  # type: ignore[arg-type]
+    refuse(path, mistakes)
+    return tools, secondary, zero
 
 
 def _table(

@@ -17,7 +17,7 @@ from app.compose.journal import Journal
 from app.compose.machine_setup import read_machine
 from app.compose.shop_floor import keep_status, open_shop_floor
 from app.compose.special_functions import furnish
-from app.compose.stored_offsets import Offsets, Zero, book_of, stored_offsets, stored_zero
+from app.compose.stored_offsets import Offsets, book_of, stored_offsets
 from app.compose.workshop import drawer, give_mdi, give_searchto, samples, workshop
 from app.desk.alarm_log import KEPT, KINDS
 from app.desk.data_folder import data_folder
@@ -51,18 +51,14 @@ SUPERVISED = {
 GIVE_WAY = 0.001  # seconds after which a worker that proves or draws lets the screen and the executor go on
 
 
-def build_desk(
-    machine_file: str | None = None,
-    offsets: Callable[[], Offsets] = stored_offsets,
-    zero: Callable[[], Zero] = stored_zero,
-) -> Desk:
+def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] = stored_offsets) -> Desk:
     """The desk on the machine that a file describes, its executor running. Close it with ``Desk.close``.
 
     Raises CommandError for a bad machine file and for a machine that does not answer.
     """
     sys.setswitchinterval(GIVE_WAY)
     clock, journal = RealClock(), Journal.at_home()
-    desk, executor = desk_and_executor(machine_file, offsets, clock, journal, zero=zero)
+    desk, executor = desk_and_executor(machine_file, offsets, clock, journal)
     thread, log = ExecutorThread(executor, clock), Log()
     close_floor = _shop_floor(desk, executor, journal)
     file = ProgramFile(lambda: desk.session.now)
@@ -130,8 +126,6 @@ def desk_and_executor(
     offsets: Callable[[], Offsets],
     clock: Clock,
     journal: Journal | None = None,
-    *,
-    zero: Callable[[], Zero] = stored_zero,
 ) -> tuple[Desk, Executor]:
     """Both, with nobody ticking the executor yet; what happens goes to the journal, where there is one."""
     machine = read_machine(machine_file)
@@ -144,7 +138,7 @@ def desk_and_executor(
         note=journal.note if journal is not None else _kept_nowhere,
         left=journal.left if journal is not None else None,
     )
-    desk = _desk(machine, executor, connected, events, offsets, zero)
+    desk = _desk(machine, executor, connected, events, offsets)
     events.desk = desk
     if journal is not None:
         desk.log.recall(_stops(journal))
@@ -181,7 +175,6 @@ def _desk(
     connected: Connected,
     events: _Events,
     offsets: Callable[[], Offsets],
-    zero: Callable[[], Zero],
 ) -> Desk:
     """The desk with all its pages."""
     journal, say = events.journal, events.say
@@ -195,7 +188,7 @@ def _desk(
         post=guarded(executor.post, changed, partial(say, "refused")),
         snapshot=lambda: executor.snapshot,
         session=ProgramLoader(
-            workshop(machine, offsets, journal, zero=zero, left=left),
+            workshop(machine, offsets, journal, left=left),
             executor.post,
         ),
         program_folders=ProgramFolders((data_folder() / "programs", samples())),
@@ -205,11 +198,11 @@ def _desk(
         lathe=machine,
         machine=f"{machine.name} · {_drives(machine)}",
         changes=changed,
-        book=book_of(offsets, zero, journal),
+        book=book_of(offsets, journal),
     )
     desk.attach(Effect(drawer(machine)))
-    desk.attach(_editor(workshop(machine, offsets, zero=zero, left=left), journal))
-    furnish(desk, machine, keep, workshop(machine, offsets, zero=zero, left=left))
+    desk.attach(_editor(workshop(machine, offsets, left=left), journal))
+    furnish(desk, machine, keep, workshop(machine, offsets, left=left))
     give_mdi(desk, machine, offsets, keep)
     give_searchto(desk, machine)
     return desk

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from app.compose.journal import Journal
 from app.compose.machine_setup import setup_for
-from app.compose.stored_offsets import Offsets, Zero, stored_zero
+from app.compose.stored_offsets import Offsets
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
 from app.desk.latest import Watch
@@ -46,7 +46,6 @@ def workshop(
     offsets: Callable[[], Offsets],
     journal: Journal | None = None,
     *,
-    zero: Callable[[], Zero] = stored_zero,
     left: Callable[[], Modal] | None = None,
     pictures: bool = True,
 ) -> LoadingSteps:
@@ -56,16 +55,16 @@ def workshop(
     def new_job(source: Source, block_delete: bool) -> Job:
         if journal is not None:
             journal.keep(source)
-        tools, secondary = offsets()
-        setup = setup_for(machine, tools=tools, secondary=secondary, zero=zero(), block_delete=block_delete)
+        tools, secondary, zero = offsets()
+        setup = setup_for(machine, tools=tools, secondary=secondary, zero=zero, block_delete=block_delete)
         if left is not None:
             modal = left()
             setup = replace(setup, metric=modal.metric, last_rapid=modal.rapid_rate)
         return make_job(_whole(source), setup)
 
     def renewed(job: Job) -> Job:
-        tools, secondary = offsets()
-        setup = replace(job.setup, tools=tools, secondary=secondary, zero=zero())
+        tools, secondary, zero = offsets()
+        setup = replace(job.setup, tools=tools, secondary=secondary, zero=zero)
         return replace(make_job(job.source, setup), reading=job.reading)
 
     passes = _ProofAndPicture(machine, pictures=pictures)
@@ -177,7 +176,7 @@ def line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
     def prove_line(text: str, snapshot: Snapshot, watch: Watch) -> tuple[Job, Proved]:
         from core.proving.prove_program import prove
 
-        tools, secondary = offsets()
+        tools, secondary, _ = offsets()
         setup = replace(
             setup_for(machine, tools=tools, secondary=secondary),
             start=snapshot.demand,

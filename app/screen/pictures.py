@@ -47,8 +47,8 @@ class Stage:
     """One desk on the simulated lathe, moved by hand."""
 
     def __init__(self, journal: Journal | None = None, machine: str | None = None) -> None:
-        from app.cli.toml_files import read_offsets
         from app.compose.screen_desk import desk_and_executor, step_clock
+        from app.compose.stored_offsets import read_offsets
         from app.compose.workshop import samples
         from app.offsets.offset_book import OffsetBook
         from core.store.store import Store
@@ -69,10 +69,10 @@ class Stage:
 
     def _fill(self, store: Store) -> None:
         """The offsets of the samples and some corrections."""
-        from app.cli.toml_files import read_offsets
+        from app.compose.stored_offsets import read_offsets
         from app.compose.workshop import samples
 
-        for number, tool in read_offsets(samples() / "offsets.toml")[0].items():
+        for number, tool in read_offsets(samples() / "offsets.toml").tools.items():
             store.set_tool(number, "touched off", x=tool.x, z=tool.z, nose_radius=tool.nose_radius)
         for number, x, z, why in CORRECTIONS:
             store.set_secondary(number, why, x=x * 25.4, z=z * 25.4).result()

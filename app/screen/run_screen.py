@@ -113,9 +113,9 @@ class _Carry:
 
 def _composed(machine: str | None, offsets: str | None) -> Desk:
     from app.compose.screen_desk import build_desk
-    from app.compose.stored_offsets import chosen_offsets, chosen_zero
+    from app.compose.stored_offsets import chosen_offsets
 
-    return build_desk(machine, chosen_offsets(offsets), chosen_zero(offsets))
+    return build_desk(machine, chosen_offsets(offsets))
 
 
 def _application(theme: str) -> QApplication:

@@ -21,8 +21,8 @@ from PySide6.QtCore import QEventLoop, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.cli.toml_files import read_offsets
 from app.compose.screen_desk import build_desk
+from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
 from app.editor.editor_view import EditorPage
 from app.screen.look import Look, dress, load_fonts

@@ -23,8 +23,8 @@ os.environ["QT_NO_GLIB"] = "1"  # without glib Qt tells before it sleeps that al
 from PySide6.QtCore import QAbstractEventDispatcher, QEventLoop, QSize
 from PySide6.QtWidgets import QApplication
 
-from app.cli.toml_files import read_offsets
 from app.compose.screen_desk import build_desk
+from app.compose.stored_offsets import read_offsets
 from app.desk.program_loading import Phase
 from app.screen.look import Look, dress, load_fonts
 from app.screen.main_window import MainWindow

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from app.cli.command_errors import CommandError
-from app.cli.toml_files import read_inputs, read_offsets
+from app.cli.toml_files import read_inputs
+from app.compose.stored_offsets import NONE, read_offsets
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 
 
@@ -20,13 +21,13 @@ def written(tmp_path: Path, text: str) -> Path:
 
 def test_offsets_become_millimetres(tmp_path: Path) -> None:
     text = "[tool.1]\nx = 1\nz = -0.5\nnose_radius = 0.015\n[secondary.32]\nx = -0.015\n"
-    tools, secondary = read_offsets(written(tmp_path, text))
+    tools, secondary, _ = read_offsets(written(tmp_path, text))
     assert tools == {1: ToolOffset(25.4, -12.7, 0.015 * 25.4)}
     assert secondary == {32: SecondaryOffset(-0.015 * 25.4, 0.0, 0.0)}
 
 
 def test_empty_file_sets_nothing(tmp_path: Path) -> None:
-    assert read_offsets(written(tmp_path, "")) == ({}, {})
+    assert read_offsets(written(tmp_path, "")) == NONE
 
 
 @pytest.mark.parametrize(
@@ -112,7 +113,7 @@ def test_wear_of_an_offsets_file_is_in_what_the_interpreter_gets(tmp_path: Path)
     path.write_text(
         '[tool.2]\nx = 1.5\nz = -2\nwear_x = -0.001\nwear_z = 0.002\nquadrant = 3\nremark = "new"\n'
     )
-    tools, _secondary = read_offsets(path)
+    tools, *_ = read_offsets(path)
     assert tools[2].x == pytest.approx(1.499 * 25.4)
     assert tools[2].z == pytest.approx(-1.998 * 25.4)
 

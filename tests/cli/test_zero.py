@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.cli.command_errors import CommandError
-from app.cli.toml_files import read_offsets, read_zero
+from app.cli.toml_files import read_rows
 from core.store.store_rows import ZeroRow
 from tests.cli.conftest import Turndesk
 
@@ -43,14 +43,14 @@ def test_a_program_under_the_offsets_of_a_file(turndesk: Turndesk, tmp_path: Pat
 
 def test_what_a_file_may_hold(tmp_path: Path) -> None:
     path = written(tmp_path, "[zero.54]\nc = 5\n[zero.59]\nz = 1\n[secondary.1]\nx = 0.1\n")
-    assert read_zero(path) == {54: ZeroRow(c=5.0), 59: ZeroRow(z=1.0)}
-    assert sorted(read_offsets(path)[1]) == [1]
+    assert read_rows(path)[2] == {54: ZeroRow(c=5.0), 59: ZeroRow(z=1.0)}
+    assert sorted(read_rows(path)[1]) == [1]
 
 
 def test_every_mistake_at_once(tmp_path: Path) -> None:
     path = written(tmp_path, "[zero.53]\nx = 1\n[zero.54]\ny = 1\nx = true\nc = 400\nz = nan\n")
     with pytest.raises(CommandError) as told:
-        read_zero(path)
+        read_rows(path)
     for part in (
         "zero.53",
         "y is unknown",
@@ -60,7 +60,7 @@ def test_every_mistake_at_once(tmp_path: Path) -> None:
     ):
         assert part in str(told.value)
     with pytest.raises(CommandError, match="must hold tables"):
-        read_zero(written(tmp_path, "zero = 3\n"))
+        read_rows(written(tmp_path, "zero = 3\n"))
 
 
 def test_set_by_the_command_line_and_used_by_programs(turndesk: Turndesk, tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from app.compose.accepted_machine import differences, key_of, record_of
 from app.compose.journal import Journal
 from app.compose.machine_files import load_machine
 from app.compose.screen_desk import desk_and_executor
+from app.compose.stored_offsets import NONE
 from app.desk.desk import Desk
 from app.desk.persistence import NoPersistence
 from app.special.machine_file_acceptance import MachineFileAcceptance
@@ -65,7 +66,7 @@ def room(file: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Room]:
     """The control from its start to its end, on one store."""
     monkeypatch.setenv("TURNDESK_HOME", str(file.parent / "home"))
     clock, journal = StepClock(), Journal.at_home()
-    desk, executor = desk_and_executor(str(file), lambda: ({}, {}), clock, journal)
+    desk, executor = desk_and_executor(str(file), lambda: NONE, clock, journal)
     made = Room(desk, executor, clock)
     made.run(2)
     try:

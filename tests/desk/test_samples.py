@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from app.cli.toml_files import read_offsets
 from app.compose.machine_files import load_machine, named_machine
 from app.compose.machine_setup import setup_for
+from app.compose.stored_offsets import read_offsets
 from core.language.sinumerik.subprogram_files import with_subprograms
 from core.language.source import load_source
 from core.proving.prove_program import prove
@@ -16,7 +16,7 @@ from tests.screen.desks import SAMPLES
 @pytest.mark.parametrize("name", ["pinbar.nc", "bushing.nc", "grooves.nc", "knob.nc", "pin.nc"])
 def test_sample_proves(name: str) -> None:
     machine = load_machine(None)
-    tools, secondary = read_offsets(SAMPLES / "offsets.toml")
+    tools, secondary, _ = read_offsets(SAMPLES / "offsets.toml")
     report = prove(load_source(SAMPLES / name), setup_for(machine, tools=tools, secondary=secondary), machine)
     assert report.diagnostics == ()
     assert report.missing_tools == ()

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.toml_files import read_offsets
 from app.compose.machine_files import load_machine, shipped_machine
 from app.compose.machine_setup import setup_for
+from app.compose.stored_offsets import read_offsets
 from core.executor.commands import CycleStart, FeedHold, SetSwitch
 from core.executor.snapshot import State
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset
@@ -65,7 +65,7 @@ def test_a_worked_example_is_stepped_through_to_its_end(path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["pinbar", "bushing", "grooves", "knob", "pin"])
 def test_a_sample_is_stepped_through_to_its_end(name: str) -> None:
-    tools, secondary = read_offsets(SAMPLES / "offsets.toml")
+    tools, secondary, _ = read_offsets(SAMPLES / "offsets.toml")
     check(load_source(SAMPLES / f"{name}.nc"), setup_for(LATHE, tools=tools, secondary=secondary))
 
 
@@ -74,7 +74,7 @@ def test_a_sample_is_stepped_through_to_its_end(name: str) -> None:
     [("roof.h", "ac-table-mill"), ("ring.mpf", "sinumerik-modulo"), ("ring.mpf", "sinumerik-linear")],
 )
 def test_a_sample_of_another_dialect_is_stepped_through_to_its_end(name: str, machine: str) -> None:
-    tools, secondary = read_offsets(SAMPLES / "offsets.toml")
+    tools, secondary, _ = read_offsets(SAMPLES / "offsets.toml")
     model = shipped_machine(machine)
     source = with_subprograms(load_source(SAMPLES / name), [SAMPLES])
     check(source, setup_for(model, tools=tools, secondary=secondary), model)

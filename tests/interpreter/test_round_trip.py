@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.toml_files import read_offsets
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
+from app.compose.stored_offsets import read_offsets
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.interpreter.omniturn.code_table import CHAPTERS
@@ -59,7 +59,7 @@ def _line(block: Block) -> str:
     ("name", "source"), programs(), ids=lambda value: value if isinstance(value, str) else ""
 )
 def test_plain_lines_make_the_same_path(name: str, source: Source) -> None:
-    tools, _ = read_offsets(SAMPLES / "offsets.toml")
+    tools, *_ = read_offsets(SAMPLES / "offsets.toml")
     path = [b for b in moves(source, {n: ToolOffset() for n in range(1, 9)} | tools) if _long_enough(b)]
     if not path or not PLAIN.issuperset(block.kind for block in path):
         pytest.skip(f"{name} has no moves, or moves that plain lines cannot say")

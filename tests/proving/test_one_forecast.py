@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.toml_files import read_offsets
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
+from app.compose.stored_offsets import read_offsets
 from core.interpreter.job_setup import SecondaryOffset, Setup
 from core.language.source import Source, load_source
 from core.proving.program_timeline import Timeline, timed_series
@@ -60,7 +60,7 @@ def test_worked_examples(path: Path) -> None:
 
 @pytest.mark.parametrize("path", sorted(SAMPLES.glob("*.nc")), ids=lambda path: path.stem)
 def test_samples(path: Path) -> None:
-    tools, secondary = read_offsets(SAMPLES / "offsets.toml")
+    tools, secondary, _ = read_offsets(SAMPLES / "offsets.toml")
     check(load_source(path), setup_for(MACHINE, tools=tools, secondary=secondary))
 
 

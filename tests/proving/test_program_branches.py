@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.cli.toml_files import read_offsets
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
+from app.compose.stored_offsets import read_offsets
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
@@ -215,7 +215,7 @@ def test_a_subroutine_that_nothing_calls_is_told() -> None:
 
 
 def test_the_bar_feeders_sample_proves_and_its_end_of_bar_too() -> None:
-    tools, secondary = read_offsets(SAMPLES / "offsets.toml")
+    tools, secondary, _ = read_offsets(SAMPLES / "offsets.toml")
     source = load_source(SAMPLES / "pinbar.nc")
     setup = setup_for(MACHINE, tools=tools, secondary=secondary)
     assert prove(source, setup, MACHINE).ways.proved == 2

@@ -10,7 +10,7 @@ import pytest
 from app.cli.command_errors import CommandError
 from app.compose.journal import Journal
 from app.compose.screen_desk import build_desk
-from app.compose.stored_offsets import book_of, chosen_offsets, chosen_zero, stored_offsets, stored_zero
+from app.compose.stored_offsets import NONE, book_of, chosen_offsets, stored_offsets
 from core.executor.snapshot import Event
 from core.interpreter.job_setup import SecondaryOffset
 from core.language.source import Source
@@ -28,7 +28,7 @@ SHIPPED = Path(__file__).parents[2] / "resources" / "machines" / "gt75.toml"
 
 
 def test_an_offsets_file_takes_the_place_of_the_store() -> None:
-    tools, secondary = chosen_offsets(str(SHIPPED.parents[1] / "programs" / "offsets.toml"))()
+    tools, secondary, _ = chosen_offsets(str(SHIPPED.parents[1] / "programs" / "offsets.toml"))()
     assert sorted(tools) == [1, 2, 3, 4, 20]
     assert tools[1].z == pytest.approx(-3.0 * 25.4)
     assert secondary == {}
@@ -36,7 +36,7 @@ def test_an_offsets_file_takes_the_place_of_the_store() -> None:
 
 def test_without_a_file_the_store_is_asked_anew_each_time(home: Path) -> None:
     offsets = chosen_offsets(None)
-    assert offsets() == ({}, {})
+    assert offsets() == NONE
     with Store.open(home) as store:
         store.set_tool(7, x=1.0, z=2.0, why="touched off").result(5)
     assert sorted(offsets()[0]) == [7]
@@ -72,7 +72,7 @@ def test_a_store_that_cannot_be_trusted_is_told_and_left_alone(home: Path) -> No
 
 def test_offsets_are_written_by_the_journals_store_and_read_by_the_next_loading(home: Path) -> None:
     journal = Journal(home)
-    book = book_of(stored_offsets, stored_zero, journal)
+    book = book_of(stored_offsets, journal)
     assert book.change(Kind.SECONDARY, 4, {"x": 0.1, "z": -0.2, "r": 0.4}, "X .2") == ""
     journal.close()  # writes what is queued
     assert stored_offsets()[1] == {4: SecondaryOffset(0.1, -0.2, 0.4)}
@@ -81,14 +81,14 @@ def test_offsets_are_written_by_the_journals_store_and_read_by_the_next_loading(
 def test_offsets_of_a_file_are_shown_and_not_changed(home: Path) -> None:
     journal = Journal(home)
     file = str(SHIPPED.parents[1] / "programs" / "offsets.toml")
-    book = book_of(chosen_offsets(file), chosen_zero(file), journal)
+    book = book_of(chosen_offsets(file), journal)
     assert sorted(book.tools) == [1, 2, 3, 4, 20]
     assert "READ ONLY" in book.change(Kind.TOOL, 1, {"x": 1.0}, "try")
     assert "READ ONLY" in book.clear(Kind.SECONDARY, "C")
     assert "READ ONLY" in book.undo(Kind.TOOL)
     assert book.history(Kind.TOOL) == ()
     journal.close()
-    assert stored_offsets() == ({}, {})
+    assert stored_offsets() == NONE
 
 
 def test_without_a_store_the_offsets_say_why_they_are_not_kept(home: Path) -> None:

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QApplication
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from app.compose.screen_desk import desk_and_executor, step_clock
+from app.compose.stored_offsets import Offsets
 from app.screen.look import Look
 from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
@@ -38,9 +39,10 @@ EXAMPLES = (
     "loop-notches",
     "tapping",
 )
-OFFSETS = (
+OFFSETS = Offsets(
     {n: ToolOffset() for n in range(1, 9)},
     {n: SecondaryOffset(x=-0.0127 * n) for n in range(1, 5)},
+    {},
 )
 TICK = 0.01
 MOST = 120.0  # s of machine time
@@ -89,7 +91,7 @@ def lathe(qapp: object) -> Iterator[Lathe]:
 
 def proved(path: Path) -> Report:
     machine = load_machine(None)
-    setup = setup_for(machine, tools=OFFSETS[0], secondary=OFFSETS[1])
+    setup = setup_for(machine, tools=OFFSETS.tools, secondary=OFFSETS.secondary)
     return prove(load_source(path), setup, machine)
 
 

@@ -11,8 +11,8 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.automatic.automatic_view import AutomaticPage
-from app.cli.toml_files import read_offsets
 from app.compose.screen_desk import desk_and_executor, step_clock
+from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
 from app.editor.editor_view import EditorPage
 from app.offsets.offset_book import OffsetBook
@@ -38,7 +38,7 @@ class Mill:
             "ac-table-mill", lambda: read_offsets(offsets), self._clock
         )
         self._store = Store.open(folder)
-        for number, tool in read_offsets(offsets)[0].items():
+        for number, tool in read_offsets(offsets).tools.items():
             self._store.set_tool(number, "measured", x=tool.x, z=tool.z, nose_radius=tool.nose_radius)
         self.desk.book = OffsetBook(self._store)
         self.desk.hands.clock = self._clock.now

@@ -13,6 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
 from app.compose.screen_desk import desk_and_executor, step_clock
+from app.compose.stored_offsets import NONE
 from app.editor.editor import Editor, Stage, enter
 from app.editor.heading_view import editor_places
 from app.editor.text_view import TextField
@@ -102,7 +103,7 @@ def test_nothing_overlaps(width: int, height: int, u: float, asking: bool) -> No
 def test_versions_are_in_the_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
     journal = Journal.at_home()
-    desk, executor = desk_and_executor(None, lambda: ({}, {}), step_clock(), journal)
+    desk, executor = desk_and_executor(None, lambda: NONE, step_clock(), journal)
     executor.tick()
     editor = desk.attached(Editor)
     assert editor is not None
