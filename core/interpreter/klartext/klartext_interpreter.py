@@ -26,7 +26,6 @@ from core.language.klartext.klartext_nodes import (
     Datum,
     KlartextLine,
     Label,
-    MCode,
     Move,
     Plane,
     Stop,
@@ -78,7 +77,8 @@ class Interpreter(Interpretation):
             if self._stopped and (to_first_error or self._log.full):
                 return
         if not self._stopped and flow.at == flow.end < len(lines):
-            yield m_functions.end(self._state, flow.end + 1, self._program.text(lines[flow.end]))
+            self._state.line, self._state.text = flow.end + 1, self._program.text(lines[flow.end])
+            yield m_functions.end(self._state)
 
     def _guarded(self, line: KlartextLine) -> Iterator[Block]:
         """The blocks of a line; an error of it is kept and ends them."""
@@ -94,56 +94,48 @@ class Interpreter(Interpretation):
             self._stopped = True
 
     def _line(self, line: KlartextLine) -> Iterator[Block]:
-        state, number, node = self._state, line.number, line.node
+        state, node = self._state, line.node
+        state.line, state.text = line.number, self._program.text(line)
         match node:
-            case Move():
-                yield from self._move(line, node)
-            case Codes():
-                yield from self._codes(line, node)
+            case Move() | Codes():
+                yield from self._with_codes(node, line.comment or "")
             case Plane():
-                yield from plane(state, number, self._program.text(line), node)
+                yield from plane(state, node)
             case ToolCall():
-                yield from tool_call(state, number, self._program.text(line), node, self._tools)
+                yield from tool_call(state, node, self._tools)
             case Datum():
-                _datum(state, number, node)
+                _datum(state, node)
             case Label():
                 self._flow.label(node)
             case Call():
-                self._flow.call(number, node)
+                self._flow.call(line.number, node)
             case Assign():
-                state.q[node.q] = word_values.number(state, number, node.value, f"Q{node.q}", MOST_Q)
+                state.q[node.q] = word_values.number(state, node.value, f"Q{node.q}", MOST_Q)
             case Stop():
-                yield state.action(number, "STOP", ProgramStop(optional=False, message=line.comment or ""))
+                yield state.action(ProgramStop(optional=False, message=line.comment or ""))
 
-    def _move(self, line: KlartextLine, node: Move) -> Iterator[Block]:
-        state, number, text = self._state, line.number, self._program.text(line)
-        m_functions.check(state, number, node.codes)
-        yield from m_functions.before(state, number, text, node.codes)
-        machine = any(code.number == m_functions.M91 for code in node.codes)
-        yield from move(state, number, text, node, machine=machine)
-        yield from self._behind(line, text, node.codes)
-
-    def _codes(self, line: KlartextLine, node: Codes) -> Iterator[Block]:
-        text = self._program.text(line)
-        m_functions.check(self._state, line.number, node.codes)
-        yield from m_functions.before(self._state, line.number, text, node.codes)
-        yield from self._behind(line, text, node.codes)
-
-    def _behind(self, line: KlartextLine, text: str, codes: tuple[MCode, ...]) -> Iterator[Block]:
-        for block in m_functions.behind(self._state, line.number, text, codes, line.comment or ""):
+    def _with_codes(self, node: Move | Codes, comment: str) -> Iterator[Block]:
+        """The M functions of a block, and between them its move where it has one."""
+        state = self._state
+        m_functions.check(state, node.codes)
+        yield from m_functions.before(state, node.codes)
+        if isinstance(node, Move):
+            machine = any(code.number == m_functions.M91 for code in node.codes)
+            yield from move(state, node, machine=machine)
+        for block in m_functions.behind(state, node.codes, comment):
             yield block
             if isinstance(block.action, ProgramEnd):
                 self._flow.at = len(self._program.lines)  # behind END PGM: nothing ends twice
 
 
-def _datum(state: State, line: int, node: Datum) -> None:
+def _datum(state: State, node: Datum) -> None:
     """TRANS DATUM and cycle 7: in the workpiece's system, within the plane while one is in force."""
     if node.reset:
         state.datum = state.shift = ORIGIN
     elif node.axes:
         now = dict(zip(SLIDES, state.shift if state.plane is not None else state.datum, strict=True))
         for word in node.axes:
-            value = word_values.coordinate(state, line, word)
+            value = word_values.coordinate(state, word)
             now[word.axis] = now[word.axis] + value if word.incremental else value
         made: Vector = (now["X"], now["Y"], now["Z"])
         if state.plane is not None:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from core.geometry.rotation_frames import Vector
 from core.interpreter.diagnostic_log import MOST_OF_A_KIND
 from core.interpreter.units import MM_PER_INCH
 from core.interpreter.working_plane import Corners
-from core.language.diagnostics import Diagnostic, ProgramError, Severity
-from core.language.klartext import klartext_faults, read_line
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.klartext import read_line
 from core.language.klartext.canonical_text import name_text, written
+from core.language.klartext.klartext_faults import LABEL, LABEL_TWICE, NESTING, fault, syntax
 from core.language.klartext.klartext_nodes import Begin, BlankForm, Call, End, KlartextLine, Label
 from core.language.source import Source
 
@@ -58,10 +59,7 @@ def read_program(source: Source) -> Program:
     program = Program(source, lines, end=len(lines))
     found = [line.error for line in lines if line.error is not None]
     for look in (_frame, _labels, _calls):
-        try:
-            found += look(program)
-        except ProgramError as problem:
-            found.append(problem.diagnostic)
+        found += look(program)
     program.problems = sorted(found, key=lambda each: (each.line, each.column))[: 2 * MOST_OF_A_KIND]
     program.corners = _corners(program)
     return program
@@ -80,102 +78,63 @@ def _corners(program: Program) -> Corners | None:
     return found[1], found[2]
 
 
-def _frame(program: Program) -> Sequence[Diagnostic]:
+def _frame(program: Program) -> Iterator[Diagnostic]:
     """BEGIN PGM first and END PGM last, of the same program."""
     with_blocks = [index for index, line in enumerate(program.lines) if line.node or line.error]
     first = program.lines[with_blocks[0]] if with_blocks else None
     if first is None or not isinstance(first.node, Begin):
-        if first is not None and first.error is not None:
-            return []
-        number = first.number if first else 1
-        raise klartext_faults.syntax(
-            number, 1, "BEGIN PGM is missing.", "The first block names program and unit."
-        )
+        if first is None or first.error is None:
+            hint = "The first block names program and unit."
+            yield _wrong(first.number if first else 1, "BEGIN PGM is missing.", hint)
+        return
     program.inch = first.node.inch
-    ends = [index for index in with_blocks if isinstance(program.lines[index].node, End)]
-    if not ends:
-        last = program.lines[with_blocks[-1]].number
-        raise klartext_faults.syntax(last, 1, "END PGM is missing.", "Look whether the file is whole.")
-    program.end = ends[0]
-    return [
-        *_second_begin(program, with_blocks[1:]),
-        *_behind_the_end(program, with_blocks),
-        *_names(program),
-    ]
-
-
-def _second_begin(program: Program, rest: Sequence[int]) -> list[Diagnostic]:
-    return [
-        klartext_faults.syntax(
-            index + 1, 1, "BEGIN PGM stands twice.", "A file holds one program."
-        ).diagnostic
-        for index in rest
-        if isinstance(program.lines[index].node, Begin)
-    ]
-
-
-def _behind_the_end(program: Program, with_blocks: Sequence[int]) -> list[Diagnostic]:
-    behind = [index for index in with_blocks if index > program.end]
-    if not behind:
-        return []
-    text = "This block stands behind END PGM."
-    return [klartext_faults.syntax(behind[0] + 1, 1, text, "Move it before END PGM.").diagnostic]
-
-
-def _names(program: Program) -> list[Diagnostic]:
-    first = next(line.node for line in program.lines if isinstance(line.node, Begin))
-    last = program.lines[program.end].node
-    assert isinstance(last, End)
-    if first.inch != last.inch:
+    ends = ((index, node) for index in with_blocks if isinstance(node := program.lines[index].node, End))
+    program.end, last = next(ends, (program.end, None))
+    if last is None:
+        yield _wrong(with_blocks[-1] + 1, "END PGM is missing.", "Look whether the file is whole.")
+        return
+    for index in with_blocks[1:]:
+        if isinstance(program.lines[index].node, Begin):
+            yield _wrong(index + 1, "BEGIN PGM stands twice.", "A file holds one program.")
+    behind = next((index for index in with_blocks if index > program.end), None)
+    if behind is not None:
+        yield _wrong(behind + 1, "This block stands behind END PGM.", "Move it before END PGM.")
+    if first.node.inch != last.inch:
         text = "BEGIN PGM and END PGM name different units."
-        return [
-            klartext_faults.syntax(
-                program.end + 1, 1, text, "Write the unit of the program in both."
-            ).diagnostic
-        ]
-    if first.name.upper() != last.name.upper():
-        text = f"The program begins as {first.name} and ends as {last.name}."
+        yield _wrong(program.end + 1, text, "Write the unit of the program in both.")
+    elif first.node.name.upper() != last.name.upper():
+        text = f"The program begins as {first.node.name} and ends as {last.name}."
         hint = "Look whether the file is whole."
-        return [Diagnostic(program.end + 1, 1, Severity.WARNING, "program-name", text, hint)]
-    return []
+        yield Diagnostic(program.end + 1, 1, Severity.WARNING, "program-name", text, hint)
 
 
-def _labels(program: Program) -> list[Diagnostic]:
-    found = []
+def _wrong(line: int, text: str, hint: str) -> Diagnostic:
+    return syntax(line, 1, text, hint).diagnostic
+
+
+def _labels(program: Program) -> Iterator[Diagnostic]:
     for index, line in enumerate(program.lines[: program.end]):
         node = line.node
         if not isinstance(node, Label) or node.name == 0:
             continue
-        if node.name in program.labels:
+        if program.labels.setdefault(node.name, index) != index:
             text = f"LBL {name_text(node.name)} stands on line {program.labels[node.name] + 1} too."
-            hint = "Give it another number."
-            found.append(
-                klartext_faults.fault(
-                    line.number, node.column, klartext_faults.LABEL_TWICE, text, hint
-                ).diagnostic
-            )
-        else:
-            program.labels[node.name] = index
-    return found
+            yield fault(line.number, node.column, LABEL_TWICE, text, "Give it another number.").diagnostic
 
 
-def _calls(program: Program) -> list[Diagnostic]:
+def _calls(program: Program) -> Iterator[Diagnostic]:
     """Calls of labels that are not there, and of subprograms without an end."""
-    found = []
     for line in program.lines[: program.end]:
         node = line.node
         if not isinstance(node, Call):
             continue
         name, at = name_text(node.name), program.labels.get(node.name)
         if at is None:
-            text, code = f"LBL {name} is nowhere in the program.", klartext_faults.LABEL
+            text, hint = f"LBL {name} is nowhere in the program.", "Correct the number, or write the label."
+            yield fault(line.number, node.column, LABEL, text, hint).diagnostic
         elif node.repeat is None and program.subprogram_end(at) is None:
-            text, code = f"The subprogram LBL {name} has no LBL 0.", klartext_faults.SYNTAX
-        else:
-            continue
-        hint = "Write LBL 0 behind it." if at is not None else "Correct the number, or write the label."
-        found.append(klartext_faults.fault(line.number, node.column, code, text, hint).diagnostic)
-    return found
+            text = f"The subprogram LBL {name} has no LBL 0."
+            yield syntax(line.number, node.column, text, "Write LBL 0 behind it.").diagnostic
 
 
 DEEPEST_CALL = 19
@@ -209,7 +168,7 @@ class Flow:
         if len(self._levels) > DEEPEST_CALL:
             text = f"Calls are nested more than {DEEPEST_CALL} deep at LBL {name_text(node.name)}."
             hint = "A subprogram must not call itself."
-            raise klartext_faults.fault(line, node.column, klartext_faults.NESTING, text, hint)
+            raise fault(line, node.column, NESTING, text, hint)
         self._levels.append(_Level(back=self.at))
         self.at = target + 1
 

@@ -16,6 +16,8 @@ from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal
 from core.interpreter.units import MM_PER_INCH
 from core.interpreter.working_plane import Angles, Corners, PlaneSystem, Swivel
+from core.language.diagnostics import ProgramError
+from core.language.klartext.klartext_faults import fault
 
 ORIGIN: Vector = (0.0, 0.0, 0.0)
 
@@ -41,10 +43,11 @@ class State:
     ``datum`` is the workpiece datum in the workpiece's system, ``shift`` what TRANS DATUM has added within
     the plane in force. ``frame`` and ``origin`` are the working plane's axes and origin in the workpiece's
     system, ``place`` takes its points to machine positions of the slides; ``point`` is where the tip stands
-    in it, mm.
+    in it, mm. ``line`` is the one that is being executed, ``text`` its block as it is shown.
     """
 
     def __init__(self, setup: Setup, kinematics: Kinematics, log: Log, *, inch: bool) -> None:
+        self.line, self.text = 0, ""
         self.kinematics = kinematics
         self.names = kinematics.names
         self.rotary_names = tuple(axis.name for axis in kinematics.rotaries)
@@ -135,16 +138,14 @@ class State:
         """F as mm/s: mm/min, or tenths of an inch a minute in an INCH program."""
         return word / 60.0 if self.scale == 1.0 else word * 0.1 * MM_PER_INCH / 60.0
 
+    def refuse(self, column: int, code: str, message: str, hint: str) -> ProgramError:
+        """An error of the line that is being executed, to be raised: at this column."""
+        return fault(self.line, column, code, message, hint)
+
     # --- blocks -------------------------------------------------------------------------------------------
 
     def move(
-        self,
-        line: int,
-        text: str,
-        kind: Kind,
-        end: Mapping[str, float],
-        feed: float | None,
-        way: CurvedMove | None = None,
+        self, kind: Kind, end: Mapping[str, float], feed: float | None, way: CurvedMove | None = None
     ) -> Block:
         """Go to ``end`` (axes that it lacks stay) and tell it. ``feed`` None is rapid.
 
@@ -162,41 +163,27 @@ class State:
         self.go(goal)
         if self.modal.rapid != (feed is None):
             self.modal = self.modal._replace(rapid=feed is None)
-        return self._block(
-            line, text, kind, before, Travel(from_here, self.there, length, way, away > SAME_POINT), rate
-        )
+        travel = Travel(from_here, self.there, length, way, away > SAME_POINT)
+        return self._block(kind, before, travel, rate)
 
-    def action(self, line: int, text: str, action: Action) -> Block:
+    def action(self, action: Action) -> Block:
         """A block in which no axis moves."""
         here = Travel(self.there, self.there, 0.0, slides=False)
         kind = Kind.DWELL if isinstance(action, Dwell) else Kind.ACTION
-        return self._block(line, text, kind, self.point, here, 0.0, action)
+        return self._block(kind, self.point, here, 0.0, action)
 
     def _block(
-        self,
-        line: int,
-        text: str,
-        kind: Kind,
-        before: Vector,
-        travel: Travel,
-        feed: float,
-        action: Action | None = None,
+        self, kind: Kind, before: Vector, travel: Travel, feed: float, action: Action | None = None
     ) -> Block:
         self.blocks += 1
         end, slides, c = self.point, self.slides, self._c
         return Block(
-            n=self.blocks,
-            line=line,
-            kind=kind,
-            text=text,
+            n=self.blocks, line=self.line, kind=kind, text=self.text,
             x0=before[0], z0=before[2], c0=travel.start[c] if c >= 0 else 0.0,
             x=end[0], z=end[2], c=travel.end[c] if c >= 0 else 0.0,
             offset_x=slides[0] - end[0], offset_z=slides[2] - end[2],
-            modal=self.modal,
-            feed=feed,
-            rpm=self.modal.rpm * self.modal.spindle,
-            action=action,
-            travel=travel,
+            modal=self.modal, feed=feed, rpm=self.modal.rpm * self.modal.spindle,
+            action=action, travel=travel,
             swivel=Swivel(before, end, slides, self.shown, self._system()),
         )  # fmt: skip
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from core.interpreter.actions import (
-    Action,
     Coolant,
     Output,
     ProgramEnd,
@@ -17,7 +16,13 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext import word_values
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.plane_functions import retract, retract_way
-from core.language.klartext import klartext_faults
+from core.language.klartext.klartext_faults import (
+    CONTRADICTION,
+    NOT_WITH_M128,
+    WRONG_RPM,
+    syntax,
+    unsupported,
+)
 from core.language.klartext.klartext_nodes import MCode
 
 M91 = 91
@@ -27,101 +32,94 @@ _OF_THE_BLOCK = frozenset({M91, 126})  # 126, the short way of rotary axes, is a
 _TURNS = {3: 1, 4: -1, 13: 1, 14: -1}
 
 
-def check(state: State, line: int, codes: Sequence[MCode]) -> None:
+def check(state: State, codes: Sequence[MCode]) -> None:
     """Raises ProgramError for codes this machine lacks, contradictions, and what M128 forbids."""
     known = _BEFORE | _BEHIND | _OF_THE_BLOCK | state.setup.limits.m_outputs.keys()
     for code in codes:
         if code.number in {M91, 92} and state.m128:
             text = f"M{code.number} while M128 is on."
-            raise klartext_faults.fault(
-                line, code.column, klartext_faults.NOT_WITH_M128, text, "Switch it off with M129 before."
-            )
+            raise state.refuse(code.column, NOT_WITH_M128, text, "Switch it off with M129 before.")
         if code.number not in known:
-            raise klartext_faults.unsupported(line, code.column, f"M{code.number}")
+            raise unsupported(state.line, code.column, f"M{code.number}")
         if sum(other.number == code.number for other in codes) > 1:
             text = f"M{code.number} stands twice in the block."
-            raise klartext_faults.syntax(line, code.column, text, "Take one out.")
+            raise syntax(state.line, code.column, text, "Take one out.")
     turning = [code for code in codes if code.number in {*_TURNS, 5}]
     if len(turning) > 1:
         text = "More than one M function of the block steers the spindle."
-        raise klartext_faults.fault(
-            line, turning[1].column, klartext_faults.CONTRADICTION, text, "Take one out."
-        )
+        raise state.refuse(turning[1].column, CONTRADICTION, text, "Take one out.")
 
 
-def before(state: State, line: int, text: str, codes: Sequence[MCode]) -> Iterator[Block]:
+def before(state: State, codes: Sequence[MCode]) -> Iterator[Block]:
     """The blocks of what acts before the motion."""
     for code in codes:
         output = state.setup.limits.m_outputs.get(code.number)
         if code.number in _TURNS:
-            yield _start(state, line, text, code)
+            yield _start(state, code)
         if code.number in {8, 13, 14}:
-            yield _coolant(state, line, text, on=True)
+            yield _coolant(state, on=True)
         if code.number in {128, 129}:
             state.m128 = code.number == 128
         if code.number == 140:
-            yield from _away(state, line, text, code)
+            yield from _away(state, code)
         if output is not None and output[1]:
-            yield _output(state, line, text, *output)
+            yield _output(state, *output)
 
 
-def behind(state: State, line: int, text: str, codes: Sequence[MCode], comment: str) -> Iterator[Block]:
+def behind(state: State, codes: Sequence[MCode], comment: str) -> Iterator[Block]:
     """The blocks of what acts behind the motion."""
     for code in codes:
         output = state.setup.limits.m_outputs.get(code.number)
         if code.number in {0, 5, 6} and state.modal.spindle:
-            yield _stop(state, line, text)
+            yield _stop(state)
         if code.number == 9 or (code.number == 0 and state.modal.coolant):
-            yield _coolant(state, line, text, on=False)
+            yield _coolant(state, on=False)
         if output is not None and not output[1]:
-            yield _output(state, line, text, *output)
+            yield _output(state, *output)
         if code.number in {0, 1}:
-            yield state.action(line, text, ProgramStop(optional=code.number == 1, message=comment))
+            yield state.action(ProgramStop(optional=code.number == 1, message=comment))
         if code.number == 6:
-            yield state.action(line, text, ProgramStop(optional=False, message=f"TOOL {state.modal.tool}"))
+            yield state.action(ProgramStop(optional=False, message=f"TOOL {state.modal.tool}"))
         if code.number in {2, 30}:
-            yield end(state, line, text)
+            yield end(state)
 
 
-def end(state: State, line: int, text: str) -> Block:
+def end(state: State) -> Block:
     """M2, M30 and END PGM: the plane ends, rotary axes stay where they are."""
     state.m128 = False
     state.set_plane(None)
     state.modal = state.modal._replace(spindle=0, coolant=False, outputs=frozenset())
-    return state.action(line, text, ProgramEnd(reset=True))
+    return state.action(ProgramEnd(reset=True))
 
 
-def _start(state: State, line: int, text: str, code: MCode) -> Block:
+def _start(state: State, code: MCode) -> Block:
     if not state.modal.rpm:
         why = f"M{code.number} starts the spindle, and no TOOL CALL has given S."
-        raise klartext_faults.fault(
-            line, code.column, klartext_faults.WRONG_RPM, why, "Write S behind TOOL CALL."
-        )
+        raise state.refuse(code.column, WRONG_RPM, why, "Write S behind TOOL CALL.")
     state.modal = state.modal._replace(spindle=_TURNS[code.number])
-    return state.action(line, text, SpindleRun(state.modal.rpm * state.modal.spindle))
+    return state.action(SpindleRun(state.modal.rpm * state.modal.spindle))
 
 
-def _stop(state: State, line: int, text: str) -> Block:
+def _stop(state: State) -> Block:
     state.modal = state.modal._replace(spindle=0)
-    return state.action(line, text, SpindleStop())
+    return state.action(SpindleStop())
 
 
-def _coolant(state: State, line: int, text: str, *, on: bool) -> Block:
+def _coolant(state: State, *, on: bool) -> Block:
     state.modal = state.modal._replace(coolant=on)
-    action: Action = Coolant(on)
-    return state.action(line, text, action)
+    return state.action(Coolant(on))
 
 
-def _output(state: State, line: int, text: str, name: str, on: bool) -> Block:
+def _output(state: State, name: str, on: bool) -> Block:
     outputs = state.modal.outputs | {name} if on else state.modal.outputs - {name}
     state.modal = state.modal._replace(outputs=outputs)
-    return state.action(line, text, Output(name, on))
+    return state.action(Output(name, on))
 
 
-def _away(state: State, line: int, text: str, code: MCode) -> Iterator[Block]:
+def _away(state: State, code: MCode) -> Iterator[Block]:
     """M140: away from the workpiece along the tool, at its own feed or in rapid."""
     assert code.retract is not None
-    up = retract_way(state, line, code.retract)
-    feed = word_values.feed_word(state, line, code.feed, code.column) if code.feed is not None else None
+    up = retract_way(state, code.retract)
+    feed = word_values.feed_word(state, code.feed, code.column) if code.feed is not None else None
     if up > 0.0:
-        yield retract(state, line, text, up, feed)
+        yield retract(state, up, feed)

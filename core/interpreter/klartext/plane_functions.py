@@ -34,8 +34,15 @@ from core.interpreter.klartext.klartext_state import (
     WorkingPlane,
 )
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.klartext import klartext_faults
-from core.language.klartext.klartext_nodes import AxisWord, Plane, Positioning, Retract
+from core.language.klartext.klartext_faults import (
+    ANGLE,
+    INPUT_VALUE,
+    M128_ON,
+    PLANE_WRONG,
+    TOOL_AXIS_MISSING,
+    WRONG_AXIS,
+)
+from core.language.klartext.klartext_nodes import AxisWord, Plane, Retract
 
 # --- from the words of a PLANE block to its frame and angles; nothing moves here
 
@@ -43,129 +50,119 @@ from core.language.klartext.klartext_nodes import AxisWord, Plane, Positioning, 
 _ABOUT = {"SPA": X_AXIS, "SPB": Y_AXIS, "SPC": Z_AXIS}
 
 
-def working_plane(state: State, line: int, node: Plane) -> WorkingPlane:
+def working_plane(state: State, node: Plane) -> WorkingPlane:
     """The plane that the block tells. Raises ProgramError where there is none, or it cannot be reached."""
     if node.form == "AXIAL":
-        return _axial(state, line, node)
-    frame = _FORMS[node.form](state, line, node)
+        return _axial(state, node)
+    frame = _FORMS[node.form](state, node)
     side = SolutionSide(node.positioning.side) if node.positioning.side else None
     table_rot = node.positioning.rotation == "TABLE ROT"
     found = choose(state.kinematics, frame, state.rotary, side, table_rot=table_rot)
     if found is None:
         asked = f" with {side}" if side else ""
         text = f"No position of the rotary axes inside their ranges gives this plane{asked}."
-        raise klartext_faults.fault(
-            line, node.column, klartext_faults.ANGLE, text, "Look at points, angles and SYM."
-        )
+        raise state.refuse(node.column, ANGLE, text, "Look at points, angles and SYM.")
     if side is None and not state.table_known:
-        _tell_of_two_ways(state, line, node, frame)
-    return WorkingPlane(frame, found.angles, line)
+        _tell_of_two_ways(state, node, frame)
+    return WorkingPlane(frame, found.angles, state.line)
 
 
-def _tell_of_two_ways(state: State, line: int, node: Plane, frame: Matrix) -> None:
+def _tell_of_two_ways(state: State, node: Plane, frame: Matrix) -> None:
     """Which way the table swivels hangs on where it stands at the start, which no proof knows."""
     if len(fitting(state.kinematics, frame, state.rotary)) > 1:
         text = "Where the table stands at the start decides which of two ways it swivels."
         hint = "Write SYM+ or SYM-, or position the table before."
-        state.log.add(Diagnostic(line, node.column, Severity.NOTE, "two-ways", text, hint))
+        state.log.add(Diagnostic(state.line, node.column, Severity.NOTE, "two-ways", text, hint))
 
 
-def _axial(state: State, line: int, node: Plane) -> WorkingPlane:
+def _axial(state: State, node: Plane) -> WorkingPlane:
     """The effective angle of each axis, set or added to; basic rotation plays no part."""
     angles = state.targets
     for word in node.words:
         axis = state.kinematics.rotary(word.axis)
         if axis is None:
             text = f"This machine has no rotary axis {word.axis}."
-            raise klartext_faults.fault(
-                line, word.column, klartext_faults.WRONG_AXIS, text, "Take the word out."
-            )
-        value = word_values.number(state, line, word.value, word.axis, word_values.MOST_ANGLE)
+            raise state.refuse(word.column, WRONG_AXIS, text, "Take the word out.")
+        value = word_values.number(state, word.value, word.axis, word_values.MOST_ANGLE)
         angle = angles[axis.name] + value if word.incremental else value
         if not axis.inside(angle):
             text = f"{axis.name} {angle:+.7g} is not between {axis.low:g} and {axis.high:g}."
-            raise klartext_faults.fault(line, word.column, klartext_faults.ANGLE, text, "Correct the angle.")
+            raise state.refuse(word.column, ANGLE, text, "Correct the angle.")
         angles[axis.name] = axis.shown(angle)
-    return WorkingPlane(state.kinematics.frame(angles), angles, line)
+    return WorkingPlane(state.kinematics.frame(angles), angles, state.line)
 
 
-def _points(state: State, line: int, node: Plane) -> Matrix:
-    values = [
-        word_values.number(state, line, word.value, word.axis, word_values.MOST_POINT) * state.scale
-        for word in node.words
-    ]
-    p1, p2, p3 = (_vector(values[at : at + 3]) for at in (0, 3, 6))
+def _points(state: State, node: Plane) -> Matrix:
+    numbers = (
+        word_values.number(state, word.value, word.axis, word_values.MOST_POINT) for word in node.words
+    )
+    x1, y1, z1, x2, y2, z2, x3, y3, z3 = (number * state.scale for number in numbers)
     try:
-        return product(state.kinematics.basic, from_points(p1, p2, p3))
+        return product(state.kinematics.basic, from_points((x1, y1, z1), (x2, y2, z2), (x3, y3, z3)))
     except NoFrameError as problem:
         text = f"{str(problem).capitalize()}."
-        raise klartext_faults.fault(
-            line, node.column, klartext_faults.PLANE_WRONG, text, "Correct the points."
-        ) from problem
+        raise state.refuse(node.column, PLANE_WRONG, text, "Correct the points.") from problem
 
 
-def _spatial(state: State, line: int, node: Plane) -> Matrix:
-    a, b, c = (_angle(state, line, word) for word in node.words)
+def _spatial(state: State, node: Plane) -> Matrix:
+    a, b, c = (_angle(state, word) for word in node.words)
     return product(state.kinematics.basic, from_spatial(a, b, c))
 
 
-def _relative(state: State, line: int, node: Plane) -> Matrix:
+def _relative(state: State, node: Plane) -> Matrix:
     """About an axis of the plane in force, or of the workpiece's system where there is none."""
     (word,) = node.words
     base = state.plane.frame if state.plane is not None else product(state.kinematics.basic, IDENTITY)
-    return product(base, turned(_ABOUT[word.axis], _angle(state, line, word)))
+    return product(base, turned(_ABOUT[word.axis], _angle(state, word)))
 
 
 _FORMS = {"POINTS": _points, "SPATIAL": _spatial, "RELATIV": _relative}
 
 
-def _angle(state: State, line: int, word: AxisWord) -> float:
-    return word_values.number(state, line, word.value, word.axis, word_values.MOST_SPATIAL)
-
-
-def _vector(values: list[float]) -> Vector:
-    x, y, z = values
-    return x, y, z
+def _angle(state: State, word: AxisWord) -> float:
+    return word_values.number(state, word.value, word.axis, word_values.MOST_SPATIAL)
 
 
 SHORT_OF_LIMIT = 0.001  # mm that MB MAX stays away from the software limit
 
 
-def plane(state: State, line: int, text: str, node: Plane) -> Iterator[Block]:
+def plane(state: State, node: Plane) -> Iterator[Block]:
     """The blocks of PLANE: the retract where there is one, then one of kind ``plane``.
 
     Raises ProgramError before anything has moved or changed.
     """
-    _demand_possible(state, line, node)
-    made = None if node.form == "RESET" else working_plane(state, line, node)
+    _demand_possible(state, node)
+    made = None if node.form == "RESET" else working_plane(state, node)
     targets = dict.fromkeys(state.rotary, 0.0) if made is None else made.targets
     way = node.positioning.way or "STAY"
-    feed = word_values.feed_word(state, line, node.positioning.feed, node.column) if way != "STAY" else None
-    up = _retract_way(state, line, node.positioning.retract)
-    distance = _distance(state, line, node.positioning)
-    _warn_of_shift(state, line, made)
+    feed = word_values.feed_word(state, node.positioning.feed, node.column) if way != "STAY" else None
+    up = retract_way(state, node.positioning.retract)
+    distance = word_values.length(state, node.positioning.distance, "DIST")
+    _warn_of_shift(state, made)
     for q, axis in zip(Q_TARGETS, ROTARY, strict=True):
         state.q[q] = targets.get(axis, 0.0)
     if up > SAME_POINT:
-        yield retract(state, line, text, up, feed)
+        yield retract(state, up, feed)
     pivot = _pivot(state, distance) if way == "MOVE" else None
     goal = state.rotary if way == "STAY" else _goal(state, targets)
     state.table_known = state.table_known or way != "STAY"
     state.set_plane(made)
-    yield _swivel(state, line, text, goal, feed, pivot, distance)
+    yield _swivel(state, goal, feed, pivot, distance)
 
 
-def retract(state: State, line: int, text: str, up: float, feed: float | None) -> Block:
+def retract(state: State, up: float, feed: float | None) -> Block:
     """Away from the workpiece along the tool as it stands; ``feed`` as programmed, None for rapid."""
     goal = dict(zip(SLIDES, _raised(state, up), strict=True))
     rate = None if feed is None else state.path_feed(feed)
-    return state.move(line, text, Kind.RAPID if rate is None else Kind.FEED, goal, rate)
+    return state.move(Kind.RAPID if rate is None else Kind.FEED, goal, rate)
 
 
-def retract_way(state: State, line: int, asked: Retract) -> float:
-    """Length of MB in mm; MB MAX ends just short of the first software limit."""
+def retract_way(state: State, asked: Retract | None) -> float:
+    """Length of MB in mm, 0 without one; MB MAX ends just short of the first software limit."""
+    if asked is None:
+        return 0.0
     if asked.distance is not None:
-        return word_values.length(state, line, asked.distance, "MB")
+        return word_values.length(state, asked.distance, "MB")
     ways = []
     for slide, at, share in zip(
         state.kinematics.slides, state.slides, state.kinematics.tool_axis(state.rotary), strict=True
@@ -175,37 +172,21 @@ def retract_way(state: State, line: int, asked: Retract) -> float:
     up = min(ways, default=math.inf)
     if math.isinf(up):
         text = "MB MAX needs a software limit, and this machine has none along the tool."
-        raise klartext_faults.fault(
-            line, asked.column, klartext_faults.INPUT_VALUE, text, "Write MB with a length."
-        )
+        raise state.refuse(asked.column, INPUT_VALUE, text, "Write MB with a length.")
     return max(up - SHORT_OF_LIMIT, 0.0)
 
 
-def _retract_way(state: State, line: int, asked: Retract | None) -> float:
-    return 0.0 if asked is None else retract_way(state, line, asked)
-
-
-def _demand_possible(state: State, line: int, node: Plane) -> None:
+def _demand_possible(state: State, node: Plane) -> None:
     if state.m128:
         text = "M128 is on."
-        raise klartext_faults.fault(
-            line, node.column, klartext_faults.M128_ON, text, "Switch it off with M129 before."
-        )
+        raise state.refuse(node.column, M128_ON, text, "Switch it off with M129 before.")
     if not state.tool_axis:
         text = "No TOOL CALL has named a tool axis."
-        raise klartext_faults.fault(
-            line, node.column, klartext_faults.TOOL_AXIS_MISSING, text, "Write TOOL CALL n Z before."
-        )
-
-
-def _distance(state: State, line: int, positioning: Positioning) -> float:
-    value = positioning.distance
-    return 0.0 if value is None else word_values.length(state, line, value, "DIST")
+        raise state.refuse(node.column, TOOL_AXIS_MISSING, text, "Write TOOL CALL n Z before.")
 
 
 def _raised(state: State, up: float) -> Vector:
-    x, y, z = minus(state.slides, scaled(state.kinematics.tool_axis(state.rotary), -up))
-    return x, y, z
+    return minus(state.slides, scaled(state.kinematics.tool_axis(state.rotary), -up))
 
 
 def _pivot(state: State, distance: float) -> Vector:
@@ -222,29 +203,23 @@ def _goal(state: State, targets: Mapping[str, float]) -> dict[str, float]:
 
 
 def _swivel(
-    state: State,
-    line: int,
-    text: str,
-    goal: Mapping[str, float],
-    feed: float | None,
-    pivot: Vector | None,
-    distance: float,
+    state: State, goal: Mapping[str, float], feed: float | None, pivot: Vector | None, distance: float
 ) -> Block:
     """The block of kind ``plane``: rotary axes alone, or with the slides keeping the pivot in its place."""
     rate = None if feed is None else feed / 60.0
     start = state.rotary
     turn = math.hypot(*(goal[name] - at for name, at in start.items()))
     if pivot is None or turn <= SAME_POINT:
-        return state.move(line, text, Kind.PLANE, goal, rate)
+        return state.move(Kind.PLANE, goal, rate)
     way = PivotMove(state.kinematics, start, goal, pivot, distance, state.tool_length, turn)
     end = {**goal, **dict(zip(SLIDES, way.slides(goal), strict=True))}
-    return state.move(line, text, Kind.PLANE, end, rate, way)
+    return state.move(Kind.PLANE, end, rate, way)
 
 
-def _warn_of_shift(state: State, line: int, made: WorkingPlane | None) -> None:
+def _warn_of_shift(state: State, made: WorkingPlane | None) -> None:
     """A datum that was shifted in a tilted system, and another plane straight behind it: the classic trap."""
     if made is None or state.plane is None or state.shift == ORIGIN:
         return
     text = f"The datum was shifted in the tilted system of line {state.plane.line}."
     hint = "Where it was meant in the workpiece's system, write PLANE RESET STAY before TRANS DATUM."
-    state.log.warn(line, 0, "datum-in-plane", text, hint)
+    state.log.warn(state.line, 0, "datum-in-plane", text, hint)

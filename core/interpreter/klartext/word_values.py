@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from core.interpreter.klartext.klartext_state import State
 from core.language.diagnostics import ProgramError
-from core.language.klartext import klartext_faults
+from core.language.klartext.klartext_faults import FEED_MISSING, INPUT_VALUE, Q_UNDEFINED
 from core.language.klartext.klartext_nodes import AxisWord, Feed, Value
 
 # Input ranges of the control's manuals.
@@ -16,61 +16,53 @@ MOST_FEED = 99_999.999
 MOST_SPEED = 99_999.999
 
 
-def number(
-    state: State, line: int, value: Value, what: str, most: float, least: float | None = None
-) -> float:
+def number(state: State, value: Value, what: str, most: float, least: float | None = None) -> float:
     """The number, or the content of its Q parameter. Raises ProgramError outside ±most or below ``least``."""
     found = value.number
     if value.q is not None:
         if value.q not in state.q:
             text = f"Q{value.q} has no value yet."
-            raise klartext_faults.fault(
-                line, value.column, klartext_faults.Q_UNDEFINED, text, f"Write Q{value.q} = … before."
-            )
+            raise state.refuse(value.column, Q_UNDEFINED, text, f"Write Q{value.q} = … before.")
         found = -state.q[value.q] if value.negative else state.q[value.q]
     low = -most if least is None else least
     if not low <= found <= most:
         text = f"{what} {found:+.12g} is not between {low:.15g} and {most:.15g}."
-        raise klartext_faults.fault(
-            line, value.column, klartext_faults.INPUT_VALUE, text, "Correct the value."
-        )
+        raise state.refuse(value.column, INPUT_VALUE, text, "Correct the value.")
     return found
 
 
-def coordinate(state: State, line: int, word: AxisWord) -> float:
+def coordinate(state: State, word: AxisWord) -> float:
     """A length of an axis word, mm; degrees of a rotary axis."""
-    found = number(state, line, word.value, word.axis, MOST_COORDINATE)
+    found = number(state, word.value, word.axis, MOST_COORDINATE)
     return found if word.axis in "ABC" else found * state.scale
 
 
-def length(state: State, line: int, value: Value, what: str) -> float:
-    """A length that has no sign, mm."""
-    return number(state, line, value, what, MOST_COORDINATE, 0.0) * state.scale
+def length(state: State, value: Value | None, what: str) -> float:
+    """A length that has no sign, mm; 0 where there is none."""
+    return 0.0 if value is None else number(state, value, what, MOST_COORDINATE, 0.0) * state.scale
 
 
-def feed_word(state: State, line: int, feed: Feed | None, column: int) -> float | None:
+def feed_word(state: State, feed: Feed | None, column: int) -> float | None:
     """F as programmed, None for rapid; without a word the one in force.
 
     Raises ProgramError where there is none, and for one that is not above zero.
     """
     if feed is None:
         if state.feed is None:
-            raise _missing(line, column, "No feed is in force.", "Write F or FMAX.")
+            raise _missing(state, column, "No feed is in force.", "Write F or FMAX.")
         return state.feed
     if feed.kind == "max":
         return None
     if feed.kind == "auto":
         if state.tool_feed is None:
-            raise _missing(line, feed.column, "The last TOOL CALL has no F.", "Write F behind TOOL CALL.")
+            raise _missing(state, feed.column, "The last TOOL CALL has no F.", "Write F behind TOOL CALL.")
         return state.tool_feed
     assert feed.value is not None
-    found = number(state, line, feed.value, "F", MOST_FEED, 0.0)
+    found = number(state, feed.value, "F", MOST_FEED, 0.0)
     if found <= 0.0:
-        raise klartext_faults.fault(
-            line, feed.column, klartext_faults.INPUT_VALUE, "F must be above zero.", "Write a feed."
-        )
+        raise state.refuse(feed.column, INPUT_VALUE, "F must be above zero.", "Write a feed.")
     return found
 
 
-def _missing(line: int, column: int, text: str, hint: str) -> ProgramError:
-    return klartext_faults.fault(line, column, klartext_faults.FEED_MISSING, text, hint)
+def _missing(state: State, column: int, text: str, hint: str) -> ProgramError:
+    return state.refuse(column, FEED_MISSING, text, hint)

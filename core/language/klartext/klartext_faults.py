@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.diagnostics import ProgramError, program_error
 
 SYNTAX = "Syntax error"
 NOT_SUPPORTED = "Not supported"
@@ -25,7 +25,7 @@ Q_UNDEFINED = "Q parameter not defined"
 def fault(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
     """The error to raise; the message begins with the code, which is what the control would show."""
     text = message if message.startswith(code) else f"{code}: {message}"
-    return ProgramError(Diagnostic(line, column, Severity.ERROR, code, text, hint))
+    return program_error(line, column, code, text, hint)
 
 
 def syntax(line: int, column: int, message: str, hint: str = "") -> ProgramError:

@@ -6,7 +6,8 @@ import re
 from collections.abc import Callable
 
 from core.language.diagnostics import ProgramError
-from core.language.klartext import klartext_faults, l_block, plane_block, structure_blocks
+from core.language.klartext import l_block, plane_block, structure_blocks
+from core.language.klartext.klartext_faults import syntax, unsupported
 from core.language.klartext.klartext_nodes import (
     AxisWord,
     Feed,
@@ -79,9 +80,7 @@ def read_line(number: int, text: str) -> KlartextLine:
     if (plain := read_plain(number, text)) is not None:
         return plain
     if len(text) > LONGEST_LINE:
-        problem = klartext_faults.syntax(
-            number, 1, f"The line has {len(text)} characters.", "Break it into lines."
-        )
+        problem = syntax(number, 1, f"The line has {len(text)} characters.", "Break it into lines.")
         return KlartextLine(number, error=problem.diagnostic)
     end = comment_start(text)
     code, comment = text[:end], text[end + 1 :].strip() if end < len(text) else None
@@ -114,7 +113,7 @@ def _node(cursor: Cursor) -> Node | None:
     if cursor.text[cursor.at] == "*":
         return Heading(cursor.rest()[1:].strip().removeprefix("-").strip())
     if cursor.text[-1] == "~":
-        raise klartext_faults.unsupported(cursor.line, len(cursor.text), "A block over several lines (~)")
+        raise unsupported(cursor.line, len(cursor.text), "A block over several lines (~)")
     return _by_keyword(cursor) or _by_letter(cursor)
 
 
@@ -160,10 +159,10 @@ def _no_block(cursor: Cursor) -> ProgramError:
     """What begins no block of the subset, by its name where the control knows it."""
     column = cursor.column
     if function := _FN.match(cursor.upper, cursor.at):
-        return klartext_faults.unsupported(cursor.line, column, f"FN {int(function.group(1)[:4])}")
+        return unsupported(cursor.line, column, f"FN {int(function.group(1)[:4])}")
     for name, pattern in _OUTSIDE_PATTERNS:
         if pattern.match(cursor.upper, cursor.at):
-            return klartext_faults.unsupported(cursor.line, column, name)
+            return unsupported(cursor.line, column, name)
     text = f"'{cursor.next_word}' begins no block."
     hint = cursor.advice("A block begins with L, PLANE, TOOL CALL, LBL or the like.")
-    return klartext_faults.syntax(cursor.line, column, text, hint)
+    return syntax(cursor.line, column, text, hint)

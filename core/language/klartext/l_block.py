@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from core.language.diagnostics import ProgramError
-from core.language.klartext import klartext_faults
+from core.language.klartext.klartext_faults import syntax, unsupported
 from core.language.klartext.klartext_nodes import AxisWord, Codes, Feed, MCode, Move
 from core.language.klartext.line_cursor import Cursor, axis_words, doubled, feed, retract
 
@@ -27,9 +27,7 @@ def move(cursor: Cursor) -> Move:
             axes = _joined(cursor, axes, words)
         elif radius := cursor.take(_COMPENSATION):
             if radius.group(1) != "0":
-                raise klartext_faults.unsupported(
-                    cursor.line, column, f"Radius compensation R{radius.group(1)}"
-                )
+                raise unsupported(cursor.line, column, f"Radius compensation R{radius.group(1)}")
             if compensated:
                 raise doubled(cursor, column, "R0")
             compensated = True
@@ -76,9 +74,7 @@ def m_code(cursor: Cursor) -> MCode | None:
 def _plain_feed(cursor: Cursor) -> Feed | None:
     found = feed(cursor)
     if found is not None and found.kind != "value":
-        raise klartext_faults.syntax(
-            cursor.line, found.column, "M128 takes a feed in numbers.", "Write F and a number."
-        )
+        raise syntax(cursor.line, found.column, "M128 takes a feed in numbers.", "Write F and a number.")
     return found
 
 
@@ -92,7 +88,7 @@ def _joined(cursor: Cursor, axes: tuple[AxisWord, ...], words: tuple[AxisWord, .
 def _demand_few(cursor: Cursor, codes: list[MCode]) -> None:
     if len(codes) > MOST_CODES:
         text = f"There are more than {MOST_CODES} M functions in the block."
-        raise klartext_faults.syntax(cursor.line, codes[-1].column, text, "Split the block.")
+        raise syntax(cursor.line, codes[-1].column, text, "Split the block.")
 
 
 def _strange(cursor: Cursor) -> ProgramError:

@@ -6,7 +6,7 @@ import re
 from functools import lru_cache
 
 from core.language.diagnostics import ProgramError
-from core.language.klartext import klartext_faults
+from core.language.klartext.klartext_faults import INPUT_VALUE, fault, syntax
 from core.language.klartext.klartext_nodes import AxisWord, Feed, Retract, Value
 from core.language.typography import ascii_upper, typed
 
@@ -105,9 +105,7 @@ class Cursor:
         digits = match.group()
         if len(digits) > 9 or int(digits) > most:
             text = f"{what} goes up to {most}."
-            raise klartext_faults.fault(
-                self.line, column, klartext_faults.INPUT_VALUE, text, "Correct the number."
-            )
+            raise fault(self.line, column, INPUT_VALUE, text, "Correct the number.")
         return int(digits)
 
     def name(self, what: str, most: int) -> int | str:
@@ -118,15 +116,13 @@ class Cursor:
             return self.whole(what, most)
         name = self.text[start + 1 : start + len(match.group(1)) + 1]
         if not name.strip():
-            raise klartext_faults.syntax(
-                self.line, start + 1, f"{what} has an empty name.", "Write the name."
-            )
+            raise syntax(self.line, start + 1, f"{what} has an empty name.", "Write the name.")
         return name
 
     def expected(self, message: str, hint: str = "") -> ProgramError:
         """A syntax error here, saying what stands in the place."""
         here = f"; '{self.next_word}' stands here" if not self.done else "; the line ends here"
-        return klartext_faults.syntax(self.line, self.column, f"{message}{here}.", self.advice(hint))
+        return syntax(self.line, self.column, f"{message}{here}.", self.advice(hint))
 
     def advice(self, hint: str) -> str:
         """A hint, and what to do where text or a typographic character stands in the place."""
@@ -144,9 +140,7 @@ class Cursor:
     def _q(self, number: int, column: int) -> int:
         if number > _HIGHEST_Q:
             text = f"Q parameters go up to Q{_HIGHEST_Q}."
-            raise klartext_faults.fault(
-                self.line, column, klartext_faults.INPUT_VALUE, text, "Take another parameter."
-            )
+            raise fault(self.line, column, INPUT_VALUE, text, "Take another parameter.")
         return number
 
 
@@ -208,4 +202,4 @@ def axis_words(cursor: Cursor, letters: str, *, incremental: bool = True) -> tup
 
 def doubled(cursor: Cursor, column: int, what: str) -> ProgramError:
     """The error for a word that stands twice."""
-    return klartext_faults.syntax(cursor.line, column, f"{what} stands twice in the block.", "Take one out.")
+    return syntax(cursor.line, column, f"{what} stands twice in the block.", "Take one out.")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import re
 
-from core.language.klartext import klartext_faults
+from core.language.klartext.klartext_faults import syntax, unsupported
 from core.language.klartext.klartext_nodes import AxisWord, Plane, Positioning
 from core.language.klartext.line_cursor import Cursor, axis_words, doubled, feed, retract
 
@@ -25,7 +25,7 @@ def plane(cursor: Cursor, column: int) -> Plane:
     if form is None:
         for name in _OUTSIDE:
             if cursor.keyword(name):
-                raise klartext_faults.unsupported(cursor.line, column, f"PLANE {name}")
+                raise unsupported(cursor.line, column, f"PLANE {name}")
         raise cursor.expected("PLANE needs AXIAL, POINTS, SPATIAL, RELATIV or RESET")
     words = _WORDS[form](cursor) if form in _WORDS else ()
     return Plane(form, words, _positioning(cursor, form), column)
@@ -51,7 +51,7 @@ def _relative(cursor: Cursor) -> tuple[AxisWord, ...]:
     if len(words) != 1:
         column = words[1].column if words else cursor.column
         text = "PLANE RELATIV takes one of SPA, SPB and SPC."
-        raise klartext_faults.syntax(cursor.line, column, text, "Write one angle.")
+        raise syntax(cursor.line, column, text, "Write one angle.")
     return words
 
 
@@ -104,7 +104,7 @@ def _with_word(cursor: Cursor, form: str, made: Positioning) -> Positioning:
     if cursor.keyword("DIST"):
         if made.way != "MOVE":
             text = f"DIST belongs to MOVE, not to {made.way}."
-            raise klartext_faults.syntax(cursor.line, column, text, "Take it out.")
+            raise syntax(cursor.line, column, text, "Take it out.")
         _once(cursor, column, made.distance, "DIST")
         return dataclasses.replace(made, distance=cursor.number("DIST"))
     return _with_motion(cursor, made, column)
@@ -121,7 +121,7 @@ def _with_motion(cursor: Cursor, made: Positioning, column: int) -> Positioning:
         return dataclasses.replace(made, feed=speed)
     if second := cursor.keyword(*_WAYS):
         text = f"{second} stands behind {made.way}."
-        raise klartext_faults.syntax(cursor.line, column, text, "Take one of them out.")
+        raise syntax(cursor.line, column, text, "Take one of them out.")
     raise cursor.expected("No word of a PLANE block")
 
 
@@ -132,6 +132,4 @@ def _once(cursor: Cursor, column: int, known: object, what: str) -> None:
 
 def _demand_motion(cursor: Cursor, made: Positioning, column: int, what: str) -> None:
     if made.way == "STAY":
-        raise klartext_faults.syntax(
-            cursor.line, column, f"STAY moves nothing: no {what} here.", "Take it out."
-        )
+        raise syntax(cursor.line, column, f"STAY moves nothing: no {what} here.", "Take it out.")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from core.language.diagnostics import ProgramError
-from core.language.klartext import klartext_faults
+from core.language.klartext.klartext_faults import syntax, unsupported
 from core.language.klartext.klartext_nodes import (
     Assign,
     AxisWord,
@@ -41,7 +41,7 @@ def end(cursor: Cursor) -> End:
 def _named(cursor: Cursor, what: str) -> tuple[str, bool]:
     match = _PROGRAM.match(cursor.text[cursor.at :].upper())
     if match is None:
-        raise klartext_faults.syntax(
+        raise syntax(
             cursor.line, cursor.column, f"{what} needs a name and MM or INCH.", "Write both behind it."
         )
     name = cursor.text[cursor.at : cursor.at + len(match.group(1))]
@@ -53,7 +53,7 @@ def blank_form(cursor: Cursor) -> BlankForm:
     """Behind ``BLK FORM``: two corners of a block. Raises ProgramError for other forms."""
     part = cursor.take(_PART)
     if part is None:
-        raise klartext_faults.unsupported(cursor.line, cursor.column, f"BLK FORM {cursor.rest()}".strip())
+        raise unsupported(cursor.line, cursor.column, f"BLK FORM {cursor.rest()}".strip())
     axis = ""
     if part.group(1) == "1":
         found = cursor.take(_AXIS)
@@ -114,7 +114,7 @@ def datum(cursor: Cursor, column: int) -> Datum:
         if not made.axes:
             raise cursor.expected("TRANS DATUM AXIS needs X, Y or Z")
     elif cursor.keyword("TABLE"):
-        raise klartext_faults.unsupported(cursor.line, column, "TRANS DATUM TABLE")
+        raise unsupported(cursor.line, column, "TRANS DATUM TABLE")
     else:
         raise cursor.expected("TRANS DATUM needs AXIS or RESET")
     if not cursor.done:
@@ -127,7 +127,7 @@ def cycle(cursor: Cursor, column: int) -> Datum:
     match = cursor.take(_CYCLE)
     if match is None or match.group(1) != "7" or match.group(2) is None:
         name = match.group(1) if match else cursor.next_word
-        raise klartext_faults.unsupported(cursor.line, column, f"CYCL DEF {name}".strip())
+        raise unsupported(cursor.line, column, f"CYCL DEF {name}".strip())
     part = int(match.group(2)[:4])
     if part == 0:
         return Datum(cycle=0, text=cursor.rest())
@@ -154,7 +154,7 @@ def call(cursor: Cursor) -> Call:
     name = cursor.name("CALL LBL", MOST_LABEL)
     if name == 0:
         text = "LBL 0 ends a subprogram; it cannot be called."
-        raise klartext_faults.syntax(cursor.line, column, text, "Call another label.")
+        raise syntax(cursor.line, column, text, "Call another label.")
     repeat = cursor.whole("REP", MOST_REPEATS) if cursor.keyword("REP") else None
     if not cursor.done:
         raise cursor.expected("No word of CALL LBL")
@@ -169,5 +169,5 @@ def assign(cursor: Cursor, *, spelled: bool) -> Assign:
         raise cursor.expected(f"'=' was expected behind Q{q}")
     value = cursor.value(f"Q{q}")
     if not cursor.done:
-        raise klartext_faults.unsupported(cursor.line, cursor.column, f"The formula '{cursor.rest()}'")
+        raise unsupported(cursor.line, cursor.column, f"The formula '{cursor.rest()}'")
     return Assign(q, value, spelled, column)
