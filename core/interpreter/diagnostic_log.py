@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.diagnostics import Diagnostic, Severity
 
 MOST_OF_A_KIND = 100
 MOST_COUNTED = 10_000
@@ -93,13 +93,3 @@ class Log:
     def warn(self, line: int, column: int, code: str, message: str, hint: str = "") -> None:
         """Keep a warning."""
         self.add(Diagnostic(line, column, Severity.WARNING, code, message, hint))
-
-
-def refusal(line: int, column: int, code: str, message: str, hint: str = "") -> Diagnostic:
-    """An error diagnostic."""
-    return Diagnostic(line, column, Severity.ERROR, code, message, hint)
-
-
-def program_error(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
-    """The exception that carries an error diagnostic."""
-    return ProgramError(refusal(line, column, code, message, hint))

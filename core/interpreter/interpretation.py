@@ -5,11 +5,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 
-from core.interpreter.diagnostic_log import Log, refusal
+from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Series
 from core.interpreter.job_setup import ToolOffset
 from core.interpreter.modal_state import Modal
-from core.language.diagnostics import Diagnostic
+from core.language.diagnostics import Diagnostic, refusal
 
 MOST_BLOCKS = 5_000_000
 MOST_LINES = 10_000_000

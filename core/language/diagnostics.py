@@ -50,3 +50,13 @@ class ProgramError(Exception):
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)
         self.diagnostic = diagnostic
+
+
+def refusal(line: int, column: int, code: str, message: str, hint: str = "") -> Diagnostic:
+    """An error diagnostic."""
+    return Diagnostic(line, column, Severity.ERROR, code, message, hint)
+
+
+def program_error(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
+    """The exception that carries an error diagnostic."""
+    return ProgramError(refusal(line, column, code, message, hint))

@@ -9,7 +9,7 @@ from enum import StrEnum
 from functools import cached_property
 from pathlib import Path, PurePath
 
-from core.language.diagnostics import Diagnostic, Severity
+from core.language.diagnostics import Diagnostic, refusal
 
 
 class Dialect(StrEnum):
@@ -122,4 +122,4 @@ def _check_line_lengths(name: str, text: str) -> None:
 
 
 def _refused(code: str, message: str, hint: str, line: int = 0) -> SourceError:
-    return SourceError(Diagnostic(line, 0, Severity.ERROR, code, message, hint))
+    return SourceError(refusal(line, 0, code, message, hint))

@@ -17,12 +17,12 @@ from core.geometry.lines_and_arcs import Element, Line
 from core.interpreter import units
 from core.interpreter.actions import AskInput, Preset, ProgramEnd, ToolChange
 from core.interpreter.adjusted_moves import inserted_after, moved_along, standstill_at
-from core.interpreter.diagnostic_log import Log, program_error
+from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.omniturn_state import CompensationSwitch, Corner, Item, State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import on_step
-from core.language.diagnostics import ProgramError
+from core.language.diagnostics import ProgramError, program_error
 from core.language.omniturn import Word
 
 STRAIGHT = frozenset({Kind.RAPID, Kind.FEED})

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from core.interpreter import units
-from core.interpreter.diagnostic_log import program_error
 from core.interpreter.modal_state import Modal
 from core.interpreter.omniturn.coarse_feeds import MOST_PER_REV
 from core.interpreter.omniturn.dwell import warn_of_short_dwell
 from core.interpreter.omniturn.omniturn_state import HIGH_FEED, State
 from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
+from core.language.diagnostics import program_error
 from core.language.omniturn import Word
 
 _LEAST = 0.00005 * units.MM_PER_INCH  # per minute or per revolution

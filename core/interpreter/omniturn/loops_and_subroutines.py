@@ -11,7 +11,7 @@ from core.interpreter.checkpoint import FlowLevel, FlowPlace
 from core.interpreter.interpretation import DEEPEST_CALL
 from core.interpreter.omniturn.code_table import FLOW_CODES
 from core.interpreter.omniturn.omniturn_statement import UNREADABLE, Statement
-from core.language.diagnostics import Diagnostic, Severity
+from core.language.diagnostics import Diagnostic, refusal
 
 _CONTOUR_CYCLE = re.compile(r"G7[58](?![0-9])", re.IGNORECASE)
 
@@ -150,9 +150,7 @@ class _Finder:
     def _no_end(self, line: int) -> None:
         self._ended = True
         text = "The main program ends without M30 or M02."
-        self.problems.append(
-            Diagnostic(line, 0, Severity.ERROR, "no-end", text, "M30 goes before the subroutines.")
-        )
+        self.problems.append(refusal(line, 0, "no-end", text, "M30 goes before the subroutines."))
         self.found = self.found._replace(main_end=line)
 
     def finish(self, length: int) -> None:
@@ -163,12 +161,10 @@ class _Finder:
         elif self._inside is not None and not self._closed_by_job_end(self._inside):
             text = f"Subroutine {self._inside} has no M99."
             line = self.found.subroutines[self._inside] + 1
-            self.problems.append(
-                Diagnostic(line, 1, Severity.ERROR, "subroutine-open", text, "Add M99 at its end.")
-            )
+            self.problems.append(refusal(line, 1, "subroutine-open", text, "Add M99 at its end."))
 
     def _refuse(self, made: Statement, code: str, text: str, hint: str) -> None:
-        self.problems.append(Diagnostic(made.line, 1, Severity.ERROR, code, text, hint))
+        self.problems.append(refusal(made.line, 1, code, text, hint))
 
 
 def _ends(made: Statement) -> bool:
@@ -196,13 +192,9 @@ def find_structure(statements: Iterable[Statement], length: int) -> tuple[Struct
     for made in calls:
         number = call_target(made)
         if number not in finder.found.subroutines:
-            column = made.column("P") or 1
+            column, hint = made.column("P") or 1, "Write it after M30."
             text = f"Subroutine {number} is called, and no }}{number} begins it."
-            finder.problems.append(
-                Diagnostic(
-                    made.line, column, Severity.ERROR, "subroutine-missing", text, "Write it after M30."
-                )
-            )
+            finder.problems.append(refusal(made.line, column, "subroutine-missing", text, hint))
     return finder.found, finder.problems
 
 

@@ -14,14 +14,13 @@ from core.interpreter.actions import (
     RepeatOff,
     WaitInput,
 )
-from core.interpreter.diagnostic_log import refusal
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.omniturn.carry_over import after_end
 from core.interpreter.omniturn.code_table import Acts, carry_out
 from core.interpreter.omniturn.dwell import warn_of_short_dwell
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.language.diagnostics import Diagnostic, ProgramError
+from core.language.diagnostics import Diagnostic, ProgramError, refusal
 from core.language.omniturn import other_controls
 
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from core.interpreter.diagnostic_log import refusal
 from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES
 from core.interpreter.omniturn.loops_and_subroutines import Structure
 from core.interpreter.omniturn.omniturn_program import Program, of_machine_file, read_statement
 from core.interpreter.omniturn.omniturn_statement import PLANE, UNREADABLE, Statement
 from core.interpreter.omniturn.plain_moves import Columns, ReadyLines
-from core.language.diagnostics import Diagnostic, ProgramError
+from core.language.diagnostics import Diagnostic, ProgramError, refusal
 from core.language.source import Source
 
 _HINT = "Write it in a program."

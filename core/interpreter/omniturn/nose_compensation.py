@@ -13,13 +13,13 @@ from core.geometry.intersections import clearance, distance
 from core.geometry.lines_and_arcs import SAME_POINT, Element, Line, Point
 from core.interpreter.actions import ToolChange
 from core.interpreter.adjusted_moves import element_of, inserted_after, moved_along, standstill_at
-from core.interpreter.diagnostic_log import Log, program_error
+from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.code_table import FLOW_CODES
 from core.interpreter.omniturn.corners import STRAIGHT
 from core.interpreter.omniturn.omniturn_state import CompensationSwitch, Item, State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.language.diagnostics import ProgramError
+from core.language.diagnostics import ProgramError, program_error
 
 # --- approach and departure: far enough from the part, and clear of it
 

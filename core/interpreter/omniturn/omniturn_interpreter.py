@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from core.interpreter.actions import AskInput, ProgramEnd
 from core.interpreter.checkpoint import Checkpoint
-from core.interpreter.diagnostic_log import Log, refusal
+from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Series
 from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES, Interpretation
 from core.interpreter.job_setup import Setup
@@ -26,7 +26,7 @@ from core.interpreter.omniturn.omniturn_statement import PLANE, UNREADABLE, Read
 from core.interpreter.omniturn.program_size import refuse_too_large
 from core.interpreter.omniturn.straight_moves import go, on_step, plain_move
 from core.interpreter.omniturn.tools_and_offsets import warn_of_idle_shifts
-from core.language.diagnostics import ProgramError
+from core.language.diagnostics import ProgramError, refusal
 from core.language.omniturn import lex_line
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from core.interpreter.omniturn.omniturn_statement import (
     unreadable,
 )
 from core.interpreter.omniturn.plain_moves import ReadyLines, read_lines, read_move
-from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.diagnostics import Diagnostic, ProgramError, Severity, refusal
 from core.language.omniturn import Line, lex_line
 from core.language.omniturn.plane_switching_lines import (
     PlaneLine,
@@ -187,9 +187,7 @@ class _Reader:
 
     def _plane_open(self, number: int) -> None:
         text = f"Plane switching on line {self._plane} has no (END)."
-        self.problems.append(
-            Diagnostic(number, 1, Severity.ERROR, "plane-open", text, "Write (END) alone on a line.")
-        )
+        self.problems.append(refusal(number, 1, "plane-open", text, "Write (END) alone on a line."))
         self._plane = 0
 
 
@@ -203,9 +201,7 @@ def read_program(source: Source, strict: bool = False) -> Program:
     length = len(ready)
     structure, faults = find_structure(reader.statements, length)
     if not length:
-        faults = [
-            Diagnostic(0, 0, Severity.ERROR, "file-empty", "The program is empty.", "Write G90 and M30.")
-        ]
+        faults = [refusal(0, 0, "file-empty", "The program is empty.", "Write G90 and M30.")]
     reader.style.look_at_file(source)
     problems = [*reader.problems, *faults, *_comments_in_loops(reader.statements, structure)]
     if not any(fault.code in {"after-end", "no-end", "subroutine-twice"} for fault in faults):
@@ -271,7 +267,7 @@ def _beyond_the_end(ready: ReadyLines, structure: Structure) -> list[Diagnostic]
         if not inside and isinstance(ready[at], tuple):
             text = "This line stands after the end of the program and is in no subroutine."
             hint = "Move it before M30, or start a subroutine with }n."
-            return [Diagnostic(at + 1, 1, Severity.ERROR, "after-end", text, hint)]
+            return [refusal(at + 1, 1, "after-end", text, hint)]
     return []
 
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from core.interpreter.diagnostic_log import program_error
 from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES, M_CODES, PLAIN, Acts, Code, FWord, SWord
-from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.diagnostics import ProgramError, program_error
 from core.language.omniturn import Line, Word, other_controls
 from core.language.omniturn.plane_switching_lines import PlaneLine
 
@@ -138,10 +137,7 @@ def statement(line: Line) -> Statement:
     if line.comment is not None and line.comment.lstrip().startswith("~"):
         what = f"({line.comment.strip()})"
         message = f"{what} looks like plane switching; (~PLXC) and (~PLZC) stand alone on a line."
-        place = line.comment_column
-        raise ProgramError(
-            Diagnostic(line.number, place, Severity.ERROR, "plane-entry", message, "Write it alone.")
-        )
+        raise program_error(line.number, line.comment_column, "plane-entry", message, "Write it alone.")
     _sort(made, line)
     if line.comment is None and not made.m_word and _SIMPLE.issuperset(made.words):
         made.simple = made.moves and _SIMPLE_MODAL.issuperset(made.modal)
@@ -197,14 +193,12 @@ def _sort_g(made: Statement, word: Word, modal: list[Word]) -> None:
     if entry is None:
         habit, hint = other_controls.here(word.text.upper()) or ("", "Look it up.")
         message = f"{word.text} is no code of this control. {habit}".rstrip()
-        raise ProgramError(Diagnostic(made.line, word.column, Severity.ERROR, "g-unknown", message, hint))
+        raise made.refuse(word, "g-unknown", message, hint)
     if entry.acts is _MODE:
         modal.append(word)
     elif made.code is not None:
         message = f"{made.code.text} and {word.text} cannot act on one line."
-        raise ProgramError(
-            Diagnostic(made.line, word.column, Severity.ERROR, "two-one-shots", message, "Split the line.")
-        )
+        raise made.refuse(word, "two-one-shots", message, "Split the line.")
     else:
         made.one_shot, made.code, made.entry = code, word, entry
     if entry.f is not _FEED:
@@ -234,8 +228,7 @@ def _check_words(made: Statement, line: Line) -> None:
             habit = other_controls.here(letter)
             if habit is not None:
                 message = f"{word.text} has no meaning here. {habit[0]}"
-                fault = Diagnostic(line.number, word.column, Severity.ERROR, "word-unused", message, habit[1])
-                raise ProgramError(fault)
+                raise made.refuse(word, "word-unused", message, habit[1])
             what = f"holds {word.text}, which nothing on it takes"
             raise _refused(line, word, "word-unused", what, "Take it out or add its code.")
 
@@ -297,5 +290,4 @@ def _group(made: Statement, word: Word) -> str:
 
 
 def _refused(line: Line, word: Word, code: str, what: str, hint: str) -> ProgramError:
-    message = f"The line {what}."
-    return ProgramError(Diagnostic(line.number, word.column, Severity.ERROR, code, message, hint))
+    return program_error(line.number, word.column, code, f"The line {what}.", hint)

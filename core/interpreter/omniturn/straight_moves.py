@@ -5,11 +5,11 @@ from __future__ import annotations
 from math import copysign, floor, hypot, isfinite
 
 from core.interpreter import units
-from core.interpreter.diagnostic_log import program_error
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.omniturn.feeds import check_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import PlainMove, Statement
+from core.language.diagnostics import program_error
 from core.language.omniturn import Word, lex_line
 
 _COARSE = (0.00005, 0.00025, 0.0005)  # inches of radius, by G36, G35, G35F2

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from core.language.diagnostics import Diagnostic
+from core.language.diagnostics import Diagnostic, refusal
 from core.language.omniturn import other_controls, word_faults
 from core.language.omniturn.omniturn_words import BARE, Line, Word
 from core.language.typography import ascii_upper
@@ -69,7 +69,7 @@ def _without_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
     if habit is not None:
         column = len(bare) - len(bare.lstrip()) + 1
         kept = "".join(" " if sign == bare[at] else sign for at, sign in enumerate(text))
-        return kept, [word_faults.error(number, column, *habit)]
+        return kept, [refusal(number, column, *habit)]
     told: list[Diagnostic] = []
     for found in _prose_in(bare):
         start, end = found.span()

@@ -9,9 +9,8 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from core.language.diagnostics import ProgramError
+from core.language.diagnostics import program_error
 from core.language.omniturn.omniturn_words import Word
-from core.language.omniturn.word_faults import error
 
 _ENTRY = re.compile(r"\s*\(\s*~\s*(PLXC|PLZC)\s*\)\s*", re.IGNORECASE)
 _BARE_ENTRY = re.compile(r"\s*\(\s*PL[XZ]C\s*\)\s*", re.IGNORECASE)
@@ -64,7 +63,7 @@ def lex_plane(number: int, text: str) -> PlaneLine:
     """A line between the entry and (END). Raises ProgramError for anything that may not stand there."""
     match = _STATEMENT.fullmatch(text) if text.isascii() else None
     if match is None:
-        raise _refused(number, 1, "plane-line", "This line is no statement in parentheses.", _HINT)
+        raise program_error(number, 1, "plane-line", "This line is no statement in parentheses.", _HINT)
     inside = match[1].upper()
     if inside.strip() == "END":
         return PlaneLine("END", {})
@@ -75,11 +74,11 @@ def lex_plane(number: int, text: str) -> PlaneLine:
         if word_match is None:
             shown = inside[at : at + 8].strip()
             message = f"'{shown}' is no word of plane switching."
-            raise _refused(number, base + at, "plane-word", message, _HINT)
+            raise program_error(number, base + at, "plane-word", message, _HINT)
         word = _word(number, base + at, word_match)
         if word.letter in words:
             message = f"The line holds {word.letter} twice."
-            raise _refused(number, word.column, "word-twice", message, "Take one out.")
+            raise program_error(number, word.column, "word-twice", message, "Take one out.")
         words[word.letter] = word
         at = word_match.end()
     return _sorted(number, words)
@@ -89,13 +88,15 @@ def _word(number: int, column: int, match: re.Match[str]) -> Word:
     letter, digits = match[1], re.sub(r"\s", "", match[2])
     word = Word(letter, float(digits[:32]), column, letter + digits)
     if letter not in _LETTERS:
-        raise _refused(number, column, "plane-word", f"{word.text} is no word of plane switching.", _HINT)
+        raise program_error(
+            number, column, "plane-word", f"{word.text} is no word of plane switching.", _HINT
+        )
     value = word.value or 0.0
     if letter == "G" and digits not in {"02", "03"}:
         message = f"{word.text}: of the G codes only G02 and G03 may stand in a plane."
-        raise _refused(number, column, "plane-word", message, _HINT)
+        raise program_error(number, column, "plane-word", message, _HINT)
     if len(digits) > 16 or abs(value) > (_MOST_FEED if letter == "F" else _MOST):
-        raise _refused(
+        raise program_error(
             number, column, "out-of-range", f"{word.text} is out of range.", "Look for a lost point."
         )
     return word
@@ -103,24 +104,24 @@ def _word(number: int, column: int, match: re.Match[str]) -> Word:
 
 def _sorted(number: int, words: dict[str, Word]) -> PlaneLine:
     if not words:
-        raise _refused(number, 1, "plane-word", "The statement is empty.", _HINT)
+        raise program_error(number, 1, "plane-word", "The statement is empty.", _HINT)
     for letter in ("H", "D"):
         if letter in words and len(words) > 1:
             message = f"{letter} stands with other words."
-            raise _refused(number, words[letter].column, "not-alone", message, f"Write ({letter}n) alone.")
+            raise program_error(
+                number, words[letter].column, "not-alone", message, f"Write ({letter}n) alone."
+            )
     code = words.get("G")
     for letter in ("I", "J"):
         if letter in words and code is None:
             message = f"{words[letter].text} belongs to an arc, and neither G02 nor G03 is on the line."
-            raise _refused(number, words[letter].column, "word-unused", message, "G02 and G03 are one shot.")
+            raise program_error(
+                number, words[letter].column, "word-unused", message, "G02 and G03 are one shot."
+            )
         if code is not None and letter not in words:
             message = f"{letter} is missing: I and J are the coordinates of the arc's centre."
-            raise _refused(number, code.column, "arc-coordinate-missing", message, f"Add {letter}.")
+            raise program_error(number, code.column, "arc-coordinate-missing", message, f"Add {letter}.")
     if code is not None and "Z" in words:
         message = "An arc of a plane moves X and Y alone."
-        raise _refused(number, words["Z"].column, "word-unused", message, "Move Z on another line.")
+        raise program_error(number, words["Z"].column, "word-unused", message, "Move Z on another line.")
     return PlaneLine("", words, int(code.value or 0) if code else 0)
-
-
-def _refused(line: int, column: int, code: str, message: str, hint: str) -> ProgramError:
-    return ProgramError(error(line, column, code, message, hint))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.language.diagnostics import Diagnostic, Severity
+from core.language.diagnostics import Diagnostic, refusal
 from core.language.omniturn import other_controls
 from core.language.omniturn.omniturn_words import COUNTING, RANGES, Word
 
@@ -22,68 +22,65 @@ _AFTER_NUMBER = {
 }
 
 
-def error(line: int, column: int, code: str, message: str, hint: str = "") -> Diagnostic:
-    """An error diagnostic."""
-    return Diagnostic(line, column, Severity.ERROR, code, message, hint)
-
-
 def too_long(line: int, length: int) -> Diagnostic:
     """More on one line than a program line can hold."""
-    return error(line, 0, "line-too-long", f"The line has {length} characters.", "Break it into lines.")
+    return refusal(line, 0, "line-too-long", f"The line has {length} characters.", "Break it into lines.")
 
 
 def text_outside(line: int, column: int, text: str) -> Diagnostic:
     """Words for a reader that stand among those for the control."""
     shown = text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}…"
     message = f"'{shown}' is text outside parentheses."
-    return error(line, column, "text-outside", message, f"Write ({shown}).")
+    return refusal(line, column, "text-outside", message, f"Write ({shown}).")
 
 
 def open_comment(line: int, column: int) -> Diagnostic:
     """A parenthesis without its partner."""
-    return error(line, column, "comment-open", "The comment has no closing parenthesis.", "Add ')'.")
+    return refusal(line, column, "comment-open", "The comment has no closing parenthesis.", "Add ')'.")
 
 
 def exponent(line: int, column: int) -> Diagnostic:
     """``X1E5``, and ``E005`` where a print of ``F.005`` was read."""
-    return error(
+    return refusal(
         line, column, "exponent", "Numbers have no exponent here.", "Write the number out; a feed is F."
     )
 
 
 def letter_o(line: int, column: int) -> Diagnostic:
     """``GO2``, ``MO5``, ``XO``."""
-    return error(line, column, "letter-o", "The letter O stands where a zero belongs.", "Write 0.")
+    return refusal(line, column, "letter-o", "The letter O stands where a zero belongs.", "Write 0.")
 
 
 def no_number(line: int, column: int, letter: str, follower: str) -> Diagnostic:
     """A letter and nothing that is a number."""
     if follower in {"+", "-"}:
-        return error(
+        return refusal(
             line, column, "lone-sign", f"{letter} has a sign and no number.", "Write the number after it."
         )
     if follower == ".":
-        return error(
+        return refusal(
             line, column, "lone-point", f"{letter} has a decimal point and no digit.", "Write the digits."
         )
     if letter not in RANGES and letter not in {"LF", "RF", "O"}:
         return _unknown_letter(line, column, letter)
-    return error(line, column, "number-missing", f"{letter} has no number.", f"Write it after {letter}.")
+    return refusal(line, column, "number-missing", f"{letter} has no number.", f"Write it after {letter}.")
 
 
 def of_sign(line: int, column: int, sign: str, *, after_number: bool) -> Diagnostic:
     """A character that starts no word."""
     fixed = _SIGNS.get(sign) or (_AFTER_NUMBER.get(sign) if after_number else None)
     if fixed is not None:
-        return error(line, column, *fixed)
+        return refusal(line, column, *fixed)
     if sign in "0123456789+-.":
-        return error(line, column, "letter-missing", "A number stands without a letter.", "Write its letter.")
+        return refusal(
+            line, column, "letter-missing", "A number stands without a letter.", "Write its letter."
+        )
     shown = sign if sign.isprintable() else f"U+{ord(sign):04X}"
     habit = other_controls.sign(sign)
     if habit is not None:
         what, hint = habit
-        return error(line, column, "character", f"'{shown}' is {what}.", hint)
-    return error(
+        return refusal(line, column, "character", f"'{shown}' is {what}.", hint)
+    return refusal(
         line, column, "character", f"'{shown}' is no part of the language.", "Comments go in parentheses."
     )
 
@@ -98,9 +95,9 @@ def of_word(line: int, word: Word, digits: str | None) -> Diagnostic | None:
     if letter in {"G", "M"}:
         return _two_digits(line, word, digits)
     if letter not in RANGES:
-        return error(line, column, "number-unwanted", f"{letter} takes no number.", "Take it out.")
+        return refusal(line, column, "number-unwanted", f"{letter} takes no number.", "Take it out.")
     if sum(sign.isdigit() for sign in digits) > _MOST_DIGITS:
-        return error(
+        return refusal(
             line, column, "number-too-long", f"{letter} has over {_MOST_DIGITS} digits.", "Round the number."
         )
     return _size(line, word, digits)
@@ -132,18 +129,18 @@ def _size(line: int, word: Word, digits: str) -> Diagnostic | None:
     letter, value, column, text = word
     least, most = RANGES[letter]
     if letter in COUNTING and not digits.isdigit():
-        return error(
+        return refusal(
             line, column, "whole-number", f"{text} must be a whole number without a sign.", "Round it."
         )
     if value is None or least <= value <= most:
         return None
     special = _SIZES.get(letter)
     if special is not None and (fault := special(text, value)) is not None:
-        return error(line, column, *fault)
+        return refusal(line, column, *fault)
     if letter == "LS":
         message = f"{text} is out of range: a loop runs {least:g} to {most:,.0f} times."
-        return error(line, column, "loop-count", message, "Correct the count.")
-    return error(
+        return refusal(line, column, "loop-count", message, "Correct the count.")
+    return refusal(
         line,
         column,
         "out-of-range",
@@ -162,18 +159,18 @@ def _two_digits(line: int, word: Word, digits: str) -> Diagnostic | None:
         if value is not None and digits.isdigit()
         else "Write two digits."
     )
-    return error(line, word.column, code, f"{word.text}: {word.letter} takes exactly two digits.", hint)
+    return refusal(line, word.column, code, f"{word.text}: {word.letter} takes exactly two digits.", hint)
 
 
 def _unknown_letter(line: int, column: int, letter: str) -> Diagnostic:
     if letter == "N":
-        return error(
+        return refusal(
             line, column, "n-word", "Lines have no numbers here: N is not allowed.", "Take the N word out."
         )
     habit = other_controls.here(letter)
     if habit is not None:
-        return error(
+        return refusal(
             line, column, "unknown-letter", f"{letter} is no word of the language. {habit[0]}", habit[1]
         )
     hint = "Look the word up in the language page."
-    return error(line, column, "unknown-letter", f"{letter} is no word of the language.", hint)
+    return refusal(line, column, "unknown-letter", f"{letter} is no word of the language.", hint)
