@@ -1,0 +1,295 @@
+"""A part that mills have been at: flats, slots, cross holes and pockets, cut out of a turned part.
+
+The part's frame turns with it. Its X and Y are those of the face as a tool sees it that looks at the end of
+the part with C at 0; polar angles count from X towards Y. The live tool stands on the negative X side of the
+lathe (see ``core.geometry.virtual_mill``): with C at 30° it stands at the angle -30° of the part.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from core.part.polar_field import NOTHING, IntArray, PolarField, Taken
+from core.part.ray_cuts import FloatArray, capsules, clipped, joined, nearest_turn, radial_mill
+
+_SCALLOP = 0.001  # mm: what a mill that goes on in steps leaves between them
+_RAMP = 0.005  # mm of depth a step
+_MOST_STEPS = 2000
+_NEAR = 0.001  # mm: a mill that comes no nearer than this to metal does not meet it
+_LEVELS = 8  # floors that one path may leave exactly; a surface of many levels has no floor
+
+
+class Reach(NamedTuple):
+    """A cut on rays: columns, rays, and the r from ``start`` to ``end`` that are covered."""
+
+    columns: slice
+    rays: IntArray
+    start: FloatArray
+    end: FloatArray
+
+
+class Stroke(NamedTuple):
+    """A mill on a radius with its end at r ``end``, moved from Z ``back`` to ``front``, or round by ``way``.
+
+    ``angle`` and ``way`` in radians of the part, the rest in mm.
+    """
+
+    end: float
+    back: float
+    front: float
+    angle: float
+    way: float = 0.0
+
+
+class MilledPart:
+    """A polar field of metal, and what mills and turning tools take off it. All lengths in mm."""
+
+    def __init__(self, field: PolarField) -> None:
+        self.field = field
+
+    # --- turning
+
+    def turn(self, first: int, start: FloatArray, end: FloatArray) -> Taken:
+        """Turn off what lies between the radii ``start`` and ``end`` (m,), in the columns from ``first``
+        on."""
+        columns = slice(first, first + len(start))
+        return self.field.take(columns, slice(None), start[:, None], end[:, None])
+
+    # --- a mill parallel to the axis
+
+    def mill_axial(
+        self, path: FloatArray, radius: float, length: float = math.inf, point: float = 0.0
+    ) -> Taken:
+        """Mill with the tool parallel to Z along ``path`` (m, 3): x, y of its axis in the part's frame, z of
+        its end.
+
+        ``length`` is how far it cuts from its end on, ``point`` the height of its cone, 0 with a flat end.
+        A straight line is exact, rising and falling too.
+        """
+        path = _lines(path)
+        met = NOTHING
+        for rise, r in _cone(radius, point):
+            lifted = path + np.array([0.0, 0.0, rise])
+            if not point:
+                self.field.divide(_floors(lifted, length))
+            met = self._take(self._axial(lifted, r, length - rise, self.field.middles), met)
+        return met
+
+    def meets_axial(
+        self, path: FloatArray, radius: float, length: float = math.inf, point: float = 0.0
+    ) -> bool:
+        """Whether that mill would meet metal on its way; nothing is taken off."""
+        path, radius = _lines(path) + np.array([0.0, 0.0, _NEAR]), radius - _NEAR
+
+        def met(levels: FloatArray) -> bool:
+            return any(
+                self._met(self._axial(path + np.array([0.0, 0.0, rise]), r, length - rise, levels))
+                for rise, r in _cone(radius, point)
+            )
+
+        # Columns are divided for what may be met: where the mill only comes into a column it is looked at
+        # twice.
+        if not met(self.field.edges[1:]):
+            return False
+        self.field.divide(_floors(path, length))
+        return met(self.field.middles)
+
+    def _axial(self, path: FloatArray, radius: float, length: float, levels: FloatArray) -> Iterator[Reach]:
+        """What each column meets, whose ``levels`` tell how deep the end has to be for that."""
+        first = int(np.searchsorted(levels, path[:, 2].min(), side="right"))
+        begin, stop = _shares(path, levels[first:], length)
+        if not len(begin):
+            return
+        new = np.any((begin[1:] != begin[:-1]) | (stop[1:] != stop[:-1]), axis=1)
+        bounds = [0, *(np.flatnonzero(new) + 1).tolist(), len(begin)]
+        sweep = _Sweep(path, radius, self.field.angles)
+        for a, b in itertools.pairwise(bounds):
+            for low, high in zip(*sweep.covered(begin[a], stop[a]), strict=True):
+                rays = np.flatnonzero(high > low)
+                if len(rays):
+                    yield Reach(slice(first + a, first + b), rays, low[rays], high[rays])
+
+    # --- a mill on a radius
+
+    def mill_radial(
+        self,
+        path: FloatArray,
+        radius: float,
+        length: float = math.inf,
+        height: float = 0.0,
+        point: float = 0.0,
+    ) -> Taken:
+        """Mill with the tool on a radius of the part along ``path`` (m, 3): r of its end, z, polar angle in
+        degrees.
+
+        ``height`` is how far its axis passes the part's, towards growing angles; ``length`` and ``point`` as
+        in ``mill_axial``. Moves in r alone, in Z alone and, through the axis, in the angle alone are exact;
+        others go on in steps that leave .001 mm.
+        """
+        met = NOTHING
+        strokes = list(self._strokes(path, radius, height))
+        self._refine(strokes, radius)
+        for rise, r in _cone(radius, point):
+            for stroke in strokes:
+                lifted = stroke._replace(end=stroke.end + rise)
+                met = self._take(self._radial(lifted, r, length - rise, height), met)
+        return met
+
+    def meets_radial(
+        self,
+        path: FloatArray,
+        radius: float,
+        length: float = math.inf,
+        height: float = 0.0,
+        point: float = 0.0,
+    ) -> bool:
+        """Whether that mill would meet metal on its way; nothing is taken off."""
+        strokes = [s._replace(end=s.end + _NEAR) for s in self._strokes(path, radius, height)]
+
+        def met(wide: bool) -> bool:
+            return any(
+                self._met(self._radial(s._replace(end=s.end + rise), r, length - rise, height, wide=wide))
+                for rise, r in _cone(radius - _NEAR, point)
+                for s in strokes
+            )
+
+        if not met(wide=True):
+            return False
+        self._refine(strokes, radius - _NEAR)
+        return met(wide=False)
+
+    def _radial(
+        self, stroke: Stroke, radius: float, length: float, height: float, *, wide: bool = False
+    ) -> Iterator[Reach]:
+        """What a stroke covers at the middles of the columns, or ``wide`` anywhere in them."""
+        field = self.field
+        back, front = (field.edges[:-1], field.edges[1:]) if wide else (field.middles, field.middles)
+        off = np.maximum(stroke.back - front, back - stroke.front)
+        there = np.flatnonzero(off < radius)
+        if not len(there):
+            return
+        columns = slice(int(there[0]), int(there[-1]) + 1)
+        half = np.sqrt(np.maximum(radius * radius - np.maximum(off[columns], 0.0) ** 2, 0.0))
+        turned = nearest_turn(field.angles - stroke.angle, stroke.way)
+        rays = np.flatnonzero(np.abs(turned) <= _widest(stroke.end, radius + abs(height)))
+        low, high = radial_mill(turned[rays], half, stroke.end, length, height)
+        yield Reach(columns, rays, low, high)
+
+    def _strokes(self, path: FloatArray, radius: float, height: float) -> Iterator[Stroke]:
+        path = _lines(path) * np.array([1.0, 1.0, math.pi / 180.0])
+        outside = float(self.field.outermost.max(initial=0.0))
+        spacing = math.sqrt(8.0 * radius * _SCALLOP)
+        for start, end in itertools.pairwise(path):
+            dr, dz, dc = (end - start).tolist()
+            exact_turn = height == 0.0 and min(start[0], end[0]) >= 0.0
+            if dc and (dz or not exact_turn):
+                count = max(math.hypot(dz, outside * dc) / spacing, abs(dr) / _RAMP)
+                yield from _spots(start, end, count)
+            elif dr and (dz or dc):
+                yield from _ramp(start, end, abs(dr) / _RAMP)
+            else:
+                back, front = sorted((float(start[1]), float(end[1])))
+                yield Stroke(float(min(start[0], end[0])), back, front, float(start[2]), dc)
+
+    def _refine(self, strokes: list[Stroke], radius: float) -> None:
+        """Divide the columns at both ends of a radial path, where the mill's round stands across them."""
+        back, front = min(s.back for s in strokes), max(s.front for s in strokes)
+        round_ = radius * np.sin(np.linspace(0.0, 0.5 * math.pi, 25))
+        self.field.divide(np.concatenate((back - round_, front + round_)))
+
+    # --- both
+
+    def _take(self, reaches: Iterator[Reach], met: Taken) -> Taken:
+        for reach in reaches:
+            met = met.joined(self.field.take(*reach))
+        return met
+
+    def _met(self, reaches: Iterator[Reach]) -> bool:
+        return any(self.field.take(*reach, cut=False) for reach in reaches)
+
+
+class _Sweep:
+    """What a disc of this radius covers along a path, by shares of its lines; whole lines are kept in
+    mind."""
+
+    def __init__(self, path: FloatArray, radius: float, angles: FloatArray) -> None:
+        self._start, self._way = path[:-1, :2], np.diff(path[:, :2], axis=0)
+        self._radius, self._angles = radius, angles
+        self._whole, self._covered = np.zeros(len(self._start), dtype=np.bool_), self._layers([], 0.0, 0.0)
+
+    def covered(self, begin: FloatArray, stop: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Layers (k, rays) of what is covered between two shares of each line (m,)."""
+        whole = (begin == 0.0) & (stop == 1.0)
+        if np.any(whole != self._whole):
+            self._whole, self._covered = whole, self._layers(np.flatnonzero(whole), 0.0, 1.0)
+        some = np.flatnonzero((begin <= stop) & ~whole)
+        if not len(some):
+            return self._covered
+        low, high = self._layers(some, begin[some, None], stop[some, None])
+        return joined(np.concatenate((self._covered[0], low)), np.concatenate((self._covered[1], high)))
+
+    def _layers(
+        self, lines: IntArray | list[int], begin: FloatArray | float, stop: FloatArray | float
+    ) -> tuple[FloatArray, FloatArray]:
+        if not len(lines):
+            return np.zeros((1, len(self._angles))), np.zeros((1, len(self._angles)))
+        start, way = self._start[lines], self._way[lines]
+        return joined(*capsules(start + begin * way, start + stop * way, self._radius, self._angles))
+
+
+def _shares(path: FloatArray, levels: FloatArray, length: float) -> tuple[FloatArray, FloatArray]:
+    """From and to which share of each line (levels, lines) the mill is at each level; none: the first is
+    greater."""
+    way = np.diff(path, axis=0)
+    depth = levels[:, None] - path[:-1, 2]
+    begin, stop = clipped(np.broadcast_to(way[:, 2], depth.shape), depth - length, depth)
+    stop = np.minimum(stop, 1.0)
+    plunges = (begin <= stop) & np.all(way[:, :2] == 0.0, axis=1)
+    return np.where(plunges, 0.0, begin), np.where(plunges, 1.0, stop)
+
+
+def _lines(path: FloatArray) -> FloatArray:
+    """A path of two points at least; refused when it has other than three columns."""
+    if path.ndim != 2 or path.shape[1] != 3 or not len(path):
+        raise ValueError("A mill's path has three figures a point.")
+    return path if len(path) > 1 else np.repeat(path, 2, axis=0)
+
+
+def _floors(path: FloatArray, length: float) -> FloatArray:
+    """Z at which a path leaves floors, its lowest among them, and at which the mill ends on the other
+    side."""
+    z = path[:, 2]
+    flat = np.unique(z[:-1][np.diff(z) == 0.0])
+    floors = np.append(flat, z.min()) if len(flat) <= _LEVELS else np.array([z.min()])
+    return floors if math.isinf(length) else np.append(floors, floors + length)
+
+
+def _cone(radius: float, point: float) -> Iterator[tuple[float, float]]:
+    """Flat-ended mills whose union is one with a point ``point`` high: how much higher each ends, and its
+    radius."""
+    count = min(max(math.ceil(point / 0.05), 8), 24) if point else 0
+    for k in range(count):
+        yield point * k / count, radius * (k + 0.5) / count
+    yield point, radius
+
+
+def _spots(start: FloatArray, end: FloatArray, count: float) -> Iterator[Stroke]:
+    for r, z, angle in np.linspace(start, end, min(math.ceil(count), _MOST_STEPS) + 1).tolist():
+        yield Stroke(r, z, z, angle)
+
+
+def _ramp(start: FloatArray, end: FloatArray, count: float) -> Iterator[Stroke]:
+    """Steps of a move whose depth changes, each at its middle depth."""
+    points = np.linspace(start, end, min(math.ceil(count), _MOST_STEPS) + 1)
+    for (r0, z0, c0), (r1, z1, c1) in zip(points[:-1].tolist(), points[1:].tolist(), strict=True):
+        yield Stroke(0.5 * (r0 + r1), min(z0, z1), max(z0, z1), c0, c1 - c0)
+
+
+def _widest(end: float, half: float) -> float:
+    """The angle from the tool's axis within which its rays lie, radians."""
+    return math.atan2(half, end) + 1e-9 if end > 0.0 else math.pi
