@@ -35,10 +35,9 @@ def plane_path(move: PlaneMove, lift: float = 0.0, chord: float = CHORD) -> Floa
 
 
 def axial_path(machine: FloatArray, height: float = 0.0, lift: float = 0.0) -> FloatArray:
-    """x, y, z (n, 3) in the part's frame of a tool parallel to Z at lathe X (radius), Z, C (n, 3); mm,
-    degrees.
+    """x, y, z (n, 3) in the part's frame of a tool parallel to Z at lathe X (radius), Z, C (n, 3).
 
-    ``height`` is how far the tool stands above the axis.
+    ``height`` is how far the tool stands above the axis; mm and degrees.
     """
     spot = np.column_stack([-machine[:, 0], np.full(len(machine), height), machine[:, 1]])
     return _turned(spot, -np.radians(machine[:, 2]), lift)

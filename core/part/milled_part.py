@@ -55,8 +55,7 @@ class MilledPart:
     # --- turning
 
     def turn(self, first: int, start: FloatArray, end: FloatArray) -> Taken:
-        """Turn off what lies between the radii ``start`` and ``end`` (m,), in the columns from ``first``
-        on."""
+        """Turn off what lies between the radii ``start`` and ``end`` (m,), columns from ``first`` on."""
         columns = slice(first, first + len(start))
         return self.field.take(columns, slice(None), start[:, None], end[:, None])
 
@@ -214,8 +213,7 @@ class MilledPart:
 
 
 class _Sweep:
-    """What a disc of this radius covers along a path, by shares of its lines; whole lines are kept in
-    mind."""
+    """What a disc of this radius covers along a path, by shares of its lines; whole lines are kept."""
 
     def __init__(self, path: FloatArray, radius: float, angles: FloatArray) -> None:
         self._start, self._way = path[:-1, :2], np.diff(path[:, :2], axis=0)
@@ -243,8 +241,7 @@ class _Sweep:
 
 
 def _shares(path: FloatArray, levels: FloatArray, length: float) -> tuple[FloatArray, FloatArray]:
-    """From and to which share of each line (levels, lines) the mill is at each level; none: the first is
-    greater."""
+    """The shares (levels, lines) between which the mill is at each level; none: the first is greater."""
     way = np.diff(path, axis=0)
     depth = levels[:, None] - path[:-1, 2]
     begin, stop = clipped(np.broadcast_to(way[:, 2], depth.shape), depth - length, depth)
@@ -261,8 +258,7 @@ def _lines(path: FloatArray) -> FloatArray:
 
 
 def _floors(path: FloatArray, length: float) -> FloatArray:
-    """Z at which a path leaves floors, its lowest among them, and at which the mill ends on the other
-    side."""
+    """Z at which a path leaves floors, its lowest among them, and at which the flutes end."""
     z = path[:, 2]
     flat = np.unique(z[:-1][np.diff(z) == 0.0])
     floors = np.append(flat, z.min()) if len(flat) <= _LEVELS else np.array([z.min()])
@@ -270,8 +266,7 @@ def _floors(path: FloatArray, length: float) -> FloatArray:
 
 
 def _cone(radius: float, point: float) -> Iterator[tuple[float, float]]:
-    """Flat-ended mills whose union is one with a point ``point`` high: how much higher each ends, and its
-    radius."""
+    """Flat-ended mills that make up one with a point ``point`` high: how much higher each ends, radius."""
     count = min(max(math.ceil(point / 0.05), 8), 24) if point else 0
     for k in range(count):
         yield point * k / count, radius * (k + 0.5) / count

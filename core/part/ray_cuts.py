@@ -17,10 +17,9 @@ _TINY = 1e-12
 def capsules(
     start: FloatArray, end: FloatArray, radius: float, angles: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """The r between which discs moved from ``start`` to ``end`` (m, 2) cover rays at ``angles`` (n,),
-    radians.
+    """The r between which discs moved from ``start`` to ``end`` (m, 2) cover rays at ``angles`` (n,).
 
-    Both (m, n); where nothing is covered the first is not less than the second. x, y and ``radius`` in mm.
+    Both (m, n); where nothing is covered the first is not less than the second. mm and radians.
     """
     cos, sin = np.cos(angles), np.sin(angles)
     low0, high0 = _discs(start, radius, cos, sin)
@@ -59,8 +58,7 @@ def _between(
 def clipped(
     factor: FloatArray, least: FloatArray | float, most: FloatArray | float
 ) -> tuple[FloatArray, FloatArray]:
-    """The r >= 0 for which ``factor`` r lies between ``least`` and ``most``; the first not less than the
-    second: none."""
+    """The r >= 0 for which ``factor`` r lies between two bounds; the first not less than the second: none."""
     upright = np.abs(factor) < _TINY
     safe = np.where(upright, 1.0, factor)
     one, other = least / safe, most / safe
