@@ -1,0 +1,225 @@
+"""Codes of indexable inserts, ISO 1832 (metric) and ANSI B212.4 (inch), and the sizes they stand for.
+
+``CNMG 120408`` and ``CNMG432`` are the same insert: a rhombus of 80° without clearance, inscribed circle
+12.7 mm, 4.76 mm thick, nose radius .8 mm (1/32 in). The tables are those of ISO 1832 (shape, normal
+clearance, tolerance, type, size, thickness, corner) and of ANSI B212.4 (sizes in fractions of an inch).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import radians, sin, tan
+
+MM_PER_INCH = 25.4
+
+
+class InsertCodeError(ValueError):
+    """A code that means nothing; the text says which character."""
+
+
+@dataclass(frozen=True, slots=True)
+class Insert:
+    """An insert: interior angles and edges counter-clockwise from the cutting corner, degrees and mm.
+
+    ``inscribed_circle`` is a diameter. A round insert has no corners and no edges, and is all nose.
+    """
+
+    shape: str
+    corners: tuple[float, ...]
+    edges: tuple[float, ...]
+    inscribed_circle: float
+    nose_radius: float
+    thickness: float = 0.0
+    clearance: float = 0.0
+
+    @property
+    def point_angle(self) -> float:
+        """Included angle of the cutting corner; 0 of a round insert."""
+        return self.corners[0] if self.corners else 0.0
+
+
+# --- ISO 1832, symbols 1 to 4: shape, normal clearance, tolerance, fixing and chip breaker -----------------
+
+_RHOMBS = {"C": 80.0, "D": 55.0, "E": 75.0, "K": 55.0, "M": 86.0, "S": 90.0, "V": 35.0}
+CORNERS: Mapping[str, tuple[float, ...]] = {
+    **{shape: (angle, 180.0 - angle) * 2 for shape, angle in _RHOMBS.items()},
+    "T": (60.0,) * 3,
+    "W": (80.0, 160.0) * 3,  # the trigon: a triangle with broken sides
+    "P": (108.0,) * 5,
+    "H": (120.0,) * 6,
+    "O": (135.0,) * 8,
+    "R": (),
+}
+_CLEARANCES = {"A": 3.0, "B": 5.0, "C": 7.0, "D": 15.0, "E": 20.0, "F": 25.0, "G": 30.0, "N": 0.0, "P": 11.0}
+_LETTERS: tuple[tuple[str, Iterable[str]], ...] = (
+    ("shape", CORNERS),
+    ("clearance", _CLEARANCES),
+    ("tolerance class", "ACEFGHJKLMNU"),
+    ("type of hole and chip breaker", "ABCFGHJMNQRTUWX"),
+)
+
+# --- ISO 1832, symbols 5 to 7 ------------------------------------------------------------------------------
+
+# Inscribed circles in inches; those under 1/4 in only where the standard names an edge for them.
+_SERIES = (1 / 4, 5 / 16, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 1.0, 5 / 4)
+_SMALL = (5 / 32, 3 / 16, 7 / 32)
+_UNUSUAL: Mapping[str, Mapping[str, float]] = {
+    # Makers' sizes for the smallest boring bars (CCGT 0301, CCGT 04T0); the standard's 04 is 4.76 mm.
+    "C": {"03": 3.5, "04": 4.3},
+    "K": {"16": 9.525},
+    "R": {f"{circle:02d}": float(circle) for circle in (5, 6, 8, 10, 16, 20, 25, 32)}
+    | {"09": 9.525, "12": 12.7, "15": 15.875, "19": 19.05},
+    "W": {"L3": 4.7625},
+}
+_METRIC_ROUND = 12.0  # mm; RCMT 1204M0, beside 12.7 mm of RNMG 120400
+_THICKNESS = {
+    **{"01": 1.59, "T0": 1.79, "T1": 1.98, "02": 2.38, "T2": 2.78, "03": 3.18, "T3": 3.97, "04": 4.76},
+    **{"T4": 4.96, "05": 5.56, "T5": 5.95, "06": 6.35, "T6": 6.75, "07": 7.94, "09": 9.52, "T9": 9.72},
+    **{"11": 11.11, "12": 12.7},
+}
+_CORNER = {
+    f"{tenths:02d}": tenths / 10.0 for tenths in (0, 1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 16, 20, 24, 28, 32)
+}
+_K_EDGE = 16.15  # mm, the long edge of KNUX 1604..: the only K that is turned with
+
+# --- ANSI B212.4: inscribed circle in 1/8 in, thickness in 1/16 in, corner in 1/64 in ----------------------
+
+_EIGHTHS = {
+    **{"1.2": 5 / 32, "1.5": 3 / 16, "1.8": 7 / 32, "2": 1 / 4, "2.5": 5 / 16, "3": 3 / 8},
+    **{"4": 1 / 2, "5": 5 / 8, "6": 3 / 4, "8": 1.0},
+}
+_SIXTEENTHS = {
+    **{"1": 1 / 16, "1.2": 5 / 64, "1.5": 3 / 32, "2": 1 / 8, "2.5": 5 / 32, "3": 3 / 16, "3.5": 7 / 32},
+    **{"4": 1 / 4, "5": 5 / 16, "6": 3 / 8},
+}
+_SIXTY_FOURTHS = {
+    **{"0": 0.0, "0.2": 0.004, ".2": 0.004, "0.5": 0.008, ".5": 0.008},
+    **{str(count): count / 64 for count in (1, 2, 3, 4, 5, 6, 7, 8)},
+}
+
+
+def edge_length(corner: float, following: float, circle: float) -> float:
+    """The edge between two corners (degrees) of a polygon about an inscribed circle of this diameter."""
+    return circle / 2.0 * (1.0 / tan(radians(corner / 2.0)) + 1.0 / tan(radians(following / 2.0)))
+
+
+def insert_of(shape: str, circle: float, nose_radius: float) -> Insert:
+    """An insert of a known shape letter by its inscribed circle, mm."""
+    corners = CORNERS[shape]
+    if shape == "K":  # a parallelogram touches the circle with its long edges alone; the end edge is short
+        edges: tuple[float, ...] = (circle / sin(radians(corners[0])), _K_EDGE) * 2
+    else:
+        edges = tuple(
+            edge_length(corner, after, circle) for corner, after in pairwise((*corners, *corners[:1]))
+        )
+    return Insert(shape, corners, edges, circle, nose_radius if corners else circle / 2.0)
+
+
+def metric_sizes(shape: str) -> dict[str, float]:
+    """Inscribed circles (mm) by the two figures of ISO 1832: the edge in whole mm, decimals left off."""
+    if shape in "RK":
+        return dict(_UNUSUAL[shape])
+    corners = CORNERS[shape]
+    sizes = {}
+    for inch in (*(_SMALL if shape in "CDSTVW" else ()), *_SERIES):
+        circle = round(inch * MM_PER_INCH, 6)
+        # A triangle about 1/4 in has 10.9985 mm, which the standard's tables have rounded to 11.
+        sizes[f"{int(edge_length(corners[0], corners[1], circle) + 0.01):02d}"] = circle
+    return {**sizes, **_UNUSUAL.get(shape, {})}
+
+
+def decoded(code: str) -> Insert:
+    """The insert of an ISO or ANSI code. Raises InsertCodeError naming the character that means nothing.
+
+    What follows the size (edge condition, hand, the maker's chip breaker) is not looked at.
+    """
+    text = re.sub(r"[\s_]", "", code).upper()
+    letters = re.match(r"[^-.\d]*?(?=[-.\d]|L\d|$)", text)
+    head = letters[0] if letters else ""
+    size = text[len(head) :].removeprefix("-")
+    metric = re.match(r"(L\d|\d\d)\w\d", size)
+    _check_letters(code, head, older=len(head) == 3 and size[:1].isdigit() and not metric)
+    read = _metric if metric else _inch
+    circle, thickness, nose = read(_Size(code, head[0], size, len(head)))
+    return replace(insert_of(head[0], circle, nose), thickness=thickness, clearance=_CLEARANCES[head[1]])
+
+
+def _check_letters(code: str, head: str, *, older: bool) -> None:
+    """The four letters; the older inch codes leave the last one out (TPG 322)."""
+    for place, (what, known) in enumerate(_LETTERS, start=1):
+        if len(head) < place:
+            if older:
+                return
+            raise InsertCodeError(f"{code}: character {place} is missing; it is the {what}")
+        if head[place - 1] not in known:
+            raise _meaningless(code, place, head[place - 1], what, known)
+    if len(head) > len(_LETTERS):
+        raise InsertCodeError(f"{code}: character 5, {head[4]}, means nothing; the size begins there")
+
+
+@dataclass(slots=True)
+class _Size:
+    """The figures of a code, read from the left."""
+
+    code: str
+    shape: str
+    left: str
+    place: int  # of the last character that was read, counted without blanks and dashes
+
+    def take(self, found: str, what: str, known: Mapping[str, float]) -> float:
+        """What the next characters stand for."""
+        if not found or len(found) < len(min(known, key=len)):
+            at = f"{self.code}: character {self.place + len(found) + 1}"
+            raise InsertCodeError(f"{at} is missing; there stands the {what}: {' '.join(sorted(known))}")
+        if found not in known:
+            raise _meaningless(self.code, self.place + 1, found, what, known)
+        self.left = self.left[len(found) :]
+        self.place += len(found)
+        return known[found]
+
+
+def _meaningless(code: str, place: int, found: str, what: str, known: Iterable[str]) -> InsertCodeError:
+    where = f"character {place}, {found}, means"
+    if len(found) > 1:
+        where = f"characters {place} and {place + len(found) - 1}, {found}, mean"
+    return InsertCodeError(f"{code}: {where} nothing as {what}; known: {' '.join(sorted(known))}")
+
+
+def _metric(size: _Size) -> tuple[float, float, float]:
+    """Inscribed circle, thickness and nose radius, mm."""
+    edge = size.left[:2]
+    circle = size.take(edge, f"size of insert shape {size.shape}", metric_sizes(size.shape))
+    thickness = size.take(size.left[:2], "thickness", _THICKNESS)
+    if size.shape != "R":
+        return circle, thickness, size.take(size.left[:2], "corner radius (tenths of a mm)", _CORNER)
+    if size.take(size.left[:2], "corner of a round insert", {"00": 0.0, "M0": 1.0}) and edge == "12":
+        circle = _METRIC_ROUND
+    return circle, thickness, circle / 2.0
+
+
+_FRACTION = re.compile(r"1\.[258]|[23]\.5|\d?")
+_CORNER_FRACTION = re.compile(r"0?\.[25]|\d?")
+
+
+def _inch(size: _Size) -> tuple[float, float, float]:
+    """Inscribed circle, thickness and nose radius, mm."""
+    circle = size.take(_next(size, _FRACTION), "size (eighths of an inch)", _EIGHTHS)
+    thickness = size.take(_next(size, _FRACTION), "thickness (sixteenths of an inch)", _SIXTEENTHS)
+    corner = _next(size, _CORNER_FRACTION)
+    if size.shape == "R" and corner in {"", "0"}:  # a round insert needs no corner
+        return circle * MM_PER_INCH, thickness * MM_PER_INCH, circle * MM_PER_INCH / 2.0
+    nose = size.take(corner, "corner radius (1/64 in)", _SIXTY_FOURTHS)
+    if size.left[:1].isdigit():
+        raise InsertCodeError(
+            f"{size.code}: character {size.place + 1}, {size.left[0]}, is one figure too many"
+        )
+    return circle * MM_PER_INCH, thickness * MM_PER_INCH, nose * MM_PER_INCH
+
+
+def _next(size: _Size, pattern: re.Pattern[str]) -> str:
+    """The next figure of an inch code, or the character that stands in its place."""
+    found = pattern.match(size.left)
+    return (found[0] if found else "") or size.left[:1]

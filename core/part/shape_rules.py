@@ -1,0 +1,111 @@
+"""Which fields a kind of tool has, and where the fields of a tool shape contradict each other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import NamedTuple
+
+from core.part.holder_codes import holder_of
+from core.part.insert_codes import InsertCodeError, decoded
+from core.part.tool_outline import BORING_ENTRIES, ENTRIES
+from core.part.tool_polygons import convex_pieces
+from core.part.tool_shape import TIP_DIRECTIONS, Hand, ToolKind, ToolShape
+
+_EDGED = ("hand", "tip", "nose_radius", "insert", "holder", "entry", "stick_out", "rear")
+_ROUND = ("tip", "diameter", "length", "stick_out")
+# The fields that mean something, in the order in which they are asked; the rest of a shape is not looked at.
+FIELDS_OF: Mapping[ToolKind, tuple[str, ...]] = {
+    ToolKind.TURNING: _EDGED,
+    ToolKind.BORING: (*_EDGED[:5], "diameter", *_EDGED[5:]),
+    ToolKind.GROOVING: (*_EDGED[:3], "width", "length", "holder", "diameter", "stick_out", "rear"),
+    ToolKind.PARTING: (*_EDGED[:3], "width", "length", "holder", "stick_out", "rear"),
+    ToolKind.THREADING: (*_EDGED[:3], "point", "pitch", "length", "holder", "diameter", "stick_out", "rear"),
+    ToolKind.DRILL: ("tip", "diameter", "point", "length", "stick_out", "flutes"),
+    ToolKind.CENTRE_DRILL: ("tip", "diameter", "width", "point", "stick_out"),
+    ToolKind.REAMER: (*_ROUND, "flutes"),
+    ToolKind.TAP: ("hand", "tip", "diameter", "pitch", "length", "stick_out", "flutes"),
+    ToolKind.END_MILL: ("tip", "nose_radius", "diameter", "length", "stick_out", "flutes"),
+    ToolKind.FORM: ("hand", "tip", "nose_radius", "profile", "holder", "stick_out", "rear"),
+}
+
+
+class ShapeMistake(NamedTuple):
+    """What cannot be, and the field that is best changed."""
+
+    field: str
+    text: str
+
+
+def shape_mistakes(shape: ToolShape) -> tuple[ShapeMistake, ...]:
+    """Everything in a shape that contradicts itself or means nothing; none: it can be drawn."""
+    return tuple(mistake for rule in _RULES for mistake in rule(shape))
+
+
+def _insert(shape: ToolShape) -> Iterator[ShapeMistake]:
+    if shape.kind not in {ToolKind.TURNING, ToolKind.BORING} or not shape.insert.strip():
+        return
+    try:
+        insert = decoded(shape.insert)
+    except InsertCodeError as error:
+        yield ShapeMistake("insert", str(error))
+        return
+    if insert.corners and 2.0 * shape.nose_radius >= insert.inscribed_circle:
+        yield ShapeMistake("nose_radius", f"the nose radius is larger than the insert {shape.insert}")
+    yield from _entry(shape, insert.shape, insert.point_angle)
+
+
+def _entry(shape: ToolShape, letter: str, point: float) -> Iterator[ShapeMistake]:
+    """The end cutting edge must not lie in front of the tip."""
+    holder = holder_of(shape.holder)
+    coded = holder.entry if holder and not (holder.faces and not shape.internal) else 0.0
+    neutral = shape.hand is Hand.NEUTRAL or 0 in shape.direction
+    usual = 0.0 if neutral else (BORING_ENTRIES if shape.internal else ENTRIES).get(letter, 0.0)
+    angle = shape.entry or coded or usual
+    if angle + point > 180.0:
+        text = f"an entering angle of {angle:g}° leaves a point of {point:g}° no clearance"
+        yield ShapeMistake("entry", f"{text}; at most {180 - point:g}°")
+
+
+def _tip(shape: ToolShape) -> Iterator[ShapeMistake]:
+    if shape.turns_itself and 0 not in TIP_DIRECTIONS[shape.tip]:
+        text = f"tip {shape.tip} is no end of a {shape.kind}: 7 along the spindle, 8 across it, 6 from behind"
+        yield ShapeMistake("tip", text)
+    across = TIP_DIRECTIONS[shape.tip][1]
+    if shape.rear and across and not shape.turns_itself and (across > 0) is shape.internal:
+        where, which = ("X−", "3, 4 or 8") if shape.internal else ("X+", "1, 2 or 6")
+        text = (
+            f"tip {shape.tip} is that of a tool in front; behind the spindle the tip lies at {where}: {which}"
+        )
+        yield ShapeMistake("tip", text)
+
+
+def _sizes(shape: ToolShape) -> Iterator[ShapeMistake]:
+    groove = shape.kind in {ToolKind.GROOVING, ToolKind.PARTING}
+    if groove and shape.width and 2.0 * shape.nose_radius > shape.width:
+        yield ShapeMistake("nose_radius", "two corners of this nose radius are wider than the edge")
+    if shape.kind is ToolKind.END_MILL and shape.diameter and 2.0 * shape.nose_radius > shape.diameter:
+        yield ShapeMistake("nose_radius", "the corner radius is larger than half of the diameter")
+    if shape.turns_itself and shape.stick_out and shape.length > shape.stick_out:
+        yield ShapeMistake("length", "what cuts is longer than the tool sticks out")
+    if shape.kind is ToolKind.CENTRE_DRILL and shape.diameter and shape.width >= shape.diameter:
+        yield ShapeMistake("width", "the pilot is as thick as the centre drill")
+    if shape.kind is ToolKind.TAP and shape.diameter and 2.0 * shape.pitch >= shape.diameter:
+        yield ShapeMistake("pitch", "the pitch is too coarse for the diameter of the tap")
+
+
+def _outlines(shape: ToolShape) -> Iterator[ShapeMistake]:
+    holder = holder_of(shape.holder)
+    profile = shape.profile if shape.kind is ToolKind.FORM else ()
+    for field, points in (("profile", profile), ("holder", holder.outline if holder else ())):
+        if not points:
+            continue
+        try:
+            pieces = convex_pieces(points) if len(points) > 2 else ()
+        except ValueError as error:
+            yield ShapeMistake(field, str(error))
+            continue
+        if not pieces:
+            yield ShapeMistake(field, "an outline takes three points that do not lie on one line")
+
+
+_RULES: tuple[Callable[[ToolShape], Iterator[ShapeMistake]], ...] = (_insert, _tip, _sizes, _outlines)

@@ -1,0 +1,420 @@
+"""Outlines of tools in the plane of turning: what cuts and what must not touch metal, by kind and size.
+
+Every tool is drawn in one pose, the end towards the chuck and the axis (quadrant 3, or 8 where it is
+symmetrical, or 7 for a drill), and mirrored to the side on which its tip lies. X keeps its sign: the holder
+of a tool in front lies at X+ of its tip, that of a tool behind at X−, and a boring bar may reach across the
+axis, where what counts is |X|. Sizes that nobody has stated are those of the standards' usual holders, and
+their names are told.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from core.part.holder_codes import Holder, holder_of, shank
+from core.part.insert_codes import Insert, decoded, insert_of
+from core.part.tool_polygons import (
+    CHORD,
+    COARSE,
+    FloatArray,
+    circle,
+    convex_pieces,
+    counter_clockwise,
+    hull,
+    largest_radius,
+    nose_centre,
+    polygon,
+    rectangle,
+    rounded,
+    walked,
+)
+from core.part.tool_shape import TIP_DIRECTIONS, Hand, ToolKind, ToolShape
+
+# Entering angles of the usual holders, ISO 5608: MCLN, DDJN, MVJN, MTJN, MWLN, MSRN, CKJN and the like.
+ENTRIES: Mapping[str, float] = {
+    **{"C": 95.0, "W": 95.0, "D": 93.0, "V": 93.0, "T": 93.0, "K": 93.0, "S": 75.0, "E": 95.0, "M": 90.0},
+    **{"P": 60.0, "H": 50.0, "O": 40.0},
+}
+BORING_ENTRIES: Mapping[str, float] = {**ENTRIES, "T": 91.0}  # STFC
+NOSE = 0.4  # mm, of an insert of which nothing is known
+# Bars of ISO 5609: diameter → tip to axis, mm.
+_BARS = (
+    (0.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0, 32.0, 40.0),
+    (0.0, 6.0, 7.0, 9.0, 11.0, 13.0, 17.0, 22.0, 27.0),
+)
+_PROUD = 0.1  # of the inscribed circle: how far an insert stands out of its seat, at most 1 mm
+_BLADE = 0.8  # of the width of the edge
+_TAP_LEAD = 3.0  # pitches
+_POINTS = {ToolKind.DRILL: 118.0, ToolKind.CENTRE_DRILL: 60.0, ToolKind.THREADING: 60.0}
+
+
+@dataclass(frozen=True, slots=True)
+class ToolOutline:
+    """Convex polygons (k, 2) of (z, r) about the control point, mm, counter-clockwise.
+
+    ``cutting`` takes metal off, ``body`` must not meet any. ``axial``: the tool is round about an axis
+    parallel to Z. ``assumed`` names the fields of the shape for which a standard size stands.
+    """
+
+    cutting: tuple[FloatArray, ...]
+    body: tuple[FloatArray, ...] = ()
+    axial: bool = False
+    assumed: tuple[str, ...] = ()
+
+
+@dataclass(slots=True)
+class _Drawing:
+    """One tool on the drawing board, in the pose that all are drawn in."""
+
+    shape: ToolShape
+    cutting: list[FloatArray] = field(default_factory=list)
+    body: list[FloatArray] = field(default_factory=list)
+    assumed: list[str] = field(default_factory=list)
+
+    def size(self, name: str, usual: float) -> float:
+        """A field of the shape, or the usual size, which is noted."""
+        stated = float(getattr(self.shape, name))
+        if stated > 0.0:
+            return stated
+        self.assumed.append(name)
+        return usual
+
+    @property
+    def holder(self) -> Holder:
+        """The holder as far as it is described."""
+        return holder_of(self.shape.holder) or Holder()
+
+    def shank(self, usual: float) -> Holder:
+        """The shank, or the usual one of this width."""
+        holder = self.holder
+        if holder.width:
+            return holder
+        self.assumed.append("holder")
+        return shank(usual)
+
+    @property
+    def sided(self) -> bool:
+        """Whether the tip lies in a quadrant between the axes."""
+        return 0 not in self.shape.direction
+
+    @property
+    def tip(self) -> FloatArray:
+        """Where the tip lies from the nose centre, in nose radii, in the pose of the drawing."""
+        if self.shape.tip in {0, 9}:
+            return np.zeros(2)
+        return np.array([-1.0 if self.sided else 0.0, -1.0])
+
+
+def outline(shape: ToolShape) -> ToolOutline:
+    """The outline of a tool. Raises InsertCodeError for a code that means nothing.
+
+    What else contradicts itself is told by ``core.part.shape_rules`` before.
+    """
+    drawing = _Drawing(shape)
+    _DRAW[shape.kind](drawing)
+    if pieces := drawing.holder.outline:
+        drawing.body = []
+    pose = _round_pose if shape.turns_itself else _pose
+    placed = _as_drawn if shape.kind is ToolKind.FORM else pose
+    return ToolOutline(
+        tuple(placed(each, shape.direction) for each in drawing.cutting),
+        (
+            *(placed(each, shape.direction) for each in drawing.body),
+            *(convex_pieces(pieces) if pieces else ()),
+        ),
+        shape.turns_itself and shape.direction[1] == 0,
+        tuple(dict.fromkeys(drawing.assumed)),
+    )
+
+
+def nose_circle(radius: float, tip: int) -> ToolOutline:
+    """What is known of a tool without a shape: its nose, or less than a hundredth where it has none."""
+    size = radius or CHORD * 10.0
+    z, r = TIP_DIRECTIONS[tip]
+    return ToolOutline((circle(size) - size * np.array([z, r], dtype=np.float64),), assumed=("kind",))
+
+
+# --- poses: from the drawing to the side of the tip ---------------------------------------------------------
+
+
+def _as_drawn(points: FloatArray, _direction: tuple[int, int]) -> FloatArray:
+    return points
+
+
+def _pose(points: FloatArray, direction: tuple[int, int]) -> FloatArray:
+    """From quadrant 3 or 8."""
+    z, r = direction
+    if r == 0:  # 7 and 5: the end that points to the axis points along it
+        return counter_clockwise(points[:, ::-1] * np.array([-z, 1.0]))
+    return counter_clockwise(points * np.array([-z or 1.0, -r]))
+
+
+def _round_pose(points: FloatArray, direction: tuple[int, int]) -> FloatArray:
+    """From quadrant 7."""
+    z, r = direction
+    if z == 0:
+        return counter_clockwise(points[:, ::-1] * np.array([1.0, -r]))
+    return counter_clockwise(points * np.array([-z, 1.0]))
+
+
+# --- turning and boring -------------------------------------------------------------------------------------
+
+
+def _insert(drawing: _Drawing, usual_circle: float) -> Insert:
+    shape = drawing.shape
+    if not shape.insert.strip():
+        drawing.assumed.append("insert")
+        return insert_of("C", usual_circle, shape.nose_radius or NOSE)
+    insert = decoded(shape.insert)
+    if not insert.corners:
+        return insert
+    return insert_of(insert.shape, insert.inscribed_circle, shape.nose_radius or insert.nose_radius)
+
+
+def _heading(drawing: _Drawing, insert: Insert, usual: Mapping[str, float]) -> float:
+    """Direction of the end cutting edge from the tip, degrees from +z to +r."""
+    shape, holder, point = drawing.shape, drawing.holder, insert.point_angle
+    entry = shape.entry or holder.entry
+    if not entry and (not drawing.sided or shape.hand is Hand.NEUTRAL):
+        return 90.0 - point / 2.0
+    if holder.faces and not shape.entry and not shape.internal:
+        return entry - 90.0
+    return 180.0 - (entry or usual[insert.shape]) - point
+
+
+def _seated(drawing: _Drawing, insert: Insert, usual: Mapping[str, float]) -> tuple[FloatArray, FloatArray]:
+    """The insert, and the part of it that lies on its seat, about the control point."""
+    radius = insert.nose_radius
+    seat = 1.0 - 2.0 * min(1.0, _PROUD * insert.inscribed_circle) / insert.inscribed_circle
+    if not insert.corners:
+        nose = circle(radius)
+        return nose - drawing.tip * radius, nose * seat - drawing.tip * radius
+    sharp = walked(insert.corners, insert.edges, _heading(drawing, insert, usual))
+    radius = min(radius, 0.99 * largest_radius(sharp))
+    shift = -radius * drawing.tip - (nose_centre(sharp, radius) if radius else sharp[0])
+    chords = [CHORD] + [COARSE] * (len(sharp) - 1)
+    middle = sharp.mean(axis=0)
+    nosed = rounded(sharp, [radius] * len(sharp), chords)
+    return nosed + shift, middle + (
+        rounded(sharp, [radius] * len(sharp), [COARSE] * len(sharp)) - middle
+    ) * seat + shift
+
+
+def _turning(drawing: _Drawing) -> None:
+    insert = _insert(drawing, 12.7)
+    cutting, seat = _seated(drawing, insert, ENTRIES)
+    drawing.cutting.append(cutting)
+    across = insert.inscribed_circle
+    head = max(2.5 * across, 2.0 * max(insert.edges, default=across))
+    holder = drawing.shank(next(wide for least, wide in _SHANKS if across >= least))
+    centred = not drawing.sided or drawing.shape.hand is Hand.NEUTRAL
+    far = holder.width / 2.0 if centred else holder.reach
+    _shank_behind(drawing, seat, (far - holder.width, far), head)
+
+
+_SHANKS = ((18.0, 32.0), (15.0, 25.0), (12.0, 20.0), (9.0, 16.0), (0.0, 12.0))  # inscribed circle → width, mm
+
+
+def _shank_behind(drawing: _Drawing, seat: FloatArray, side: tuple[float, float], head: float) -> None:
+    """A head from the seat to the shank, and the shank as far as it sticks out."""
+    drawing.body.append(hull(np.concatenate([seat, [(side[0], head), (side[1], head)]])))
+    end = drawing.shape.stick_out or head + 3.0 * (side[1] - side[0])
+    if end > head:
+        drawing.body.append(rectangle(side, (head, end)))
+
+
+def _boring(drawing: _Drawing) -> None:
+    shape = drawing.shape
+    bar = shape.diameter or drawing.holder.bar
+    insert = _insert(drawing, next(circle for least, circle in _BAR_INSERTS if bar >= least))
+    cutting, seat = _seated(drawing, insert, BORING_ENTRIES)
+    drawing.cutting.append(cutting)
+    if not bar:
+        bar = next(wide for least, wide in _INSERT_BARS if insert.inscribed_circle >= least)
+        drawing.assumed.append("diameter")
+    axis = float(np.interp(bar, *_BARS)) if bar < _BARS[0][-1] else 0.7 * bar
+    _bar_behind(drawing, seat, bar, axis, min(insert.inscribed_circle, bar) / 2.0)
+
+
+_BAR_INSERTS = ((26.0, 12.7), (17.0, 9.525), (0.0, 6.35))  # bar → inscribed circle, mm
+_INSERT_BARS = ((12.0, 32.0), (9.0, 20.0), (6.0, 12.0), (0.0, 8.0))  # inscribed circle → bar, mm
+
+
+def _bar_behind(drawing: _Drawing, seat: FloatArray, bar: float, axis: float, head: float) -> None:
+    """A bar towards +z, its axis so far from the tip; a back-boring tool's too, so its z is turned back."""
+    back = -1.0 if drawing.shape.direction[0] > 0 else 1.0
+    away = np.array([back, 1.0])
+    low, high = axis - bar / 2.0, axis + bar / 2.0
+    start = min(head, float((seat * away)[:, 0].max()))
+    end = drawing.size("stick_out", 4.0 * bar)
+    drawing.body.append(hull(np.concatenate([seat * away, [(start, low), (start, high)]])) * away)
+    if end > start:
+        drawing.body.append(rectangle((start, end), (low, high)) * away)
+    if drawing.shape.stick_out:
+        drawing.body.append(rectangle((end, end + 2.0 * bar), (axis - bar, axis + bar)) * away)
+
+
+# --- grooving, parting, threading: an edge, a blade behind it, then the shank or a bar ----------------------
+
+
+def _grooving(drawing: _Drawing) -> None:
+    shape = drawing.shape
+    width = drawing.size("width", 3.0)
+    nose = min(shape.nose_radius, 0.49 * width)
+    depth = shape.length or (0.0 if shape.internal else shape.stick_out) or _usual_depth(shape, width)
+    high = max(min(depth, max(1.5 * width, 2.0)), nose + CHORD)
+    left = _left_end(drawing, width, nose)
+    sharp = rectangle((left, left + width), (0.0, high)) - np.array([0.0, nose * (1.0 + drawing.tip[1])])
+    drawing.cutting.append(rounded(sharp, [nose, nose, 0.0, 0.0], [CHORD] * 4))
+    thin = (1.0 - _BLADE) / 2.0 * width
+    _blade_behind(drawing, (left + thin, left + width - thin), high, depth)
+
+
+def _left_end(drawing: _Drawing, width: float, nose: float) -> float:
+    """Where an edge of this width begins: the control point is its corner, its middle, or a nose centre."""
+    if not drawing.sided:
+        return -width / 2.0
+    return -nose * (1.0 + float(drawing.tip[0]))
+
+
+def _usual_depth(shape: ToolShape, width: float) -> float:
+    return 1.5 * width if shape.internal else max(12.0 * width, 25.0)
+
+
+def _blade_behind(drawing: _Drawing, side: tuple[float, float], high: float, depth: float) -> None:
+    shape = drawing.shape
+    if depth > high:
+        drawing.body.append(rectangle(side, (high, depth)))
+    if shape.internal:
+        bar = drawing.size("diameter", 12.0)
+        _bar_behind(drawing, rectangle(side, (depth, depth + bar)), bar, depth + bar / 2.0, side[0])
+    elif shape.length or shape.stick_out:
+        wide = drawing.shank(20.0).width
+        end = max(shape.stick_out, depth + 2.0 * wide)
+        drawing.body.append(rectangle((side[0], side[0] + wide), (depth, end)))
+    else:
+        drawing.assumed.append("length")
+
+
+def _threading(drawing: _Drawing) -> None:
+    """A V with a nose, or with the flat of an eighth of the pitch (ISO 68-1)."""
+    shape = drawing.shape
+    angle = math.radians(drawing.size("point", _POINTS[ToolKind.THREADING]))
+    high = shape.length or max(shape.pitch, 3.0)
+    flat = 0.0 if shape.nose_radius else shape.pitch / 8.0
+    half = flat / 2.0 + high * math.tan(angle / 2.0)
+    if flat:
+        points = [(-flat / 2.0, 0.0), (flat / 2.0, 0.0), (half, high), (-half, high)]
+        drawing.cutting.append(polygon(points) - np.array([drawing.tip[0] * flat / 2.0, 0.0]))
+    else:
+        sharp = polygon([(0.0, 0.0), (half, high), (-half, high)])
+        nose = min(shape.nose_radius, 0.5 * largest_radius(sharp))
+        shift = -nose * drawing.tip - (nose_centre(sharp, nose) if nose else sharp[0])
+        drawing.cutting.append(rounded(sharp, [nose, 0.0, 0.0], [CHORD] * 3) + shift)
+    top = drawing.cutting[0][:, 1].max()
+    left = float(drawing.cutting[0][:, 0].min())
+    _blade_behind(drawing, (left, left + 2.0 * half), top, top + 2.0 * half)
+
+
+# --- round tools: their axis is r = 0, their end at z = 0 ---------------------------------------------------
+
+
+def _cylinder(start: float, end: float, radius: float) -> FloatArray:
+    return rectangle((start, end), (-radius, radius))
+
+
+def _symmetrical(upper: list[tuple[float, float]]) -> FloatArray:
+    """A convex polygon from its half at r ≥ 0, along z."""
+    return hull(np.array([*upper, *((z, -r) for z, r in upper)], dtype=np.float64))
+
+
+def _shank_of(drawing: _Drawing, length: float, diameter: float) -> None:
+    """The shank to where it is held, and what holds it when that is stated."""
+    end = drawing.shape.stick_out or length + 2.0 * diameter
+    if end > length:
+        drawing.body.append(_cylinder(length, end, diameter / 2.0))
+    if drawing.shape.stick_out:
+        drawing.body.append(_cylinder(end, end + 2.0 * diameter + 10.0, diameter / 2.0 + 5.0))
+
+
+def _drill(drawing: _Drawing) -> None:
+    diameter = drawing.size("diameter", 6.0)
+    radius = diameter / 2.0
+    length = drawing.size("length", 8.0 * diameter)
+    cone = radius / math.tan(math.radians(drawing.size("point", _POINTS[ToolKind.DRILL]) / 2.0))
+    length = max(length, cone)
+    drawing.cutting.append(_symmetrical([(0.0, 0.0), (cone, radius), (length, radius)]))
+    _shank_of(drawing, length, diameter)
+
+
+def _centre_drill(drawing: _Drawing) -> None:
+    """DIN 333 form A: a pilot of .4 of the body, a point of 120°, then the cone; ``width`` is the pilot's."""
+    diameter = drawing.size("diameter", 6.0)
+    pilot = drawing.shape.width or 0.4 * diameter
+    tip = pilot / 2.0 / math.tan(math.radians(60.0))
+    root = 1.2 * pilot
+    angle = math.radians(drawing.size("point", _POINTS[ToolKind.CENTRE_DRILL]) / 2.0)
+    end = root + (diameter - pilot) / 2.0 / math.tan(angle)
+    drawing.cutting.append(_symmetrical([(0.0, 0.0), (tip, pilot / 2.0), (root, pilot / 2.0)]))
+    drawing.cutting.append(
+        _symmetrical([(root, pilot / 2.0), (end, diameter / 2.0), (end + 0.5, diameter / 2.0)])
+    )
+    _shank_of(drawing, end + 0.5, diameter)
+
+
+def _reamer(drawing: _Drawing) -> None:
+    diameter = drawing.size("diameter", 6.0)
+    length = drawing.size("length", 5.0 * diameter)
+    lead = min(0.1 * diameter, 0.5)  # at 45°
+    radius = diameter / 2.0
+    drawing.cutting.append(_symmetrical([(0.0, radius - lead), (lead, radius), (length, radius)]))
+    _shank_of(drawing, length, diameter)
+
+
+def _tap(drawing: _Drawing) -> None:
+    """The lead is three pitches from below the core of the thread (ISO 68-1: 1.0825 pitches less) on."""
+    diameter = drawing.size("diameter", 6.0)
+    pitch = drawing.size("pitch", diameter / 6.0)
+    length = drawing.size("length", 2.5 * diameter + _TAP_LEAD * pitch)
+    end = max(diameter - 1.2 * pitch, 0.5 * diameter) / 2.0
+    lead = min(_TAP_LEAD * pitch, length)
+    drawing.cutting.append(_symmetrical([(0.0, end), (lead, diameter / 2.0), (length, diameter / 2.0)]))
+    _shank_of(drawing, length, diameter)
+
+
+def _end_mill(drawing: _Drawing) -> None:
+    diameter = drawing.size("diameter", 6.0)
+    length = drawing.size("length", 3.0 * diameter)
+    nose = min(drawing.shape.nose_radius, diameter / 2.0)
+    radii = [nose, 0.0, 0.0, nose]
+    body = _cylinder(0.0, length, diameter / 2.0)
+    drawing.cutting.append(rounded(body, radii, [CHORD] * 4) if nose else body)
+    _shank_of(drawing, length, diameter)
+
+
+def _form(drawing: _Drawing) -> None:
+    shape = drawing.shape
+    if shape.profile:
+        drawing.cutting.extend(convex_pieces(shape.profile))
+    else:
+        drawing.assumed.append("profile")
+        drawing.cutting.extend(nose_circle(shape.nose_radius, shape.tip).cutting)
+
+
+_DRAW: Mapping[ToolKind, Callable[[_Drawing], None]] = {
+    ToolKind.TURNING: _turning,
+    ToolKind.BORING: _boring,
+    ToolKind.GROOVING: _grooving,
+    ToolKind.PARTING: _grooving,
+    ToolKind.THREADING: _threading,
+    ToolKind.DRILL: _drill,
+    ToolKind.CENTRE_DRILL: _centre_drill,
+    ToolKind.REAMER: _reamer,
+    ToolKind.TAP: _tap,
+    ToolKind.END_MILL: _end_mill,
+    ToolKind.FORM: _form,
+}

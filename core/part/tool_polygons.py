@@ -1,0 +1,176 @@
+"""Convex polygons of tools: corners rounded by chords, insert forms, mirror images, pieces of any outline.
+
+A polygon is a float array (k, 2) of (z, r), mm, counter-clockwise.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+CHORD = 0.0005  # mm between a nose and its chords
+COARSE = 0.02  # mm; corners that do not cut the part
+_RIGHT_ANGLE = math.pi / 2.0
+
+
+def polygon(points: Iterable[tuple[float, float]]) -> FloatArray:
+    """The points as an array, counter-clockwise."""
+    return counter_clockwise(np.array(tuple(points), dtype=np.float64))
+
+
+def rectangle(z: tuple[float, float], r: tuple[float, float]) -> FloatArray:
+    """A rectangle between two z and two r."""
+    (left, right), (low, high) = sorted(z), sorted(r)
+    return polygon([(left, low), (right, low), (right, high), (left, high)])
+
+
+def area(points: FloatArray) -> float:
+    """Area of a polygon by the shoelace formula; negative when it runs clockwise."""
+    z, r = points[:, 0], points[:, 1]
+    return 0.5 * float(np.dot(z, np.roll(r, -1)) - np.dot(r, np.roll(z, -1)))
+
+
+def counter_clockwise(points: FloatArray) -> FloatArray:
+    """The polygon the other way about when it runs clockwise."""
+    return points if area(points) >= 0.0 else points[::-1].copy()
+
+
+def arc(start: float, sweep: float, radius: float, chord: float = CHORD) -> FloatArray:
+    """Points (k, 2) on an arc about the origin, radians; its extremes in z and r are among them.
+
+    Half a chord of angle t falls short of the arc by radius (1 - cos t): a diameter that is turned with a
+    quadrant's extreme is exact.
+    """
+    most = 2.0 * math.acos(max(0.0, 1.0 - chord / radius)) if radius > chord else _RIGHT_ANGLE
+    first = math.floor(start / _RIGHT_ANGLE + 1e-9) + 1
+    quarters = [k * _RIGHT_ANGLE for k in range(first, first + 5) if k * _RIGHT_ANGLE < start + sweep - 1e-9]
+    angles = [start]
+    for left, right in pairwise([start, *quarters, start + sweep]):
+        count = max(1, math.ceil((right - left) / most))
+        angles += [left + (right - left) * step / count for step in range(1, count + 1)]
+    return radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+
+
+def circle(radius: float) -> FloatArray:
+    """A circle about the origin."""
+    return arc(0.0, 2.0 * math.pi, radius)[:-1]
+
+
+def walked(corners: Sequence[float], edges: Sequence[float], heading: float) -> FloatArray:
+    """A polygon from its interior angles and edges, the first corner at the origin, degrees.
+
+    ``heading`` is the direction of the first edge from +z to +r.
+    """
+    points, at, angle = [], np.zeros(2), math.radians(heading)
+    for corner, edge in zip((*corners[1:], corners[0]), edges, strict=True):
+        points.append(at)
+        at = at + edge * np.array([math.cos(angle), math.sin(angle)])
+        angle += math.pi - math.radians(corner)
+    return np.array(points)
+
+
+def nose_centre(points: FloatArray, radius: float, at: int = 0) -> FloatArray:
+    """Centre of the circle of this radius that touches both edges of a corner."""
+    before, corner, after = points[at - 1], points[at], points[(at + 1) % len(points)]
+    one, other = _unit(before - corner), _unit(after - corner)
+    half = math.acos(float(np.clip(np.dot(one, other), -1.0, 1.0))) / 2.0
+    return np.asarray(corner + _unit(one + other) * radius / math.sin(half))
+
+
+def rounded(points: FloatArray, radii: Sequence[float], chords: Sequence[float]) -> FloatArray:
+    """The convex polygon with its corners rounded; each has a radius, and a limit for its chords' error."""
+    parts = []
+    for at, (radius, chord) in enumerate(zip(radii, chords, strict=True)):
+        if radius <= 0.0:
+            parts.append(points[at : at + 1])
+            continue
+        into, out = points[at] - points[at - 1], points[(at + 1) % len(points)] - points[at]
+        start = math.atan2(into[1], into[0]) - _RIGHT_ANGLE
+        turn = math.atan2(into[0] * out[1] - into[1] * out[0], float(np.dot(into, out)))
+        parts.append(nose_centre(points, radius, at) + arc(start, turn, radius, chord))
+    return np.concatenate(parts)
+
+
+def largest_radius(points: FloatArray) -> float:
+    """The largest radius that fits into every corner at once."""
+    fits = []
+    for at in range(len(points)):
+        one, other = points[at - 1] - points[at], points[(at + 1) % len(points)] - points[at]
+        half = math.acos(float(np.clip(np.dot(_unit(one), _unit(other)), -1.0, 1.0))) / 2.0
+        fits.append(math.tan(half) * min(float(np.hypot(*one)), float(np.hypot(*other))) / 2.0)
+    return min(fits)
+
+
+def hull(points: FloatArray) -> FloatArray:
+    """The convex polygon about points, counter-clockwise (Andrew's monotone chain)."""
+    ordered = [tuple(point) for point in points[np.lexsort((points[:, 1], points[:, 0]))]]
+    return np.array(_chain(ordered)[:-1] + _chain(ordered[::-1])[:-1], dtype=np.float64)
+
+
+def _chain(ordered: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
+    chain: list[tuple[float, ...]] = []
+    for point in ordered:
+        while len(chain) > 1 and _turn(chain[-2], chain[-1], point) <= 0.0:
+            chain.pop()
+        chain.append(point)
+    return chain
+
+
+def convex_pieces(points: Sequence[tuple[float, float]]) -> tuple[FloatArray, ...]:
+    """A simple polygon in convex pieces: itself, or triangles by clipping ears. Raises ValueError else."""
+    left = [(float(z), float(r)) for z, r in counter_clockwise(np.array(points, dtype=np.float64))]
+    if _crosses(left):
+        raise ValueError("the outline crosses itself")
+    if _convex(left):
+        return (np.array(left),) if area(np.array(left)) > 0.0 else ()
+    pieces = []
+    while len(left) > 3:
+        ear = next((at for at in range(len(left)) if _is_ear(left, at)), None)
+        if ear is None:
+            raise ValueError("the outline touches itself")
+        pieces.append(np.array([left[ear - 1], left[ear], left[(ear + 1) % len(left)]]))
+        del left[ear]
+    return tuple(piece for piece in (*pieces, np.array(left)) if area(piece) > 0.0)
+
+
+def _convex(points: list[tuple[float, float]]) -> bool:
+    around = [*points, *points[:2]]
+    return all(_turn(*around[at : at + 3]) >= 0.0 for at in range(len(points)))
+
+
+def _crosses(points: list[tuple[float, float]]) -> bool:
+    """Whether two edges that are no neighbours cross."""
+    edges = list(pairwise([*points, points[0]]))
+    return any(
+        _turn(*edges[one], edges[other][0]) * _turn(*edges[one], edges[other][1]) < 0.0
+        and _turn(*edges[other], edges[one][0]) * _turn(*edges[other], edges[one][1]) < 0.0
+        for other in range(len(edges))
+        for one in range(other - 1)
+    )
+
+
+def _is_ear(points: list[tuple[float, float]], at: int) -> bool:
+    before, corner, after = points[at - 1], points[at], points[(at + 1) % len(points)]
+    if _turn(before, corner, after) < 0.0:
+        return False
+    others = (point for point in points if point not in (before, corner, after))
+    return not any(
+        _turn(before, corner, point) >= 0.0
+        and _turn(corner, after, point) >= 0.0
+        and _turn(after, before, point) >= 0.0
+        for point in others
+    )
+
+
+def _turn(first: Sequence[float], second: Sequence[float], third: Sequence[float]) -> float:
+    """Positive when the way over three points turns left."""
+    return (second[0] - first[0]) * (third[1] - first[1]) - (second[1] - first[1]) * (third[0] - first[0])
+
+
+def _unit(vector: FloatArray) -> FloatArray:
+    return np.asarray(vector / np.hypot(*vector))

@@ -1,0 +1,135 @@
+"""Insert codes against the tables of ISO 1832 and ANSI B212.4, as makers' catalogues print them."""
+
+from math import radians, tan
+
+import pytest
+
+from core.part.insert_codes import CORNERS, InsertCodeError, decoded, metric_sizes
+
+# Code, point angle, inscribed circle, edge, thickness, nose radius, clearance. The edges are the catalogues'
+# "l" (or "LE") of each size: 12.9 for CNMG 12, 11.6 for DCMT 11, 16.6 for VNMG 16, 8.7 for WNMG 08 …
+CATALOGUE = (
+    ("CNMG 120408", 80, 12.7, 12.90, 4.76, 0.8, 0),
+    ("CNMG 160616", 80, 15.875, 16.12, 6.35, 1.6, 0),
+    ("CCMT 060204", 80, 6.35, 6.45, 2.38, 0.4, 7),
+    ("CCMT 09T308", 80, 9.525, 9.67, 3.97, 0.8, 7),
+    ("DCMT 11T304", 55, 9.525, 11.63, 3.97, 0.4, 7),
+    ("DNMG 150608", 55, 12.7, 15.50, 6.35, 0.8, 0),
+    ("DCMT 070202", 55, 6.35, 7.75, 2.38, 0.2, 7),
+    ("VNMG 160404", 35, 9.525, 16.61, 4.76, 0.4, 0),
+    ("VCGT 110302", 35, 6.35, 11.07, 3.18, 0.2, 7),
+    ("TNMG 160408", 60, 9.525, 16.50, 4.76, 0.8, 0),
+    ("TCMT 110204", 60, 6.35, 11.00, 2.38, 0.4, 7),
+    ("TPMR 220412", 60, 12.7, 22.00, 4.76, 1.2, 11),
+    ("SNMG 120412", 90, 12.7, 12.70, 4.76, 1.2, 0),
+    ("SCMT 09T304", 90, 9.525, 9.525, 3.97, 0.4, 7),
+    ("WNMG 080408", 80, 12.7, 8.69, 4.76, 0.8, 0),
+    ("WNMG 060408", 80, 9.525, 6.52, 4.76, 0.8, 0),
+)
+# The same insert in inches and in millimetres.
+PAIRS = (
+    ("CNMG432", "CNMG 120408"),
+    ("CNMG 431", "CNMG 120404"),
+    ("CNMG-543", "CNMG 160612"),
+    ("DCMT 32.51", "DCMT 11T304"),
+    ("CCMT21.51", "CCMT 060204"),
+    ("TNMG 332", "TNMG 160408"),
+    ("TPG 322", "TPGN 160308"),
+    ("VNMG331", "VNMG 160404"),
+    ("WNMG 432", "WNMG 080408"),
+    ("SNMG 643", "SNMG 190612"),
+    ("TCMT 1.81.51", "TCMT 090204"),
+    ("DNMG 442", "DNMG 150608"),
+)
+
+
+@pytest.mark.parametrize(("code", "angle", "circle", "edge", "thick", "nose", "clearance"), CATALOGUE)
+def test_metric_code_is_the_catalogues_insert(
+    code: str, angle: float, circle: float, edge: float, thick: float, nose: float, clearance: float
+) -> None:
+    insert = decoded(code)
+    assert insert.point_angle == angle
+    assert insert.inscribed_circle == pytest.approx(circle, abs=0.001)
+    assert insert.edges[0] == pytest.approx(edge, abs=0.01)
+    assert (insert.thickness, insert.nose_radius, insert.clearance) == (thick, nose, clearance)
+
+
+@pytest.mark.parametrize(("inch", "metric"), PAIRS)
+def test_inch_code_is_the_metric_insert(inch: str, metric: str) -> None:
+    one, other = decoded(inch), decoded(metric)
+    assert one.corners == other.corners
+    assert one.inscribed_circle == pytest.approx(other.inscribed_circle, abs=0.001)
+    assert one.thickness == pytest.approx(other.thickness, abs=0.01)  # 4.76 stands for 3/16 in
+    assert one.nose_radius == pytest.approx(other.nose_radius, abs=0.01)  # .8 for 1/32 in
+
+
+def test_inch_corner_is_sixty_fourths_of_an_inch() -> None:
+    assert decoded("CNMG432").nose_radius == pytest.approx(25.4 / 32)
+    assert decoded("VCGT 22.50.5").nose_radius == pytest.approx(0.2032)
+
+
+@pytest.mark.parametrize("code", ["cnmg 12 04 08", "CNMG 120408-PM", "CNMG120408 EN", "CNMG_120408"])
+def test_writing_and_makers_marks_change_nothing(code: str) -> None:
+    assert decoded(code) == decoded("CNMG 120408")
+
+
+def test_round_insert_is_all_nose() -> None:
+    assert decoded("RCMT 10T3M0").nose_radius == 5.0
+    assert decoded("RNMG 120400").nose_radius == pytest.approx(6.35)
+    assert decoded("RCMT 1204M0").nose_radius == 6.0, "with M0 the size is metric"
+    assert decoded("RNMG 43").nose_radius == pytest.approx(6.35)
+    assert decoded("RNMG 43").corners == ()
+
+
+def test_knux_is_the_only_parallelogram() -> None:
+    insert = decoded("KNUX 160405R11")
+    assert insert.edges[1] == 16.15
+    assert insert.edges[0] == pytest.approx(9.525 / 0.81915, abs=0.001)  # the circle's width over sin 55°
+
+
+@pytest.mark.parametrize("shape", [shape for shape in CORNERS if shape not in "RK"])
+def test_size_is_the_edge_in_whole_millimetres(shape: str) -> None:
+    """ISO 1832, symbol 5; the standard's tables list 16 for T 3/8 in, 22 for 1/2 in, 08 for W 1/2 in."""
+    for figures, circle in metric_sizes(shape).items():
+        edge = decoded_edge(shape, circle)
+        if figures not in {"L3", "03", "04"}:  # makers' and doubled names
+            assert int(figures) == int(edge + 0.01)
+
+
+def decoded_edge(shape: str, circle: float) -> float:
+    first, second = CORNERS[shape][:2]
+    return circle / 2 * (1 / tan(radians(first / 2)) + 1 / tan(radians(second / 2)))
+
+
+@pytest.mark.parametrize(
+    ("code", "says"),
+    [
+        ("QNMG432", "character 1, Q, means nothing as shape"),
+        ("LNMG432", "character 1, L, means nothing as shape"),
+        ("CZMG 120408", "character 2, Z, means nothing as clearance"),
+        ("CNXG 120408", "character 3, X, means nothing as tolerance class"),
+        ("CNMY 120408", "character 4, Y, means nothing as type of hole"),
+        ("CNMGX432", "character 5, X, means nothing; the size begins there"),
+        ("CNMG 139408", "characters 5 and 6, 13, mean nothing as size of insert shape C; known: 03 04 05"),
+        ("CNMG 121308", "characters 7 and 8, 13, mean nothing as thickness"),
+        ("CNMG 120407", "characters 9 and 10, 07, mean nothing as corner radius"),
+        ("CNMG 12040", "character 10 is missing; there stands the corner radius"),
+        ("CNMG 1204", "character 9 is missing; there stands the corner radius"),
+        ("CNMG932", "character 5, 9, means nothing as size (eighths of an inch)"),
+        ("CNMG492", "character 6, 9, means nothing as thickness (sixteenths of an inch)"),
+        ("CNMG439", "character 7, 9, means nothing as corner radius (1/64 in)"),
+        ("CNMG43", "character 7 is missing; there stands the corner radius (1/64 in)"),
+        ("CNMG4321", "characters 5 and 6, 43, mean nothing as size"),
+        ("CNM 120408", "character 4 is missing; it is the type"),
+        ("CNMG", "character 5 is missing; there stands the size"),
+        ("RCMT 10T304", "characters 9 and 10, 04, mean nothing as corner of a round insert"),
+        ("ÄNMG432", "character 1, Ä, means nothing as shape"),
+        ("432", "character 1 is missing; it is the shape"),
+        ("", "character 1 is missing; it is the shape"),
+    ],
+)
+def test_code_that_means_nothing_says_which_character(code: str, says: str) -> None:
+    with pytest.raises(InsertCodeError) as caught:
+        decoded(code)
+    assert says in str(caught.value)
+    assert str(caught.value).startswith(f"{code}: ")

@@ -1,0 +1,137 @@
+"""Shapes of tools that contradict themselves, each with a twin that does not; and texts of holders."""
+
+from dataclasses import replace
+
+import pytest
+
+from core.part.holder_codes import Holder, holder_of
+from core.part.shape_rules import FIELDS_OF, shape_mistakes
+from core.part.tool_shape import Hand, ToolKind, ToolShape
+
+STAR = ((0.0, 2.0), (2.0, 2.0), (0.5, 0.0), (1.0, 3.0), (1.5, 0.0))
+SOUND = {
+    "insert": ToolShape(tip=3, insert="CNMG432"),
+    "nose_radius": ToolShape(ToolKind.GROOVING, width=2.0, nose_radius=0.4),
+    "entry": ToolShape(tip=3, insert="SNMG432", entry=75.0),
+    "tip": ToolShape(ToolKind.DRILL, tip=7),
+    "length": ToolShape(ToolKind.DRILL, length=40.0, stick_out=60.0),
+    "width": ToolShape(ToolKind.CENTRE_DRILL, diameter=5.0, width=2.0),
+    "pitch": ToolShape(ToolKind.TAP, diameter=6.0, pitch=1.0),
+    "profile": ToolShape(ToolKind.FORM, profile=((0.0, 0.0), (2.0, 0.0), (1.0, 1.0))),
+    "holder": ToolShape(tip=3, holder="0,10 20,10 20,50 0,50"),
+}
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "says"),
+    [
+        ("insert", "CNXG432", "CNXG432: character 3, X, means nothing as tolerance class"),
+        ("nose_radius", 1.1, "two corners of this nose radius are wider than the edge"),
+        ("entry", 95.0, "an entering angle of 95° leaves a point of 90° no clearance; at most 90°"),
+        ("tip", 3, "tip 3 is no end of a drill"),
+        ("length", 61.0, "what cuts is longer than the tool sticks out"),
+        ("width", 5.0, "the pilot is as thick as the centre drill"),
+        ("pitch", 3.0, "the pitch is too coarse for the diameter of the tap"),
+        ("profile", STAR, "the outline crosses itself"),
+        ("profile", ((0.0, 0.0), (1.0, 1.0)), "an outline takes three points"),
+        ("profile", ((0.0, 0.0), (1.0, 1.0), (2.0, 2.0)), "an outline takes three points"),
+        ("holder", "0,0 4,4 4,0 0,5", "the outline crosses itself"),
+    ],
+)
+def test_contradiction_is_named_and_its_twin_is_none(field: str, value: object, says: str) -> None:
+    assert shape_mistakes(SOUND[field]) == ()
+    (mistake,) = shape_mistakes(replace(SOUND[field], **{field: value}))  # type: ignore[arg-type]
+    assert mistake.field == field
+    assert says in mistake.text
+
+
+def test_nose_larger_than_its_insert_or_mill() -> None:
+    assert not shape_mistakes(ToolShape(tip=3, insert="CNMG432", nose_radius=6.3))
+    assert shape_mistakes(ToolShape(tip=3, insert="CNMG432", nose_radius=6.4))[0].field == "nose_radius"
+    assert not shape_mistakes(ToolShape(ToolKind.END_MILL, diameter=6.0, nose_radius=3.0))
+    assert (
+        shape_mistakes(ToolShape(ToolKind.END_MILL, diameter=6.0, nose_radius=3.1))[0].field == "nose_radius"
+    )
+
+
+@pytest.mark.parametrize(
+    ("kind", "right", "wrong"),
+    [(ToolKind.TURNING, 2, 3), (ToolKind.PARTING, 6, 8), (ToolKind.BORING, 3, 2)],
+)
+def test_tip_of_a_tool_behind_the_spindle(kind: ToolKind, right: int, wrong: int) -> None:
+    assert shape_mistakes(ToolShape(kind, tip=right, rear=True)) == ()
+    (mistake,) = shape_mistakes(ToolShape(kind, tip=wrong, rear=True))
+    assert mistake.field == "tip"
+    assert "behind the spindle" in mistake.text
+    assert shape_mistakes(ToolShape(kind, tip=wrong)) == ()
+
+
+def test_entry_of_the_holder_counts_too() -> None:
+    assert shape_mistakes(ToolShape(tip=3, insert="SNMG432", holder="MSRNR 2020K12")) == ()
+    assert shape_mistakes(ToolShape(tip=3, insert="SNMG432", holder="MCLNR 2020K12"))[0].field == "entry"
+
+
+@pytest.mark.parametrize("letter", list("CDEMSVTWPHO"))
+def test_usual_holders_leave_every_insert_its_clearance(letter: str) -> None:
+    for kind, tip in ((ToolKind.TURNING, 3), (ToolKind.BORING, 2)):
+        assert shape_mistakes(ToolShape(kind, tip=tip, insert=f"{letter}NMG432")) == ()
+
+
+def test_kinds_ask_for_fields_that_a_shape_has() -> None:
+    assert set(FIELDS_OF) == set(ToolKind)
+    for fields in FIELDS_OF.values():
+        assert set(fields) <= set(ToolShape.__slots__)
+
+
+@pytest.mark.parametrize(
+    ("kind", "hand", "rear", "points"),
+    [
+        (ToolKind.TURNING, Hand.RIGHT, False, (-1, -1)),
+        (ToolKind.TURNING, Hand.LEFT, False, (1, -1)),
+        (ToolKind.TURNING, Hand.RIGHT, True, (-1, 1)),
+        (ToolKind.BORING, Hand.RIGHT, False, (-1, 1)),
+        (ToolKind.BORING, Hand.RIGHT, True, (-1, -1)),
+        (ToolKind.THREADING, Hand.NEUTRAL, False, (0, -1)),
+        (ToolKind.DRILL, Hand.RIGHT, False, (-1, 0)),
+    ],
+)
+def test_without_a_quadrant_kind_and_hand_say_where_the_tip_points(
+    kind: ToolKind, hand: Hand, rear: bool, points: tuple[int, int]
+) -> None:
+    assert ToolShape(kind, hand, rear=rear).direction == points
+
+
+@pytest.mark.parametrize(
+    ("text", "width", "reach", "entry"),
+    [
+        ("20x20", 20.0, 25.0, 0.0),
+        ("25x20 mm", 20.0, 25.0, 0.0),
+        ('3/4"', 19.05, 25.4, 0.0),
+        ("3/4", 19.05, 25.4, 0.0),
+        (".5 in", 12.7, 15.875, 0.0),
+        ("16mm", 16.0, 20.0, 0.0),
+        ("MCLNR 2020K12", 20.0, 25.0, 95.0),
+        ("DDJNL 2525M15", 25.0, 32.0, 93.0),
+        ("SVVCN 2020K16", 20.0, 10.0, 72.5),
+        ("MCLNR-124B", 19.05, 25.4, 95.0),
+        ("MTJNR 16-3", 25.4, 31.75, 93.0),
+    ],
+)
+def test_holder_by_size_and_by_code(text: str, width: float, reach: float, entry: float) -> None:
+    """ISO 5608: shank 20 has f 25, 25 has 32; ANSI B212.5: 3/4 in has 1 in, 1 in has 1 1/4 in."""
+    holder = holder_of(text)
+    assert holder is not None
+    assert (holder.width, holder.reach, holder.entry) == pytest.approx((width, reach, entry))
+
+
+def test_boring_bars_by_code() -> None:
+    assert holder_of("S16R-SCLCR09") == Holder(bar=16.0, entry=95.0)
+    assert holder_of("A10-SCLCR2") == Holder(bar=15.875, entry=95.0), "ten sixteenths of an inch"
+    assert holder_of("S12M STFCR 11") == Holder(bar=12.0, entry=91.0)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "20", "the old one", "3/0", "0x0", "1,2 3,4", "1..2,3 4,5 6,7", "999mm", "MCLNR"]
+)
+def test_other_texts_are_names(text: str) -> None:
+    assert holder_of(text) is None
