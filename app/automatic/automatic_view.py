@@ -99,7 +99,7 @@ class AutomaticPage(Page):
             self.files.dismiss()  # a cycle was started at the station: the keys belong to it
         self._moving = snapshot.state in MOVING
         self._show_program(loaded)
-        self.comment.show_text(view.comment)
+        self.comment.text = view.comment
         self.listing.show_run(view.line or snapshot.interrupted_line, view.block_text, view.next_text)
         self._show_path(snapshot, loaded)
 

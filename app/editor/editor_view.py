@@ -302,7 +302,7 @@ class EditorPage(Page):
         elif self.mode is Mode.NAME:
             self.editor.take_name(entry)
         elif (number := line_of(entry)) is None or number > self.field.blockCount():
-            self.ask.say(f"A NUMBER FROM 1 TO {self.field.blockCount()}")
+            self.ask.answer = f"A NUMBER FROM 1 TO {self.field.blockCount()}"
         else:
             self.enter(Mode.TEXT)
             self.go_to(number)
@@ -314,7 +314,7 @@ class EditorPage(Page):
         editor = self.editor
         line, column = self.field.line, self.field.textCursor().positionInBlock() + 1
         place = f"LINE {line} OF {self.field.blockCount()}  ·  {column}"
-        self.head.show_heading(Heading(editor.name, self.typed_text.mark, place))
+        self.head.heading = Heading(editor.name, self.typed_text.mark, place)
         findings = editor.proof.now
         self.field.show_findings(findings.by_line)
         self.findings.show_findings(findings, line)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QPainter, QWheelEvent
+from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk import formats
 from app.editor.live_proof import Findings
 from app.editor.text_view import LETTERS, TONES
-from app.screen.look import CENTRE, LEFT, Look, put
+from app.screen.look import CENTRE, Look, Painter
 from app.screen.panel import Panel
 from core.language.diagnostics import Diagnostic, Severity
 
@@ -69,33 +69,26 @@ class FindingList(Panel):
         self._top = max(0, min(most, self._top - round(event.angleDelta().y() / 120)))
         self.update()
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         u = self.look.u
         self.frame(painter, self.words)
         shown = self.findings.diagnostics[self._top : self._top + self._rows]
         for place, found in enumerate(shown):
-            self._row(
-                painter, QRectF(0.6 * u, (2.3 + place * ROW) * u, self.width() - 1.2 * u, ROW * u), found
-            )
+            box = QRectF(0.6 * u, (2.3 + place * ROW) * u, self.width() - 1.2 * u, ROW * u)
+            self._row(painter, box, found)
 
-    def _row(self, painter: QPainter, box: QRectF, found: Diagnostic) -> None:
-        look, u = self.look, self.look.u
+    def _row(self, painter: Painter, box: QRectF, found: Diagnostic) -> None:
+        u = self.look.u
         if found.line == self._line:
-            painter.fillRect(box, look.colour("here"))
+            painter.fill(box, "here")
         patch = QRectF(box.x() + 0.4 * u, box.y() + 0.9 * u, 3.2 * u, 3.2 * u)
-        painter.fillRect(patch, look.colour(TONES[found.severity]))
-        painter.setPen(look.colour("on_state"))
-        painter.setFont(look.font(2.0, bold=True))
-        put(painter, patch, CENTRE, LETTERS[found.severity])
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.font(1.8, bold=True))
-        put(painter, QRectF(box.x() + 4.4 * u, box.y(), 8 * u, box.height()), LEFT, str(found.line or "FILE"))
+        painter.fill(patch, TONES[found.severity])
+        painter.write(patch, LETTERS[found.severity], 2.0, "on_state", at=CENTRE)
+        line = QRectF(box.x() + 4.4 * u, box.y(), 8 * u, box.height())
+        painter.write(line, str(found.line or "FILE"), 1.8, "text")
         room = box.adjusted(10.4 * u, 0.4 * u, -0.4 * u, -box.height() / 2)
-        painter.setFont(look.font(1.8))
-        put(painter, room, LEFT, found.text)
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.font(1.6))
-        put(painter, room.translated(0, room.height()), LEFT, found.hint)
+        painter.write(room, found.text, 1.8, "text", bold=False, fit=False)
+        painter.write(room.translated(0, room.height()), found.hint, 1.6, "soft", bold=False, fit=False)
         self.place(box, lambda: self._go_to(found.line, found.column))
 
 

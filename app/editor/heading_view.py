@@ -6,12 +6,12 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QFontMetricsF, QPainter
+from PySide6.QtGui import QFontMetricsF
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, put, put_raw
-from app.screen.panel import Panel
+from app.screen.look import CENTRE, RIGHT, Look, Painter
+from app.screen.panel import Panel, Shown
 from app.screen.window_layout import Rect
 
 KEYS = 14.0  # units: width of the place that shows the keyboard
@@ -29,42 +29,26 @@ class HeadLine(Panel):
     """The program being written, which need not be the one on the desk that the title line names."""
 
     ground = "panel"
+    heading = Shown(Heading())
 
     def __init__(self, look: Look, keys: Callable[[], None], parent: QWidget) -> None:
         """``keys`` shows the drawn keyboard, or takes it away."""
         super().__init__(look, parent)
         self._keys = keys
-        self.heading = Heading()
 
-    def show_heading(self, heading: Heading) -> None:
-        """Show another name, mark or place."""
-        if heading != self.heading:
-            self.heading = heading
-            self.update()
-
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         look, u, high, now = self.look, self.look.u, self.height(), self.heading
-        painter.setPen(look.colour("text"))
-        font = look.fit(now.name, 2.3, 40 * u, bold=True)
-        painter.setFont(font)
-        put_raw(painter, QRectF(1.4 * u, 0, 41 * u, high), LEFT, now.name)
-        left = 3.0 * u + min(40 * u, QFontMetricsF(font).horizontalAdvance(now.name))
+        painter.write(QRectF(1.4 * u, 0, 41 * u, high), now.name, 2.3, "text", raw=True, margin=1.0)
+        left = 3.0 * u + min(40 * u, QFontMetricsF(painter.font()).horizontalAdvance(now.name))
         if now.mark:
-            painter.setFont(look.font(1.7, bold=True))
-            wide = QFontMetricsF(painter.font()).horizontalAdvance(now.mark) + 1.6 * u
+            wide = QFontMetricsF(look.font(1.7, bold=True)).horizontalAdvance(now.mark) + 1.6 * u
             box = QRectF(left, high / 2 - 1.4 * u, wide, 2.8 * u)
-            painter.fillRect(box, look.colour("mark"))
-            painter.setPen(look.colour("on_mark"))
-            put(painter, box, CENTRE, now.mark)
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.font(1.9))
-        put(painter, QRectF(self.width() - (46 + KEYS) * u, 0, 44.6 * u, high), RIGHT, now.place)
+            painter.fill(box, "mark")
+            painter.write(box, now.mark, 1.7, "on_mark", at=CENTRE, fit=False)
+        place = QRectF(self.width() - (46 + KEYS) * u, 0, 44.6 * u, high)
+        painter.write(place, now.place, 1.9, "soft", at=RIGHT, bold=False, fit=False)
         key = QRectF(self.width() - KEYS * u, 0, KEYS * u, high)
-        painter.fillRect(key, look.colour("key"))
-        painter.setPen(look.colour("accent"))
-        painter.setFont(look.fit(tr("KEYBOARD"), 1.9, key.width() - u, bold=True))
-        put(painter, key, CENTRE, tr("KEYBOARD"))
-        self.place(key, self._keys)
+        self.key(painter, key, tr("KEYBOARD"), 1.9, self._keys, ink="accent", margin=1.0)
 
 
 # --- where everything stands on the page, in the unit of the Automatic page --------------------------------

@@ -5,15 +5,15 @@ from __future__ import annotations
 from functools import partial
 
 from PySide6.QtCore import QObject, QRectF, Qt
-from PySide6.QtGui import QPainter, QResizeEvent
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.desk.sheet import Key
 from app.editor.find_replace import Search, following, preceding
 from app.editor.text_view import TextField
 from app.screen.entry_panel import dress_line
-from app.screen.look import LEFT, RIGHT, Look, put
-from app.screen.panel import Panel
+from app.screen.look import RIGHT, Look, Painter
+from app.screen.panel import Panel, Shown
 
 LABEL = 15.0  # units before a field
 ANSWER = 34.0  # units for what is said of the entry
@@ -23,12 +23,12 @@ class AskLine(Panel):
     """One or two fields with their labels, and at the right what is to be said of the entry."""
 
     ground = "panel"
+    answer = Shown("")  # what is to be said of the entry
 
     def __init__(self, look: Look, keys: QObject, parent: QWidget) -> None:
         super().__init__(look, parent)
         self.first, self.second = QLineEdit(self), QLineEdit(self)
         self._labels: tuple[str, ...] = ("",)
-        self.answer = ""
         for edit in (self.first, self.second):
             edit.setMaxLength(250)
             edit.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
@@ -47,12 +47,6 @@ class AskLine(Panel):
         self.first.setFocus()
         self.first.selectAll()
         self.update()
-
-    def say(self, answer: str) -> None:
-        """What is to be said of the entry."""
-        if answer != self.answer:
-            self.answer = answer
-            self.update()
 
     def other_field(self) -> None:
         """The keyboard to the other field."""
@@ -79,16 +73,12 @@ class AskLine(Panel):
         wide = (self.width() - (ANSWER + 2) * u) / count
         return [QRectF(n * wide + u, 0, wide - u, self.height()) for n in range(count)]
 
-    def draw(self, painter: QPainter) -> None:
-        look, u = self.look, self.look.u
+    def draw(self, painter: Painter) -> None:
+        u = self.look.u
         for label, box in zip(self._labels, self._boxes(), strict=True):
-            painter.setPen(look.colour("soft"))
-            painter.setFont(look.fit(label, 1.8, (LABEL - 1) * u, bold=True))
-            put(painter, QRectF(box.x(), 0, (LABEL - 1) * u, box.height()), LEFT, label)
-        painter.setPen(look.colour("text"))
+            painter.write(QRectF(box.x(), 0, (LABEL - 1) * u, box.height()), label, 1.8, "soft")
         room = QRectF(self.width() - (ANSWER + 1) * u, 0, ANSWER * u, self.height())
-        painter.setFont(look.fit(self.answer, 1.9, room.width(), bold=True))
-        put(painter, room, RIGHT, self.answer)
+        painter.write(room, self.answer, 1.9, "text", at=RIGHT)
 
 
 class Finder:
@@ -140,7 +130,7 @@ class Finder:
         places = self._places()
         if places:
             self._field.replace_at(places, len(self._search.needle), self._ask.second.text())
-        self._ask.say(f"{len(places)} REPLACED" if places else "NOT FOUND")
+        self._ask.answer = f"{len(places)} REPLACED" if places else "NOT FOUND"
 
     def other_width(self) -> None:
         """Whole words and numbers only, or parts of them too."""
@@ -162,6 +152,6 @@ class Finder:
 
     def _show(self, place: int | None) -> None:
         search = self._search
-        self._ask.say(search.words(self._field.toPlainText()) if search.needle else "")
+        self._ask.answer = search.words(self._field.toPlainText()) if search.needle else ""
         if place is not None:
             self._field.select(place, len(search.needle))

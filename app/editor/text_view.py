@@ -9,7 +9,6 @@ from PySide6.QtGui import (
     QFontMetricsF,
     QKeyEvent,
     QMouseEvent,
-    QPainter,
     QPaintEvent,
     QResizeEvent,
     QTextBlock,
@@ -20,7 +19,7 @@ from PySide6.QtWidgets import QPlainTextEdit, QTextEdit, QWidget
 
 from app.editor.editor import Editor, Stage
 from app.editor.highlight_view import Highlighter
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter, put
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import dialect_of
 
@@ -146,14 +145,14 @@ class TextField(QPlainTextEdit):
         super().paintEvent(event)
         if not self._found:
             return
-        with QPainter(self.viewport()) as painter:
+        with Painter(self.viewport(), self.look) as painter:
             painter.setFont(self.look.font(1.7))
             for block, box in self.shown():
                 found = self._found.get(block.blockNumber() + 1)
                 if found is not None:
                     self._message(painter, block, box, found)
 
-    def _message(self, painter: QPainter, block: QTextBlock, box: QRectF, found: Diagnostic) -> None:
+    def _message(self, painter: Painter, block: QTextBlock, box: QRectF, found: Diagnostic) -> None:
         u = self.look.u
         wide = QFontMetricsF(self.font()).horizontalAdvance(block.text().expandtabs(4))
         room = QRectF(
@@ -208,8 +207,8 @@ class Margin(QWidget):
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Only the lines that are seen."""
         look, u, field = self._field.look, self._field.look.u, self._field
-        with QPainter(self) as painter:
-            painter.fillRect(self.rect(), look.colour("ground"))
+        with Painter(self, look) as painter:
+            painter.fill(QRectF(self.rect()), "ground")
             for block, box in field.shown():
                 number = block.blockNumber() + 1
                 here = number == field.line
@@ -217,13 +216,10 @@ class Margin(QWidget):
                 found = field.finding_at(number)
                 if found is not None:
                     patch = row.adjusted(0.2 * u, 0.1 * u, -(row.width() - 2.2 * u), -0.1 * u)
-                    painter.fillRect(patch, look.colour(TONES[found.severity]))
-                    painter.setPen(look.colour("on_state"))
-                    painter.setFont(look.font(1.8, bold=True))
-                    put(painter, patch, CENTRE, LETTERS[found.severity])
-                painter.setPen(look.colour("text" if here else "soft"))
-                painter.setFont(look.font(1.8, bold=here))
-                put(painter, row.adjusted(2.4 * u, 0, -0.8 * u, 0), RIGHT, str(number))
+                    painter.fill(patch, TONES[found.severity])
+                    painter.write(patch, LETTERS[found.severity], 1.8, "on_state", at=CENTRE)
+                room, ink = row.adjusted(2.4 * u, 0, -0.8 * u, 0), "text" if here else "soft"
+                painter.write(room, str(number), 1.8, ink, at=RIGHT, bold=here)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """A finger on a number goes to the line."""

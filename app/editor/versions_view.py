@@ -6,12 +6,12 @@ from collections.abc import Callable
 from datetime import datetime
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QPainter, QWheelEvent
+from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.sheet import Key
 from app.editor.versions import DifferenceRow, VersionHistory
-from app.screen.look import LEFT, RIGHT, Look, put, put_raw
+from app.screen.look import LEFT, RIGHT, Look, Painter, put, put_raw
 from app.screen.panel import Panel
 from core.store.store_rows import VersionRow
 
@@ -58,7 +58,7 @@ class VersionList(Panel):
         """Three lines a notch."""
         self.look_at(-round(event.angleDelta().y() / 40))
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         u, history = self.look.u, self._history
         rows = max(1, int((self.height() - 4.0 * u) / (ROW * u)))
         first = max(0, min(history.marked - rows // 2, len(history.rows) - rows))
@@ -68,43 +68,34 @@ class VersionList(Panel):
             self.place(box, self._marker(first + place))
         self._comparison(painter)
 
-    def _version(self, painter: QPainter, box: QRectF, version: VersionRow, marked: bool) -> None:
-        look, u = self.look, self.look.u
+    def _version(self, painter: Painter, box: QRectF, version: VersionRow, marked: bool) -> None:
+        u = self.look.u
         if marked:
-            painter.fillRect(box, look.colour("lit"))
-        ink = "on_lit" if marked else "text"
+            painter.fill(box, "lit")
+        ink, soft = ("on_lit", "on_lit") if marked else ("text", "soft")
         upper = box.adjusted(u, 0.4 * u, -u, -box.height() / 2)
-        painter.setPen(look.colour(ink))
-        painter.setFont(look.font(2.0, bold=True))
-        put(painter, upper, LEFT, f"{version.number}")
-        painter.setFont(look.font(1.8))
-        put(painter, upper.adjusted(5 * u, 0, 0, 0), LEFT, local_time(version.saved))
-        painter.setPen(look.colour("on_lit" if marked else "soft"))
-        painter.setFont(look.font(1.6))
-        put(painter, upper, RIGHT, f"{version.size} bytes")
+        painter.write(upper, f"{version.number}", 2.0, ink)
+        painter.write(upper.adjusted(5 * u, 0, 0, 0), local_time(version.saved), 1.8, ink, bold=False)
+        painter.write(upper, f"{version.size} bytes", 1.6, soft, at=RIGHT, bold=False)
         put(painter, upper.translated(5 * u, upper.height()), LEFT, version.why)
 
-    def _comparison(self, painter: QPainter) -> None:
-        look, u, history = self.look, self.look.u, self._history
+    def _comparison(self, painter: Painter) -> None:
+        u, history = self.look.u, self._history
         room = QRectF((LIST + 2) * u, 2.8 * u, self.width() - (LIST + 3.4) * u, 3 * u)
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.font(1.8, bold=True))
         head = history.words() or f"FROM VERSION {history.number} TO THE TEXT IN THE EDITOR"
-        put(painter, room, LEFT, head)
+        painter.write(room, head, 1.8, "text", fit=False)
         row = QRectF(room.x(), 6.2 * u, room.width(), LINE * u)
         for change in history.changes[self._top : self._top + self.lines]:
             self._change(painter, row, change)
             row.translate(0, LINE * u)
 
-    def _change(self, painter: QPainter, row: QRectF, change: DifferenceRow) -> None:
-        look, u = self.look, self.look.u
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.font(1.6))
-        put(painter, QRectF(row.x(), row.y(), 5 * u, row.height()), RIGHT, str(change.old or ""))
-        put(painter, QRectF(row.x() + 5 * u, row.y(), 5 * u, row.height()), RIGHT, str(change.new or ""))
-        painter.setPen(look.colour(INKS[change.sign]))
-        painter.setFont(look.font(2.0, bold=change.sign in "+-"))
-        put(painter, QRectF(row.x() + 11.4 * u, row.y(), 2.4 * u, row.height()), LEFT, change.sign)
+    def _change(self, painter: Painter, row: QRectF, change: DifferenceRow) -> None:
+        u = self.look.u
+        number = QRectF(row.x(), row.y(), 5 * u, row.height())
+        painter.write(number, str(change.old or ""), 1.6, "soft", at=RIGHT, bold=False)
+        put(painter, number.translated(5 * u, 0), RIGHT, str(change.new or ""))
+        sign = QRectF(row.x() + 11.4 * u, row.y(), 2.4 * u, row.height())
+        painter.write(sign, change.sign, 2.0, INKS[change.sign], bold=change.sign in "+-")
         put_raw(painter, row.adjusted(14 * u, 0, 0, 0), LEFT, change.text.expandtabs(4))
 
     def keys(self) -> dict[int, Key]:

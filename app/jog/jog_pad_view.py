@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QPainter, QPolygonF, QWheelEvent
+from PySide6.QtGui import QPolygonF, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
@@ -16,34 +16,30 @@ from app.jog.jog_homing import AxisState
 from app.jog.jog_model import JogModel
 from app.jog.jog_speeds import CONTINUOUS, JogDirection, rapid_word, speed_words, step_words
 from app.offsets.offset_values import Mode
-from app.screen.look import CENTRE, LEFT, Look, put
-from app.screen.panel import Control, FingerPanel
+from app.screen.look import CENTRE, Look, Painter, put
+from app.screen.panel import Control, FingerPanel, Shown
 from core.executor.snapshot import Snapshot
 
 # --- arrows and the middle ----------------------------------------------------------------------------
 
 
-def draw_arrow(painter: QPainter, look: Look, box: QRectF, to: tuple[int, int], colour: str) -> None:
+def draw_arrow(painter: Painter, box: QRectF, to: tuple[int, int], colour: str) -> None:
     """At the side of its target to which it points."""
     size = 0.16 * min(box.width(), box.height())
     centre = box.center() + QPointF(to[0] * 0.30 * box.width(), to[1] * 0.28 * box.height())
     forward, side = QPointF(to[0] * size, to[1] * size), QPointF(to[1] * size, to[0] * size)
     painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(look.colour(colour))
+    painter.setBrush(painter.look.colour(colour))
     painter.drawPolygon(QPolygonF([centre + forward, centre - forward + side, centre - forward - side]))
 
 
-def draw_middle(painter: QPainter, look: Look, box: QRectF, words: tuple[str, str, str]) -> None:
+def draw_middle(painter: Painter, box: QRectF, words: tuple[str, str, str]) -> None:
     """What an arrow does now: its kind, the figure, the unit."""
     kind, figure, unit = words
-    high, edge = 2.2 * look.u, 0.1 * box.height()
-    painter.setPen(look.colour("soft"))
-    painter.setFont(look.font(1.6, bold=True))
-    put(painter, QRectF(box.x(), box.y() + edge, box.width(), high), CENTRE, kind)
+    high, edge = 2.2 * painter.look.u, 0.1 * box.height()
+    painter.write(QRectF(box.x(), box.y() + edge, box.width(), high), kind, 1.6, "soft", at=CENTRE)
     put(painter, QRectF(box.x(), box.bottom() - edge - high, box.width(), high), CENTRE, unit)
-    painter.setPen(look.colour("text"))
-    painter.setFont(look.fit(figure, 3.2, box.width() - look.u, bold=True))
-    put(painter, box, CENTRE, figure)
+    painter.write(box, figure, 3.2, "text", at=CENTRE, margin=1.0)
 
 
 # --- rows of tiles ------------------------------------------------------------------------------------
@@ -65,36 +61,30 @@ class Tiles:
     alarmed: frozenset[int] = frozenset()
 
 
-def draw_tiles(
-    painter: QPainter, look: Look, row: QRectF, tiles: Tiles
-) -> list[tuple[QRectF, Callable[[], None]]]:
+def draw_tiles(painter: Painter, row: QRectF, tiles: Tiles) -> list[tuple[QRectF, Callable[[], None]]]:
     """Draw the row; where each of its tiles stands and what it does."""
-    u, left = look.u, row.x()
+    u, left = painter.look.u, row.x()
     if tiles.name[0]:
         left += NAME * u
-        _name(painter, look, QRectF(row.x(), row.y(), (NAME - 0.6) * u, row.height()), tiles.name)
+        _name(painter, QRectF(row.x(), row.y(), (NAME - 0.6) * u, row.height()), tiles.name)
     shares = [1.0 + 0.11 * max(0, len(word) - SHORT) for word in tiles.words]
     part = (row.right() - left + 0.6 * u) / sum(shares)
     boxes = []
     for number, (word, share) in enumerate(zip(tiles.words, shares, strict=True)):
         box = QRectF(left, row.y(), share * part - 0.6 * u, row.height())
         left += share * part
-        _tile(painter, look, box, word, tiles, number)
+        _tile(painter, box, word, tiles, number)
         boxes.append(box)
     return list(zip(boxes, tiles.presses, strict=True))
 
 
-def _name(painter: QPainter, look: Look, box: QRectF, name: tuple[str, str]) -> None:
+def _name(painter: Painter, box: QRectF, name: tuple[str, str]) -> None:
     half = box.height() / 2
-    painter.setPen(look.colour("soft"))
-    painter.setFont(look.fit(name[0], 1.5, box.width(), bold=True))
-    put(painter, QRectF(box.x(), box.y(), box.width(), half), LEFT, name[0])
-    painter.setPen(look.colour("accent"))
-    painter.setFont(look.font(1.6, bold=True))
-    put(painter, QRectF(box.x(), box.y() + half, box.width(), half), LEFT, name[1])
+    painter.write(QRectF(box.x(), box.y(), box.width(), half), name[0], 1.5, "soft")
+    painter.write(QRectF(box.x(), box.y() + half, box.width(), half), name[1], 1.6, "accent")
 
 
-def _tile(painter: QPainter, look: Look, box: QRectF, word: str, tiles: Tiles, number: int) -> None:
+def _tile(painter: Painter, box: QRectF, word: str, tiles: Tiles, number: int) -> None:
     """Filled when it is chosen, and in the colour of a warning when that has to be seen."""
     ink, ground, line = "text", "key", "frame"
     if number in tiles.alarmed:
@@ -102,12 +92,8 @@ def _tile(painter: QPainter, look: Look, box: QRectF, word: str, tiles: Tiles, n
     if number == tiles.chosen:
         ground = line = "pause" if tiles.warn else "lit"
         ink = "on_state" if tiles.warn else "on_lit"
-    painter.setPen(look.pen(line, 0.16))
-    painter.setBrush(look.colour(ground))
-    painter.drawRect(box)
-    painter.setPen(look.colour(ink))
-    painter.setFont(look.fit(word, 2.1, box.width() - 0.8 * look.u, bold=True))
-    put(painter, box, CENTRE, word)
+    painter.box(box, line, 0.16, ground)
+    painter.write(box, word, 2.1, ink, at=CENTRE, margin=0.8)
 
 
 # --- the drawn handwheel ------------------------------------------------------------------------------
@@ -148,19 +134,18 @@ class Dial:
         """The mouse's wheel, by Qt's figure; away from the hand is clockwise."""
         self._turn(CLICK * delta / _NOTCH)
 
-    def draw(self, painter: QPainter, look: Look, box: QRectF, click: str) -> None:
+    def draw(self, painter: Painter, box: QRectF, click: str) -> None:
         """The rim with its marks where it stands, and how far a click goes."""
-        size = 0.5 * min(box.width(), box.height()) - 0.4 * look.u
-        painter.setPen(look.pen("accent", 0.24))
+        size = 0.5 * min(box.width(), box.height()) - 0.4 * painter.look.u
+        painter.setPen(painter.look.pen("accent", 0.24))
         painter.drawEllipse(box.center(), size, size)
         for spoke in range(_SPOKES):
             angle = math.radians(self._angle + 360.0 * spoke / _SPOKES)
             out = QPointF(math.cos(angle), math.sin(angle))
             inner = 0.72 if spoke == 0 else 0.88
             painter.drawLine(box.center() + out * (inner * size), box.center() + out * size)
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.fit(click, 2.4, 1.2 * size, bold=True))
-        put(painter, box, CENTRE, click)
+        inside = QRectF(box.center().x() - 0.6 * size, box.y(), 1.2 * size, box.height())
+        painter.write(inside, click, 2.4, "text", at=CENTRE)
 
     def _turn(self, degrees: float) -> None:
         self._rest += degrees
@@ -177,39 +162,32 @@ ROW = 5.6  # units: a row of tiles
 class JogPad(FingerPanel):
     """Draws the model; every target is as large as the room allows."""
 
+    _shown: Shown[object] = Shown(None)
+    _known: Shown[Mapping[str, AxisState]] = Shown({})
+
     def __init__(self, look: Look, model: JogModel, parent: QWidget) -> None:
         super().__init__(look, parent)
         self._model = model
         self._dial = Dial(model.turn_wheel)
-        self._shown: object = None
-        self._known: dict[str, AxisState] = {}
-        self._state = ""
 
     def show_jog(self, snapshot: Snapshot) -> None:
         """What is chosen, what is held, what knows its position."""
         model = self._model
         self._known = model.home.known(snapshot)
-        self._state = snapshot.state.value
         held = model.hold.held
-        shown = (
+        self._shown = (
             (model.speeds.step, model.speeds.speed, model.armed, model.hold.mode),
             (held.axis, held.velocity) if held else None,
-            model.wheel.choice,
-            (tuple(self._known.items()), model.home.asking, self._state),
+            (model.wheel.choice, model.home.asking, snapshot.state),
         )
-        if shown != self._shown:
-            self._shown = shown
-            self.update()
 
     # --- drawing -------------------------------------------------------------------------------------
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         self.controls.clear()
         self.frame(painter, tr("JOG  ·  HOLD TO MOVE"))
-        u, room = (
-            self.look.u,
-            self.inside().adjusted(-0.4 * self.look.u, 0, 0.4 * self.look.u, 0.3 * self.look.u),
-        )
+        u = self.look.u
+        room = self.inside().adjusted(-0.4 * u, 0, 0.4 * u, 0.3 * u)
         high = ROW * u
         self._steps(painter, QRectF(room.x(), room.y(), room.width(), high - 0.6 * u))
         self._speeds(painter, QRectF(room.x(), room.y() + high, room.width(), high - 0.6 * u))
@@ -222,7 +200,7 @@ class JogPad(FingerPanel):
         top = room.y() + rows * high
         self._cross(painter, QRectF(room.x(), top, room.width(), foot.y() - top - 0.6 * u))
 
-    def _steps(self, painter: QPainter, row: QRectF) -> None:
+    def _steps(self, painter: Painter, row: QRectF) -> None:
         model = self._model
         unit = tr("STEP MM") if model.hold.mode.metric else tr("STEP IN")
         words = (tr("CONT"), *step_words(model.hold.mode))
@@ -230,7 +208,7 @@ class JogPad(FingerPanel):
         presses = [partial(model.choose_step, step) for step in range(CONTINUOUS, len(words) - 1)]
         self._tiles(painter, row, Tiles((unit, "F2"), words, presses, chosen))
 
-    def _speeds(self, painter: QPainter, row: QRectF) -> None:
+    def _speeds(self, painter: Painter, row: QRectF) -> None:
         model, mode = self._model, self._model.hold.mode
         unit = tr("MM/MIN") if mode.metric else tr("IN/MIN")
         rapid = f"{tr('RAPID')} {rapid_word(model.machine, mode)}"
@@ -242,7 +220,7 @@ class JogPad(FingerPanel):
         ]
         self._tiles(painter, row, Tiles((unit, "F3"), words, presses, chosen, warn=model.armed))
 
-    def _wheel(self, painter: QPainter, row: QRectF) -> None:
+    def _wheel(self, painter: Painter, row: QRectF) -> None:
         """Which axis the handwheel moves."""
         wheel = self._model.wheel
         axis = wheel.choice[0] if wheel.choice else ""
@@ -258,7 +236,7 @@ class JogPad(FingerPanel):
             self.update()
         event.accept()
 
-    def _homing(self, painter: QPainter, row: QRectF) -> None:
+    def _homing(self, painter: Painter, row: QRectF) -> None:
         model = self._model
         words = [tr("HOME")]
         presses: list[Callable[[], None]] = [model.home_key]
@@ -273,14 +251,14 @@ class JogPad(FingerPanel):
         chosen = 0 if model.home.asking else -1
         self._tiles(painter, row, Tiles(("", ""), tuple(words), presses, chosen, alarmed=lost))
 
-    def _tiles(self, painter: QPainter, row: QRectF, tiles: Tiles) -> None:
-        for box, press in draw_tiles(painter, self.look, row, tiles):
+    def _tiles(self, painter: Painter, row: QRectF, tiles: Tiles) -> None:
+        for box, press in draw_tiles(painter, row, tiles):
             self.controls.append(Control(box, self._presser(press)))
 
     def _presser(self, press: Callable[[], None]) -> Callable[[QPointF], None]:
         return lambda _at: press()
 
-    def _cross(self, painter: QPainter, room: QRectF) -> None:
+    def _cross(self, painter: Painter, room: QRectF) -> None:
         u = self.look.u
         directions = self._model.directions
         columns = 1 + max(2, *(each.column for each in directions))
@@ -291,27 +269,23 @@ class JogPad(FingerPanel):
         middle = QRectF(room.x() + wide, room.y() + high, wide - 0.8 * u, high - 0.6 * u)
         self._middle(painter, middle)
 
-    def _target(self, painter: QPainter, box: QRectF, way: JogDirection) -> None:
-        look, u, held = self.look, self.look.u, self._model.hold.held
+    def _target(self, painter: Painter, box: QRectF, way: JogDirection) -> None:
+        u, held = self.look.u, self._model.hold.held
         axis, sign, arrow = way.axis, way.sign, way.arrow
         moving = held is not None and held.axis == axis and held.velocity * sign > 0
-        painter.setPen(look.pen("run" if moving else "accent", 0.24))
-        painter.setBrush(look.colour("run" if moving else "key"))
-        painter.drawRect(box.adjusted(0.1 * u, 0.1 * u, -0.1 * u, -0.1 * u))
-        ink = look.colour("on_state" if moving else "text")
+        painter.box(
+            box.adjusted(0.1 * u, 0.1 * u, -0.1 * u, -0.1 * u),
+            "run" if moving else "accent",
+            0.24,
+            "run" if moving else "key",
+        )
         if arrow != (0, 0):
-            draw_arrow(painter, look, box, arrow, "on_state" if moving else "accent")
-        painter.setPen(ink)
-        painter.setFont(look.font(3.4, bold=True))
-        offset = QRectF(box)
-        if arrow[0]:
-            offset.translate(-arrow[0] * 0.16 * box.width(), 0)
-        if arrow[1]:
-            offset.translate(0, -arrow[1] * 0.16 * box.height())
-        put(painter, offset, CENTRE, f"{axis}{'+' if sign > 0 else '−'}")
-        painter.setPen(look.colour("on_state" if moving else "soft"))
-        painter.setFont(look.font(1.5, bold=True))
-        put(painter, box.adjusted(0.8 * u, 0.3 * u, 0, 2.4 * u - box.height()), LEFT, way.label)
+            draw_arrow(painter, box, arrow, "on_state" if moving else "accent")
+        aside = box.translated(-arrow[0] * 0.16 * box.width(), -arrow[1] * 0.16 * box.height())
+        name = f"{axis}{'+' if sign > 0 else '−'}"
+        painter.write(aside, name, 3.4, "on_state" if moving else "text", at=CENTRE)
+        corner = box.adjusted(0.8 * u, 0.3 * u, 0, 2.4 * u - box.height())
+        painter.write(corner, way.label, 1.5, "on_state" if moving else "soft")
         self.controls.append(self._holder(box, axis, sign))
 
     def _holder(self, box: QRectF, axis: str, sign: int) -> Control:
@@ -327,9 +301,9 @@ class JogPad(FingerPanel):
             box, lambda _at: self._model.finger(source, axis, sign), along, lambda: hold.release(source)
         )
 
-    def _middle(self, painter: QPainter, box: QRectF) -> None:
+    def _middle(self, painter: Painter, box: QRectF) -> None:
         """What an arrow does now, in figures."""
-        look, model = self.look, self._model
+        model = self._model
         mode: Mode = model.hold.mode
         step = model.speeds.step
         words = (
@@ -339,11 +313,11 @@ class JogPad(FingerPanel):
             axis, step = model.wheel.choice
             words = (tr("WHEEL {axis}").format(axis=axis), model.speeds.step_word(axis, mode, step))
         if model.wheel_drawn:
-            self._dial.draw(painter, look, box, words[1])
+            self._dial.draw(painter, box, words[1])
             self.controls.append(self._dial.control(box))
             return
         unit = tr("mm") if mode.metric else tr("in")
-        draw_middle(painter, look, box, (*words, unit if step != CONTINUOUS else f"{unit}/min"))
+        draw_middle(painter, box, (*words, unit if step != CONTINUOUS else f"{unit}/min"))
 
     def _speed(self, mode: Mode) -> str:
         model = self._model

@@ -174,7 +174,7 @@ class JogPage(Page):
             if entering
             else tr("T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo")
         )
-        self.asked.show_entry(EntryWords("", tool.question(), tool.text, tool.old_to_new(), foot))
+        self.asked.asked = EntryWords("", tool.question(), tool.text, tool.old_to_new(), foot)
 
     def _has_keyboard(self) -> bool:
         """Whether keys still come here: no dialog, no menu, no other window in front.

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.desk.formats import length
@@ -15,8 +14,8 @@ from app.jog.jog_model import JogModel
 from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z
 from app.jog.tool_setting import TOOL
 from app.offsets.offset_values import Mode, marked, not_set, shown_value, signed, word
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
-from app.screen.panel import Panel
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter
+from app.screen.panel import Panel, Shown
 from app.screen.tool_tip_drawing import draw_tip
 from core.executor.snapshot import Snapshot
 
@@ -37,32 +36,22 @@ _ASKS = {"x": TOUCH_X, "z": TOUCH_Z}
 class ToolPanel(Panel):
     """Draws the model; every field is a target for a finger."""
 
+    _shown: Shown[object] = Shown(None)
+    _tip: Shown[tuple[float, float] | None] = Shown(None)
+    _mode = Shown(Mode())
+
     def __init__(self, look: Look, model: JogModel, parent: QWidget) -> None:
         super().__init__(look, parent)
         self._model = model
-        self._shown: object = None
-        self._tip: tuple[float, float] | None = None
-        self._mode = Mode()
 
     def show_tool(self, snapshot: Snapshot) -> None:
         """The tool of now, and where its tip stands."""
         tool = self._model.tool
         self._mode = tool.history.mode
         self._tip = tool.tip(snapshot)
-        shown = (
-            tool.number,
-            tool.row,
-            tool.asked,
-            self._tip,
-            tool.from_master(),
-            self._mode,
-            tool.book.master,
-        )
-        if shown != self._shown:
-            self._shown = shown
-            self.update()
+        self._shown = (tool.number, tool.row, tool.asked, tool.from_master(), tool.book.master)
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         unit = tr("MM") if self._mode.metric else tr("INCH")
         self.frame(painter, f"{tr('TOOL SETTING')}  ·  {unit}")
         u = self.look.u
@@ -74,37 +63,27 @@ class ToolPanel(Panel):
         )
         self._cells(painter, rest)
 
-    def _head(self, painter: QPainter, room: QRectF) -> None:
+    def _head(self, painter: Painter, room: QRectF) -> None:
         """Which tool, how its tip lies, where it stands."""
-        look, u, tool = self.look, self.look.u, self._model.tool
+        u, tool = self.look.u, self._model.tool
         box = QRectF(room.x(), room.y(), 13 * u, room.height())
         self._target(painter, box, partial(self._model.ask, TOOL), lit=tool.asked == TOOL)
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.font(5.0, bold=True))
-        put(painter, box.adjusted(0, 0.6 * u, 0, 0), CENTRE, f"T{tool.number}" if tool.number else "T–")
+        name = f"T{tool.number}" if tool.number else "T–"
+        painter.write(box.adjusted(0, 0.6 * u, 0, 0), name, 5.0, "text", at=CENTRE)
         self._key(painter, box, "T")
         side = room.height()
         tip = QRectF(box.right() + 0.8 * u, room.y(), side, side)
         self._target(painter, tip, partial(self._model.ask, "quadrant"), lit=False)
-        draw_tip(
-            painter,
-            tip.adjusted(0.6 * u, 0.6 * u, -0.6 * u, -0.6 * u),
-            look,
-            tool.row.quadrant if tool.row else 0,
-        )
-        self._stands(
-            painter, QRectF(tip.right() + 1.2 * u, room.y(), room.right() - tip.right() - 1.2 * u, side)
-        )
+        quadrant = tool.row.quadrant if tool.row else 0
+        draw_tip(painter, tip.adjusted(0.6 * u, 0.6 * u, -0.6 * u, -0.6 * u), quadrant)
+        self._stands(painter, room.adjusted(tip.right() + 1.2 * u - room.x(), 0, 0, 0))
 
-    def _stands(self, painter: QPainter, room: QRectF) -> None:
-        look, u, mode = self.look, self.look.u, self._mode
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.font(1.5, bold=True))
-        put(painter, QRectF(room.x(), room.y(), room.width(), 2.0 * u), LEFT, tr("ITS TIP IS NOW AT"))
+    def _stands(self, painter: Painter, room: QRectF) -> None:
+        u, mode = self.look.u, self._mode
+        painter.write(QRectF(room.x(), room.y(), room.width(), 2.0 * u), tr("ITS TIP IS NOW AT"), 1.5, "soft")
         high = (room.height() - 2.0 * u) / 2
         if self._tip is None:
-            painter.setFont(look.font(2.8, bold=True))
-            put(painter, QRectF(room.x(), room.y() + 2 * u, room.width(), 2 * high), LEFT, not_set())
+            painter.write(room.adjusted(0, 2 * u, 0, 0), not_set(), 2.8, "soft")
             return
         x, z = self._tip
         figures = (
@@ -113,14 +92,10 @@ class ToolPanel(Panel):
         )
         for number, (name, figure) in enumerate(figures):
             row = QRectF(room.x(), room.y() + 2.0 * u + number * high, room.width(), high)
-            painter.setPen(look.colour("accent"))
-            painter.setFont(look.font(2.2, bold=True))
-            put(painter, row, LEFT, name)
-            painter.setPen(look.colour("text"))
-            painter.setFont(look.fit(figure, 3.4, row.width() - 5 * u, bold=True))
-            put(painter, row.adjusted(5 * u, 0, 0, 0), RIGHT, figure)
+            painter.write(row, name, 2.2, "accent")
+            painter.write(row.adjusted(5 * u, 0, 0, 0), figure, 3.4, "text", at=RIGHT)
 
-    def _cells(self, painter: QPainter, room: QRectF) -> None:
+    def _cells(self, painter: Painter, room: QRectF) -> None:
         u = self.look.u
         rows = -(-len(FIELDS) // 2)
         high, wide = (room.height() + 0.5 * u) / rows, (room.width() + 0.6 * u) / 2
@@ -129,8 +104,8 @@ class ToolPanel(Panel):
             box = QRectF(room.x() + column * wide, room.y() + row * high, wide - 0.6 * u, high - 0.5 * u)
             self._cell(painter, box, name, key)
 
-    def _cell(self, painter: QPainter, box: QRectF, name: str, key: str) -> None:
-        look, u, mode = self.look, self.look.u, self._mode
+    def _cell(self, painter: Painter, box: QRectF, name: str, key: str) -> None:
+        u, mode = self.look.u, self._mode
         model, tool = self._model, self._model.tool
         asks = _ASKS.get(name, name)
         press: Callable[[], None] = model.choose_master if name == "master" else partial(model.ask, asks)
@@ -138,14 +113,11 @@ class ToolPanel(Panel):
         mark = marked(name, mode)
         label = {"x": tr("TOUCH X"), "z": tr("TOUCH Z")}.get(name, word(name)) + (f" {mark}" if mark else "")
         self._key(painter, box, key)
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.fit(label, 1.5, box.width() - 4 * u, bold=True))
-        put(painter, QRectF(box.x() + 3.4 * u, box.y() + 0.3 * u, box.width() - 4 * u, 2.2 * u), LEFT, label)
+        upper = QRectF(box.x() + 3.4 * u, box.y() + 0.3 * u, box.width() - 4 * u, 2.2 * u)
+        painter.write(upper, label, 1.5, "soft")
         text = self._text(name)
         room = QRectF(box.x() + u, box.y() + 2.3 * u, box.width() - 2 * u, box.height() - 2.5 * u)
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.fit(text, 2.5, room.width(), bold=True))
-        put(painter, room, LEFT if name in {"remark", "master"} else RIGHT, text)
+        painter.write(room, text, 2.5, "text", at=LEFT if name in {"remark", "master"} else RIGHT)
 
     def _text(self, name: str) -> str:
         tool, mode = self._model.tool, self._mode
@@ -167,15 +139,10 @@ class ToolPanel(Panel):
         x = signed(2 * apart[0] if mode.diameter else apart[0], mode.metric)
         return f"T{master}   X {x}  Z {signed(apart[1], mode.metric)}"
 
-    def _target(self, painter: QPainter, box: QRectF, press: Callable[[], None], *, lit: bool) -> None:
-        look = self.look
-        painter.setPen(look.pen("lit" if lit else "frame", 0.24 if lit else 0.12))
-        painter.setBrush(look.colour("here" if lit else "key"))
-        painter.drawRect(box)
+    def _target(self, painter: Painter, box: QRectF, press: Callable[[], None], *, lit: bool) -> None:
+        painter.box(box, "lit" if lit else "frame", 0.24 if lit else 0.12, "here" if lit else "key")
         self.place(box, press)
 
-    def _key(self, painter: QPainter, box: QRectF, key: str) -> None:
-        look, u = self.look, self.look.u
-        painter.setPen(look.colour("accent"))
-        painter.setFont(look.font(1.7, bold=True))
-        put(painter, QRectF(box.x() + 0.9 * u, box.y() + 0.3 * u, 2.4 * u, 2.2 * u), LEFT, key)
+    def _key(self, painter: Painter, box: QRectF, key: str) -> None:
+        u = self.look.u
+        painter.write(QRectF(box.x() + 0.9 * u, box.y() + 0.3 * u, 2.4 * u, 2.2 * u), key, 1.7, "accent")

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QPointF, QRectF
-from PySide6.QtGui import QFontMetricsF, QPainter, QPolygonF, QResizeEvent
+from PySide6.QtGui import QFontMetricsF, QPolygonF, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
@@ -16,9 +16,9 @@ from app.desk.translation import tr
 from app.mdi.mdi_model import MdiModel
 from app.screen import page_table
 from app.screen.letter_keys import LINES, LetterPad
-from app.screen.look import LEFT, Look, put, put_raw
+from app.screen.look import Look, Painter
 from app.screen.page_base import Host, KeyActions, Page
-from app.screen.panel import Panel, Press
+from app.screen.panel import Panel, Press, Shown
 from core.executor.snapshot import CYCLE, Snapshot, Starts
 from core.interpreter.checkpoint import Checkpoint
 from core.language.diagnostics import Diagnostic, Severity
@@ -26,26 +26,16 @@ from core.language.diagnostics import Diagnostic, Severity
 # --- the line -----------------------------------------------------------------------------------------
 
 
-Shown = tuple[str, int, tuple[Diagnostic, ...], bool]
-
-
 class LinePanel(Panel):
-    """Draws from what it was shown last, and only when that has changed. A finger on it asks for letters."""
+    """The text, its cursor, the findings of its proof, whether it would start. A finger asks for letters."""
+
+    text, at = Shown(""), Shown(0)
+    found: Shown[tuple[Diagnostic, ...]] = Shown(())
+    ready = Shown(False)
 
     def __init__(self, look: Look, touched: Press, parent: QWidget) -> None:
         super().__init__(look, parent)
         self._touched = touched
-        self.text, self.at, self.ready = "", 0, False
-        self.found: tuple[Diagnostic, ...] = ()
-        self._shown: Shown | None = None
-
-    def show_line(self, text: str, at: int, found: tuple[Diagnostic, ...], ready: bool) -> None:
-        """The text, its cursor, the findings of its proof, and whether it would start now."""
-        shown = (text, at, found, ready)
-        if shown != self._shown:
-            self._shown = shown
-            self.text, self.at, self.found, self.ready = shown
-            self.update()
 
     @property
     def message(self) -> str:
@@ -57,7 +47,7 @@ class LinePanel(Panel):
         errors = (each for each in self.found if each.severity is Severity.ERROR)
         return next(errors, self.found[0] if self.found else None)
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         look, u = self.look, self.look.u
         title = tr("LINE  ·  READY, CYCLE START RUNS IT") if self.ready else tr("LINE")
         self.frame(painter, title, "lit" if self.ready else "frame", 0.3 if self.ready else 0.16)
@@ -66,34 +56,27 @@ class LinePanel(Panel):
         font = look.fit(self.text, 4.4, room.width() - 2 * u, bold=True)
         metrics = QFontMetricsF(font)
         row = QRectF(room.x(), room.y(), room.width(), 5.6 * u)
-        painter.setFont(font)
-        painter.setPen(look.colour("text"))
-        put_raw(painter, row, LEFT, self.text)
+        painter.write(row, self.text, 4.4, "text", raw=True, margin=2.0)
         at = row.x() + metrics.horizontalAdvance(self.text[: self.at])
-        painter.fillRect(QRectF(at, row.center().y() - 2.2 * u, 0.35 * u, 4.4 * u), look.colour("accent"))
+        painter.fill(QRectF(at, row.center().y() - 2.2 * u, 0.35 * u, 4.4 * u), "accent")
         if self._first is not None:
             self._finding(painter, room, metrics, self._first)
 
-    def _finding(self, painter: QPainter, room: QRectF, metrics: QFontMetricsF, found: Diagnostic) -> None:
+    def _finding(self, painter: Painter, room: QRectF, metrics: QFontMetricsF, found: Diagnostic) -> None:
         look, u = self.look, self.look.u
-        bad = found.severity is Severity.ERROR
-        colour = look.colour("alarm" if bad else "accent")
+        ink = "alarm" if found.severity is Severity.ERROR else "accent"
         if found.column > 0:
             at = room.x() + metrics.horizontalAdvance(self.text[: found.column - 1]) + 0.9 * u
             top = room.y() + 5.4 * u
             tip = QPolygonF(
                 [QPointF(at, top), QPointF(at - u, top + 1.6 * u), QPointF(at + u, top + 1.6 * u)]
             )
-            painter.setPen(colour)
-            painter.setBrush(colour)
+            painter.setPen(look.colour(ink))
+            painter.setBrush(look.colour(ink))
             painter.drawPolygon(tip)
-        painter.setPen(colour)
-        lines = (found.message, found.hint)
-        for number, (text, size) in enumerate(zip(lines, (2.3, 1.9), strict=True)):
-            painter.setFont(look.fit(text, size, room.width(), bold=number == 0))
-            box = QRectF(room.x(), room.y() + (7.2 + 2.9 * number) * u, room.width(), 2.9 * u)
-            put(painter, box, LEFT, text)
-            painter.setPen(look.colour("soft"))
+        box = QRectF(room.x(), room.y() + 7.2 * u, room.width(), 2.9 * u)
+        painter.write(box, found.message, 2.3, ink)
+        painter.write(box.translated(0, box.height()), found.hint, 1.9, "soft", bold=False)
 
 
 # --- history ------------------------------------------------------------------------------------------
@@ -105,38 +88,29 @@ ROW = 3.4  # units
 class HistoryPanel(Panel):
     """``back`` is how far up the line stands that was taken up, 0: none."""
 
+    lines: Shown[tuple[str, ...]] = Shown(())  # oldest first
+    back = Shown(0)
+
     def __init__(self, look: Look, choose: Callable[[int], None], parent: QWidget) -> None:
         super().__init__(look, parent)
         self._choose = choose
-        self.lines: tuple[str, ...] = ()
-        self.back = 0
 
-    def show_history(self, lines: Sequence[str], back: int) -> None:
-        """All of them, oldest first."""
-        shown = (tuple(lines), back)
-        if shown != (self.lines, self.back):
-            self.lines, self.back = shown
-            self.update()
-
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         self.frame(painter, tr("HISTORY  ·  ARROW UP AND DOWN"))
-        look, u, room = self.look, self.look.u, self.inside()
+        u, room = self.look.u, self.inside()
         rows = max(1, int(room.height() / (ROW * u)))
         bottom = max(rows, len(self.lines) - max(0, self.back - rows))
         for place, number in enumerate(range(max(0, bottom - rows), min(bottom, len(self.lines)))):
             back = len(self.lines) - number
             row = QRectF(room.x(), room.y() + place * ROW * u, room.width(), ROW * u)
             if back == self.back:
-                painter.fillRect(row, look.colour("here"))
-            painter.setFont(look.font(2.2, bold=back == self.back))
-            painter.setPen(look.colour("text"))
-            put_raw(painter, row.adjusted(0.8 * u, 0, -0.8 * u, 0), LEFT, self.lines[number])
+                painter.fill(row, "here")
+            line, text = row.adjusted(0.8 * u, 0, -0.8 * u, 0), self.lines[number]
+            painter.write(line, text, 2.2, "text", bold=back == self.back, raw=True, fit=False)
             self.place(row, partial(self._choose, back))
         if not self.lines:
-            painter.setFont(look.font(2.0))
-            painter.setPen(look.colour("soft"))
             empty = QRectF(room.x(), room.y(), room.width(), 3 * u)
-            put(painter, empty, LEFT, tr("No line was run yet."))
+            painter.write(empty, tr("No line was run yet."), 2.0, "soft", bold=False)
 
 
 # --- what is in force ---------------------------------------------------------------------------------
@@ -148,30 +122,18 @@ SHARE = 0.4  # of a row for its label
 class ModalPanel(Panel):
     """All rows at once, as large as the room lets them be."""
 
-    def __init__(self, look: Look, parent: QWidget) -> None:
-        super().__init__(look, parent)
-        self.rows: tuple[ModalRow, ...] = ()
+    rows: Shown[tuple[ModalRow, ...]] = Shown(())
 
-    def show_rows(self, rows: tuple[ModalRow, ...]) -> None:
-        """The state of this instant."""
-        if rows != self.rows:
-            self.rows = rows
-            self.update()
-
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         self.frame(painter, tr("IN FORCE"))
-        look, u, room = self.look, self.look.u, self.inside()
+        u, room = self.look.u, self.inside()
         high = min(2.7 * u, room.height() / max(1, len(self.rows)))
         size = min(1.9, high / u * 0.78)
         left = SHARE * room.width()
         for number, row in enumerate(self.rows):
             box = QRectF(room.x(), room.y() + number * high, room.width(), high)
-            painter.setPen(look.colour("soft"))
-            painter.setFont(look.fit(row.label, size, left - u))
-            put(painter, QRectF(box.x(), box.y(), left - u, high), LEFT, row.label)
-            painter.setPen(look.colour("text"))
-            painter.setFont(look.fit(row.value, size, room.width() - left, bold=True))
-            put(painter, box.adjusted(left, 0, 0, 0), LEFT, row.value)
+            painter.write(QRectF(box.x(), box.y(), left - u, high), row.label, size, "soft", bold=False)
+            painter.write(box.adjusted(left, 0, 0, 0), row.value, size, "text")
 
 
 LINE, STATE = 15.6, 46.0  # units: height of the line, width of what is in force
@@ -253,10 +215,12 @@ class MdiPage(Page):
         model.look(snapshot)
         running = snapshot.state in CYCLE and snapshot.starts is Starts.LINE
         text = snapshot.block_text if running and not typing.text else typing.text
-        self.line.show_line(text, len(text) if running else typing.at, model.found, model.ready is not None)
-        self.history.show_history(typing.history, typing.back)
+        line, history = self.line, self.history
+        line.text, line.at = text, len(text) if running else typing.at
+        line.found, line.ready = model.found, model.ready is not None
+        history.lines, history.back = tuple(typing.history), typing.back
         angle = snapshot.demand[2] - snapshot.modal.offset_c
-        self.inforce.show_rows(rows_of(Checkpoint(snapshot.modal, c=angle)))
+        self.inforce.rows = rows_of(Checkpoint(snapshot.modal, c=angle))
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """The line over the history, what is in force at their right."""

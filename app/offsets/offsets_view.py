@@ -10,7 +10,7 @@ import math
 from functools import partial
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QPainter, QResizeEvent, QWheelEvent
+from PySide6.QtGui import QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
@@ -21,9 +21,9 @@ from app.path.path_pane_view import ZOOM_STEP
 from app.path.path_view import PathView
 from app.screen import page_table
 from app.screen.entry_panel import EntryPanel, EntryWords, KeyPad
-from app.screen.look import LEFT, Look, put
+from app.screen.look import Look, Painter
 from app.screen.page_base import Host, KeyActions, Page
-from app.screen.panel import Panel
+from app.screen.panel import Panel, Shown
 from core.executor.snapshot import Snapshot
 
 PAD, ASKED = 28.4, 12.4  # units: width of the pad, height of the line that is typed
@@ -76,17 +76,17 @@ class HistoryList(Panel):
 
     title = "HISTORY  ·  NEWEST ON TOP"
 
+    entries: Shown[tuple[Entry, ...]] = Shown(())
+    top = Shown(0)
+
     def __init__(self, look: Look, parent: QWidget) -> None:
         super().__init__(look, parent)
-        self.entries: tuple[Entry, ...] = ()
-        self.top = 0
         self.hide()
 
     def show_entries(self, entries: tuple[Entry, ...]) -> None:
         """Show these changes, newest first."""
-        if entries != self.entries:
-            self.entries = entries
-            self.look_at(self.top)
+        self.entries = entries
+        self.look_at(self.top)
 
     @property
     def rows(self) -> int:
@@ -96,34 +96,27 @@ class HistoryList(Panel):
     def look_at(self, top: int) -> None:
         """Scroll so that this change is the first that is shown."""
         self.top = max(0, min(top, len(self.entries) - self.rows))
-        self.update()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Three changes a notch."""
         self.look_at(self.top - round(event.angleDelta().y() / 40))
 
-    def draw(self, painter: QPainter) -> None:
-        look, u, room = self.look, self.look.u, self.inside()
+    def draw(self, painter: Painter) -> None:
+        u, room = self.look.u, self.inside()
         if not self.entries:
-            painter.setPen(look.colour("soft"))
-            painter.setFont(look.font(2.0))
-            put(painter, QRectF(room.x(), room.y(), room.width(), 3 * u), LEFT, "No offset was changed yet.")
+            head = QRectF(room.x(), room.y(), room.width(), 3 * u)
+            painter.write(head, "No offset was changed yet.", 2.0, "soft", bold=False)
         for place, entry in enumerate(self.entries[self.top : self.top + self.rows]):
             self._entry(painter, QRectF(room.x(), room.y() + place * ROW * u, room.width(), ROW * u), entry)
 
-    def _entry(self, painter: QPainter, row: QRectF, entry: Entry) -> None:
-        look, u = self.look, self.look.u
+    def _entry(self, painter: Painter, row: QRectF, entry: Entry) -> None:
+        u = self.look.u
         at, which, change, why = entry
-        painter.setPen(look.colour("accent"))
-        painter.setFont(look.font(2.2, bold=True))
-        put(painter, QRectF(row.x(), row.y(), 6 * u, 2.6 * u), LEFT, which)
+        painter.write(QRectF(row.x(), row.y(), 6 * u, 2.6 * u), which, 2.2, "accent")
         room = row.adjusted(6.4 * u, 0, 0, 0)
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.fit(change, 2.0, room.width(), bold=True))
-        put(painter, QRectF(room.x(), room.y(), room.width(), 2.6 * u), LEFT, change)
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.font(1.7))
-        put(painter, QRectF(room.x(), room.y() + 2.4 * u, room.width(), 2.2 * u), LEFT, f"{at}    {why}")
+        painter.write(QRectF(room.x(), room.y(), room.width(), 2.6 * u), change, 2.0, "text")
+        below = QRectF(room.x(), room.y() + 2.4 * u, room.width(), 2.2 * u)
+        painter.write(below, f"{at}    {why}", 1.7, "soft", bold=False, fit=False)
 
 
 class OffsetPage(Page):
@@ -233,9 +226,8 @@ class OffsetPage(Page):
         if changes is not None:
             self.history.show_entries(tuple(model.history.in_words(change) for change in changes))
         self.show_table(snapshot)
-        self.asked.show_entry(
-            EntryWords(model.heading, model.question, model.text, model.old_to_new, model.foot)
-        )
+        words = (model.heading, model.question, model.text, model.old_to_new, model.foot)
+        self.asked.asked = EntryWords(*words)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Table over the line that is typed, the pad at their right."""

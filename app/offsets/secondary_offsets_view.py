@@ -6,7 +6,6 @@ from collections.abc import Callable, Collection, Mapping
 from functools import partial
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.desk.formats import length
@@ -15,9 +14,9 @@ from app.offsets.offset_values import Mode, signed
 from app.offsets.offsets_view import OffsetPage
 from app.offsets.secondary_offsets import SecondaryOffsets
 from app.screen import page_table
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
+from app.screen.look import RIGHT, Look, Painter
 from app.screen.page_base import Host
-from app.screen.panel import Panel
+from app.screen.panel import Panel, Shown
 from core.executor.snapshot import Snapshot
 from core.store.store_rows import SecondaryRow
 
@@ -35,14 +34,15 @@ class SecondaryTable(Panel):
     offsets around it near, and the next one chooses.
     """
 
+    offsets: Shown[Mapping[int, SecondaryRow]] = Shown({})
+    near = Shown(0)  # the first number of those that are shown large; 0: all are shown
+    _number = Shown(0)
+    _marked: Shown[frozenset[int]] = Shown(frozenset())
+    _mode = Shown(Mode())
+
     def __init__(self, look: Look, choose: Callable[[int], None], parent: QWidget) -> None:
         super().__init__(look, parent)
         self._choose = choose
-        self.offsets: Mapping[int, SecondaryRow] = {}
-        self._number = 0
-        self._marked: frozenset[int] = frozenset()
-        self._mode = Mode()
-        self.near = 0  # the first number of those that are shown large; 0: all are shown
 
     def show_offsets(
         self, offsets: Mapping[int, SecondaryRow], number: int, marked: Collection[int], mode: Mode
@@ -50,12 +50,9 @@ class SecondaryTable(Panel):
         """The table, the row that is being changed (0: none), those changed last, and the unit."""
         if number:
             self.bring_near(0)
-        shown = (offsets, number, frozenset(marked), mode)
-        if shown != (self.offsets, self._number, self._marked, self._mode):
-            self.offsets, self._number, self._marked, self._mode = shown
-            self.update()
+        self.offsets, self._number, self._marked, self._mode = offsets, number, frozenset(marked), mode
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         unit = tr("MM") if self._mode.metric else tr("INCH")
         self.frame(painter, f"{tr('SECONDARY OFFSETS  ·  X STORED AS A RADIUS')}  ·  {unit}")
         room = self.inside().adjusted(-0.6 * self.look.u, 0, 0.6 * self.look.u, 0.4 * self.look.u)
@@ -66,51 +63,43 @@ class SecondaryTable(Panel):
 
     def bring_near(self, first: int) -> None:
         """Show eight offsets from this one on large, 0: all of them."""
-        if first != self.near:
-            self.near = first
-            self.update()
+        self.near = first
 
-    def _draw_all(self, painter: QPainter, room: QRectF) -> None:
+    def _draw_all(self, painter: Painter, room: QRectF) -> None:
         for number, box in enumerate(_boxes(room, ROWS, 2.0 * self.look.u), start=1):
             self._row(painter, box, number, 1.0)
         for at, box in enumerate(_boxes(room, ROWS // NEAR, 2.0 * self.look.u)):
             self.place(box, partial(self.bring_near, at * NEAR + 1))
 
-    def _draw_near(self, painter: QPainter, room: QRectF) -> None:
-        look, u = self.look, self.look.u
+    def _draw_near(self, painter: Painter, room: QRectF) -> None:
+        u = self.look.u
         bar = QRectF(room.x(), room.bottom() - BAR * u, room.width(), BAR * u)
         rows = room.adjusted(0, 0, 0, -(BAR + 0.6) * u)
         for number, box in enumerate(_boxes(rows, NEAR // 2, 0.8 * u), start=self.near):
             spot = box.adjusted(0, 0, 0, -0.6 * u)
-            painter.fillRect(spot, look.colour("key"))
+            painter.fill(spot, "key")
             self._row(painter, spot, number, 1.25)
             self.place(spot, partial(self._choose_near, number))
-        painter.fillRect(bar, look.colour("key"))
-        painter.setPen(look.colour("accent"))
-        painter.setFont(look.font(2.2, bold=True))
-        put(painter, bar, CENTRE, tr("ALL 32 OFFSETS"))
-        self.place(bar, partial(self.bring_near, 0))
+        self.key(painter, bar, tr("ALL 32 OFFSETS"), 2.2, partial(self.bring_near, 0), ink="accent")
 
     def _choose_near(self, number: int) -> None:
         self.bring_near(0)
         self._choose(number)
 
-    def _row(self, painter: QPainter, box: QRectF, number: int, size: float) -> None:
+    def _row(self, painter: Painter, box: QRectF, number: int, size: float) -> None:
         """``size``: of the letters, 1 where all are shown."""
-        look, u = self.look, self.look.u
+        u = self.look.u
         here = number == self._number
         if here:
-            painter.fillRect(box, look.colour("here"))
+            painter.fill(box, "here")
         if number in self._marked:
-            painter.fillRect(QRectF(box.x(), box.y(), 0.5 * u, box.height()), look.colour("lit"))
+            painter.fill(QRectF(box.x(), box.y(), 0.5 * u, box.height()), "lit")
         offset = self.offsets.get(number)
-        painter.setPen(look.colour("accent"))
-        painter.setFont(look.font(1.9 * size, bold=True))
-        wide = box.width()
-        put(painter, QRectF(box.x(), box.y(), _NUMBER * wide - u, box.height()), RIGHT, str(number))
+        margin = QRectF(box.x(), box.y(), _NUMBER * box.width() - u, box.height())
+        painter.write(margin, str(number), 1.9 * size, "accent", at=RIGHT)
         self._figures(painter, box, offset or SecondaryRow(), size, bold=here or offset is not None)
 
-    def _figures(self, painter: QPainter, box: QRectF, offset: SecondaryRow, size: float, bold: bool) -> None:
+    def _figures(self, painter: Painter, box: QRectF, offset: SecondaryRow, size: float, bold: bool) -> None:
         x, z, r = offset
         metric, wide = self._mode.metric, box.width()
         cells = (
@@ -123,15 +112,11 @@ class SecondaryTable(Panel):
             at = QRectF(box.x() + left * wide, box.y(), (right - left) * wide - 1.2 * u, box.height())
             self._cell(painter, at, letter, figure, size, bold)
 
-    def _cell(self, painter: QPainter, at: QRectF, letter: str, figure: str, size: float, bold: bool) -> None:
-        look, u = self.look, self.look.u
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.font(1.8 * size, bold=True))
-        put(painter, QRectF(at.x(), at.y(), 2.4 * size * u, at.height()), LEFT, letter)
-        painter.setPen(look.colour("text" if bold else "soft"))
+    def _cell(self, painter: Painter, at: QRectF, letter: str, figure: str, size: float, bold: bool) -> None:
+        u = self.look.u
+        painter.write(QRectF(at.x(), at.y(), 2.4 * size * u, at.height()), letter, 1.8 * size, "soft")
         room = at.adjusted(2.4 * size * u, 0, 0, 0)
-        painter.setFont(look.fit(figure, 2.0 * size, room.width(), bold=bold))
-        put(painter, room, RIGHT, figure)
+        painter.write(room, figure, 2.0 * size, "text" if bold else "soft", at=RIGHT, bold=bold)
 
 
 def _boxes(room: QRectF, rows: int, gap: float) -> list[QRectF]:

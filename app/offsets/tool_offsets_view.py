@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QPainter, QPolygonF, QWheelEvent
+from PySide6.QtGui import QPolygonF, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
@@ -14,9 +14,9 @@ from app.offsets.offset_values import heading, not_set
 from app.offsets.offsets_view import OffsetPage
 from app.offsets.tool_offsets import COLUMNS, PAGE, ToolOffsets
 from app.screen import page_table
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter
 from app.screen.page_base import Host, KeyActions
-from app.screen.panel import Panel
+from app.screen.panel import Panel, Shown
 from app.screen.tool_tip_drawing import draw_tip
 from core.executor.snapshot import Snapshot
 from core.store.store_rows import OFFSETS
@@ -39,10 +39,11 @@ SHARES = {
 class ToolTable(Panel):
     """Draws the model; redrawn when something of it has changed."""
 
+    _shown: Shown[object] = Shown(())
+
     def __init__(self, look: Look, model: ToolOffsets, parent: QWidget) -> None:
         super().__init__(look, parent)
         self._model = model
-        self._shown: tuple[object, ...] = ()
         self.top = 1  # the first number that is shown
         self.choose: Callable[[int, int], None] = model.choose
 
@@ -51,21 +52,18 @@ class ToolTable(Panel):
         model = self._model
         last = OFFSETS[-1] - PAGE + 1
         self.top = max(model.number - PAGE + 1, min(self.top, model.number, last), 1)
-        shown = (
+        self._shown = (
             model.book.tools,
             (model.number, model.column, self.top, model.relative, model.mode),
             dict(model.fields.new.values),
             tuple(change.number for change in model.history.last),
         )
-        if shown != self._shown:
-            self._shown = shown
-            self.update()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """A row a notch."""
         self._model.typed("Up" if event.angleDelta().y() > 0 else "Down")
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         u, model = self.look.u, self._model
         mode = model.mode
         x = tr("X IS A DIAMETER") if mode.diameter else tr("X IS A RADIUS")
@@ -84,21 +82,19 @@ class ToolTable(Panel):
             row = QRectF(head.x(), head.bottom() + place * high, head.width(), high)
             self._row(painter, row, self.top + place, columns)
 
-    def _head(self, painter: QPainter, head: QRectF, columns: dict[str, tuple[float, float]]) -> None:
-        look, u, mode = self.look, self.look.u, self._model.mode
-        painter.setPen(look.colour("soft"))
+    def _head(self, painter: Painter, head: QRectF, columns: dict[str, tuple[float, float]]) -> None:
+        u, mode = self.look.u, self._model.mode
         for name, (left, wide) in columns.items():
-            text = heading(name, mode)
-            painter.setFont(look.fit(text, 1.5, wide - 0.6 * u, bold=True))
-            put(painter, QRectF(left, head.y(), wide - 0.4 * u, head.height()), CENTRE, text)
+            cell = QRectF(left, head.y(), wide - 0.4 * u, head.height())
+            painter.write(cell, heading(name, mode), 1.5, "soft", at=CENTRE, margin=0.2)
 
-    def _leaf(self, painter: QPainter, strip: QRectF) -> None:
+    def _leaf(self, painter: Painter, strip: QRectF) -> None:
         """Two large arrows: a page up and a page down."""
         look, u = self.look, self.look.u
         half = (strip.height() - 0.6 * u) / 2
         for number, (key, sign) in enumerate((("Page up", -1), ("Page down", 1))):
             box = QRectF(strip.x(), strip.y() + number * (half + 0.6 * u), strip.width(), half)
-            painter.fillRect(box, look.colour("key"))
+            painter.fill(box, "key")
             at, size = box.center(), 1.2 * u
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(look.colour("accent"))
@@ -121,47 +117,37 @@ class ToolTable(Panel):
         return columns
 
     def _row(
-        self, painter: QPainter, row: QRectF, number: int, columns: dict[str, tuple[float, float]]
+        self, painter: Painter, row: QRectF, number: int, columns: dict[str, tuple[float, float]]
     ) -> None:
-        look, u, model = self.look, self.look.u, self._model
+        u, model = self.look.u, self._model
         here = number == model.number
         if here:
-            painter.fillRect(row, look.colour("here"))
+            painter.fill(row, "here")
         if number in {change.number for change in model.history.last}:
-            painter.fillRect(QRectF(row.x(), row.y(), 0.5 * u, row.height()), look.colour("lit"))
-        painter.setPen(look.colour("accent"))
-        painter.setFont(look.font(2.2, bold=True))
-        put(painter, QRectF(row.x(), row.y(), (NUMBER - 0.8) * u, row.height()), RIGHT, f"T{number}")
+            painter.fill(QRectF(row.x(), row.y(), 0.5 * u, row.height()), "lit")
+        margin = QRectF(row.x(), row.y(), (NUMBER - 0.8) * u, row.height())
+        painter.write(margin, f"T{number}", 2.2, "accent", at=RIGHT)
         unset = number not in model.book.tools
         for at, (name, (left, wide)) in enumerate(columns.items()):
             cell = QRectF(left, row.y(), wide, row.height())
             self._cell(painter, cell, number, name)
             if here and at == model.column:
-                painter.setPen(look.pen("accent", 0.24))
-                painter.setBrush(Qt.BrushStyle.NoBrush)
-                painter.drawRect(cell.adjusted(0.2 * u, 0.1 * u, -0.2 * u, -0.1 * u))
+                painter.box(cell.adjusted(0.2 * u, 0.1 * u, -0.2 * u, -0.1 * u), "accent", 0.24, "")
             self.place(cell, partial(self.choose, number, at))
         if unset and number != model.fields.new.number:
-            painter.setPen(look.colour("soft"))
-            painter.setFont(look.font(1.9))
-            put(painter, QRectF(columns["x"][0] + u, row.y(), 14 * u, row.height()), LEFT, not_set())
+            empty = QRectF(columns["x"][0] + u, row.y(), 14 * u, row.height())
+            painter.write(empty, not_set(), 1.9, "soft", bold=False)
 
-    def _cell(self, painter: QPainter, cell: QRectF, number: int, name: str) -> None:
-        look, u = self.look, self.look.u
+    def _cell(self, painter: Painter, cell: QRectF, number: int, name: str) -> None:
+        u = self.look.u
         text = self._model.cell(number, name)
         room = cell.adjusted(0.8 * u, 0, -0.9 * u, 0)
         if name == "quadrant" and text:
-            draw_tip(
-                painter,
-                QRectF(room.right() - 2.6 * u, room.y() + 0.2 * u, 2.6 * u, room.height() - 0.4 * u),
-                look,
-                int(text),
-            )
+            draw_tip(painter, room.adjusted(room.width() - 2.6 * u, 0.2 * u, 0, -0.2 * u), int(text))
             room.setRight(room.right() - 3.0 * u)
         worn = name.startswith("wear") and text.strip("+0.") == ""
-        painter.setPen(look.colour("soft" if worn else "text"))
-        painter.setFont(look.fit(text, 2.0, room.width(), bold=not worn and name != "remark"))
-        put(painter, room, LEFT if name == "remark" else RIGHT, text)
+        ink, at = "soft" if worn else "text", LEFT if name == "remark" else RIGHT
+        painter.write(room, text, 2.0, ink, at=at, bold=not worn and name != "remark")
 
 
 class ToolOffsetsPage(OffsetPage):

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from functools import partial
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
@@ -14,9 +13,9 @@ from app.offsets.offset_values import signed_zero_offset
 from app.offsets.offsets_view import OffsetPage
 from app.offsets.zero_offsets import ZERO_FIELDS, ZeroOffsets
 from app.screen import page_table
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
+from app.screen.look import CENTRE, RIGHT, Look, Painter
 from app.screen.page_base import Host, KeyActions
-from app.screen.panel import Panel
+from app.screen.panel import Panel, Shown
 from core.executor.snapshot import Snapshot
 from core.store.store_rows import ZERO_CODES, ZeroRow
 
@@ -26,28 +25,22 @@ _NAME = 0.16  # share of the width for the code
 class ZeroTable(Panel):
     """Each cell is a target for a finger. The chosen one is filled, the offset in force has a bar."""
 
+    rows: Shown[Mapping[int, ZeroRow]] = Shown({})
+    cell = Shown((0, 0))
+    in_force = Shown(0)  # 0: none
+
     def __init__(self, look: Look, choose: Callable[[int, int], None], parent: QWidget) -> None:
         super().__init__(look, parent)
         self._choose = choose
-        self.rows: Mapping[int, ZeroRow] = {}
-        self.cell = (0, 0)
-        self.in_force = 0
 
-    def show_rows(self, rows: Mapping[int, ZeroRow], cell: tuple[int, int], in_force: int) -> None:
-        """The table, the chosen cell, and the code in force (0: none)."""
-        if (rows, cell, in_force) != (self.rows, self.cell, self.in_force):
-            self.rows, self.cell, self.in_force = rows, cell, in_force
-            self.update()
-
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         self.frame(painter, tr("SETTABLE OFFSETS  ·  X IS A RADIUS  ·  MM AND DEGREES"))
         room, u = self.inside(), self.look.u
         high = min(room.height() / (len(ZERO_CODES) + 1), 8.0 * u)
         self._head(painter, QRectF(room.x(), room.y(), room.width(), high))
         for row in range(len(ZERO_CODES)):
-            self._row(
-                painter, QRectF(room.x(), room.y() + (row + 1) * high, room.width(), high - 0.5 * u), row
-            )
+            y = room.y() + (row + 1) * high
+            self._row(painter, QRectF(room.x(), y, room.width(), high - 0.5 * u), row)
 
     def _cells(self, row: QRectF) -> list[QRectF]:
         wide = row.width() * (1.0 - _NAME) / len(ZERO_FIELDS)
@@ -57,31 +50,23 @@ class ZeroTable(Panel):
             for n in range(len(ZERO_FIELDS))
         ]
 
-    def _head(self, painter: QPainter, row: QRectF) -> None:
-        painter.setPen(self.look.colour("soft"))
-        painter.setFont(self.look.font(2.4, bold=True))
+    def _head(self, painter: Painter, row: QRectF) -> None:
         for name, cell in zip(ZERO_FIELDS, self._cells(row), strict=True):
-            put(painter, cell, CENTRE, name.upper())
+            painter.write(cell, name.upper(), 2.4, "soft", at=CENTRE)
 
-    def _row(self, painter: QPainter, box: QRectF, row: int) -> None:
-        look, u, code = self.look, self.look.u, ZERO_CODES[row]
+    def _row(self, painter: Painter, box: QRectF, row: int) -> None:
+        u, code = self.look.u, ZERO_CODES[row]
         if code == self.in_force:
-            painter.fillRect(QRectF(box.x(), box.y(), 0.6 * u, box.height()), look.colour("lit"))
-        painter.setPen(look.colour("accent"))
-        painter.setFont(look.font(2.8, bold=True))
-        put(painter, box.adjusted(1.6 * u, 0, 0, 0), LEFT, f"G{code}")
+            painter.fill(QRectF(box.x(), box.y(), 0.6 * u, box.height()), "lit")
+        painter.write(box.adjusted(1.6 * u, 0, 0, 0), f"G{code}", 2.8, "accent")
         offset = self.rows.get(code)
         for column, (name, cell) in enumerate(zip(ZERO_FIELDS, self._cells(box), strict=True)):
             here = (row, column) == self.cell
-            painter.fillRect(cell, look.colour("here" if here else "key"))
-            painter.setPen(look.colour("text" if offset is not None or here else "soft"))
+            painter.fill(cell, "here" if here else "key")
             figure = signed_zero_offset(getattr(offset or ZeroRow(), name))
-            painter.setFont(look.fit(figure, 3.0, cell.width() - 2.4 * u, bold=offset is not None))
-            put(painter, cell.adjusted(0, 0, -1.2 * u, 0), RIGHT, figure)
+            place, ink = cell.adjusted(0, 0, -1.2 * u, 0), "text" if offset is not None or here else "soft"
+            painter.write(place, figure, 3.0, ink, at=RIGHT, bold=offset is not None, margin=1.2)
             self.place(cell, partial(self._choose, row, column))
-
-
-PAD, ASKED = 28.4, 12.4  # units: width of the pad, height of the entry
 
 
 class ZeroOffsetsPage(OffsetPage):
@@ -104,4 +89,5 @@ class ZeroOffsetsPage(OffsetPage):
     def show_table(self, snapshot: Snapshot) -> None:
         """The table as it is now, and which offset is in force."""
         model = self.model
-        self.table.show_rows(model.book.zero, (model.row, model.column), snapshot.modal.settable)
+        self.table.rows, self.table.cell = model.book.zero, (model.row, model.column)
+        self.table.in_force = snapshot.modal.settable

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from PySide6.QtCore import QEvent, QObject, QRectF, Qt
-from PySide6.QtGui import QKeyEvent, QPainter, QResizeEvent, QWheelEvent
+from PySide6.QtGui import QKeyEvent, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.desk.program_folder import ListedProgram, ProgramFolders
 from app.desk.prompt_line import ASK_FILE, NOT_FOUND
 from app.screen.entry_panel import dress_line
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, put, put_raw
+from app.screen.look import CENTRE, RIGHT, Look, Painter, put
 from app.screen.panel import Panel
 
 ROW = 6.6  # units: a fingertip
@@ -148,48 +148,38 @@ class FilePrompt(Panel):
         """The wheel moves the mark."""
         self._mark(self._row - round(event.angleDelta().y() / 120))
 
-    def draw(self, painter: QPainter) -> None:
-        look, u = self.look, self.look.u
+    def draw(self, painter: Painter) -> None:
+        u = self.look.u
         self.frame(painter, self.title, "accent", 0.3)
         foot = QRectF(1.6 * u, self.height() - 3.2 * u, self.width() - 3.2 * u, 2.6 * u)
         if self.not_found:
             self._not_found(painter)
         else:
             self._list(painter)
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.font(1.6))
-        put(
-            painter,
-            foot,
-            LEFT,
-            "RETURN takes the marked program   ESC keeps the present one   F2 shows the list",
-        )
+        keys = "RETURN takes the marked program   ESC keeps the present one   F2 shows the list"
+        painter.write(foot, keys, 1.6, "soft", bold=False, fit=False)
         put(painter, foot, RIGHT, f"{len(self._entries)} programs")
 
-    def _list(self, painter: QPainter) -> None:
-        look, u = self.look, self.look.u
+    def _list(self, painter: Painter) -> None:
+        u = self.look.u
         first = max(0, min(self._row - self._rows // 2, len(self._entries) - self._rows))
         for place, entry in enumerate(self._entries[first : first + self._rows]):
             box = QRectF(1.6 * u, (8.0 + place * ROW) * u, self.width() - 3.2 * u, ROW * u)
             marked = first + place == self._row
             if marked:
-                painter.fillRect(box, look.colour("lit"))
-            painter.setPen(look.colour("on_lit" if marked else "text"))
-            painter.setFont(look.font(2.3, bold=marked))
-            put_raw(painter, box.adjusted(1.2 * u, 0, -30 * u, 0), LEFT, entry.name)
-            painter.setFont(look.font(1.6))
-            painter.setPen(look.colour("on_lit" if marked else "soft"))
-            folder = box.adjusted(box.width() - 30 * u, 0, -1.2 * u, 0)
-            put_raw(painter, folder, RIGHT, entry.path.parent.name)
+                painter.fill(box, "lit")
+            ink, soft = ("on_lit", "on_lit") if marked else ("text", "soft")
+            name = box.adjusted(1.2 * u, 0, -30 * u, 0)
+            painter.write(name, entry.name, 2.3, ink, bold=marked, raw=True, fit=False)
+            folder, text = box.adjusted(box.width() - 30 * u, 0, -1.2 * u, 0), entry.path.parent.name
+            painter.write(folder, text, 1.6, soft, at=RIGHT, bold=False, raw=True, fit=False)
             self.place(box, self._picker(entry))
 
-    def _not_found(self, painter: QPainter) -> None:
-        look, u = self.look, self.look.u
+    def _not_found(self, painter: Painter) -> None:
+        u = self.look.u
         box = QRectF(1.6 * u, 10 * u, self.width() - 3.2 * u, 7 * u)
-        painter.fillRect(box, look.colour("alarm"))
-        painter.setPen(look.colour("on_state"))
-        painter.setFont(look.fit(NOT_FOUND, 2.8, box.width() - 2 * u, bold=True))
-        put(painter, box, CENTRE, NOT_FOUND)
+        painter.fill(box, "alarm")
+        painter.write(box, NOT_FOUND, 2.8, "on_state", at=CENTRE, margin=2)
 
     def _picker(self, entry: ListedProgram) -> Callable[[], None]:
         return lambda: self._try(str(entry.path))

@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QPainter, QResizeEvent
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
@@ -18,9 +18,9 @@ from app.programs.program_list import ProgramList, details_of
 from app.programs.program_rows import Program
 from app.screen import page_table
 from app.screen.letter_keys import LetterPad
-from app.screen.look import LEFT, Look, put
+from app.screen.look import Painter
 from app.screen.page_base import Host, KeyActions
-from app.screen.panel import Panel
+from app.screen.panel import Panel, Shown
 from app.screen.sheet_panel import ListPage, SheetPanel
 from app.working_plane.plane_instant import at_line
 from app.working_plane.working_plane_view import WorkingPlaneView
@@ -39,34 +39,21 @@ class RecordPanel(Panel):
     """Two columns: what, and its figure."""
 
     title = "RECORD"
+    program: Shown[Program | None] = Shown(None)
+    trouble = Shown("")  # what is wrong with its picture
 
-    def __init__(self, look: Look, parent: QWidget) -> None:
-        super().__init__(look, parent)
-        self._shown: tuple[Program | None, str] = (None, "")
-
-    def show_program(self, program: Program | None, trouble: str) -> None:
-        """Another program, or what is wrong with its picture."""
-        if (program, trouble) != self._shown:
-            self._shown = (program, trouble)
-            self.update()
-
-    def draw(self, painter: QPainter) -> None:
-        look, u = self.look, self.look.u
-        program, trouble = self._shown
-        rows = list(details_of(program)) if program is not None else []
-        if trouble:
-            rows.append(("PREVIEW", trouble))
+    def draw(self, painter: Painter) -> None:
+        u = self.look.u
+        rows = list(details_of(self.program)) if self.program is not None else []
+        if self.trouble:
+            rows.append(("PREVIEW", self.trouble))
         room = self.inside()
         high = min(3.0 * u, room.height() / max(1, len(rows)))
         for number, (label, text) in enumerate(rows):
             y = room.y() + number * high
-            painter.setPen(look.colour("soft"))
-            painter.setFont(look.fit(label, 1.6, (LABEL - 0.6) * u, bold=True))
-            put(painter, QRectF(room.x(), y, (LABEL - 0.6) * u, high), LEFT, label)
+            painter.write(QRectF(room.x(), y, (LABEL - 0.6) * u, high), label, 1.6, "soft")
             value = QRectF(room.x() + LABEL * u, y, room.width() - LABEL * u, high)
-            painter.setPen(look.colour("text"))
-            painter.setFont(look.fit(text, 1.9, value.width(), bold=True))
-            put(painter, value, LEFT, text)
+            painter.write(value, text, 1.9, "text")
 
 
 SHARE, RECORD = 0.6, 24.0  # of the width for the list; units of height for the record
@@ -164,7 +151,8 @@ class ProgramsPage(ListPage):
         here = model.here
         self._show_picture(model.preview.of(here))
         self.letters.setVisible(bool(model.question or model.find.text) and not model.transfer.open)
-        self.record.show_program(here, "DRAWING …" if model.preview.busy else model.preview.trouble)
+        self.record.program = here
+        self.record.trouble = "DRAWING …" if model.preview.busy else model.preview.trouble
 
     def _show_picture(self, picture: Picture | None) -> None:
         scene = picture.scene if picture is not None else None

@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from functools import partial
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QPainter, QWheelEvent
+from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.alarm_log import LoggedStop
 from app.desk.machine_status import Tone
 from app.desk.prompt_line import exactly
 from app.desk.translation import tr
-from app.screen.look import CENTRE, LEFT, Look, draw_sign, put, put_raw
+from app.screen.look import Look, Painter, draw_sign
 from app.screen.panel import Panel
 from core.alarms import CATALOGUE, Reaction
 from core.executor.snapshot import Alarm
@@ -41,36 +41,31 @@ class Notice(Panel):
         self.setVisible(bool(message or alarms))
         self.update()
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         if self._alarms:
             self._draw_alarm(painter, *self._alarms)
         else:
             self._draw_message(painter)
 
-    def _head(self, painter: QPainter, tone: Tone, text: str) -> QRectF:
+    def _head(self, painter: Painter, tone: Tone, text: str) -> QRectF:
         look, u = self.look, self.look.u
-        painter.fillRect(self.area(), look.colour(tone.value))
-        painter.fillRect(self.area().adjusted(0.5 * u, u, -0.5 * u, -0.5 * u), look.colour("panel"))
+        painter.fill(self.area(), tone.value)
+        painter.fill(self.area().adjusted(0.5 * u, u, -0.5 * u, -0.5 * u), "panel")
         head = QRectF(0, 0, self.width(), 5.6 * u)
-        painter.fillRect(head, look.colour(tone.value))
-        ink = look.colour("on_state")
-        draw_sign(painter, QRectF(1.6 * u, 1.5 * u, 2.6 * u, 2.6 * u), tone, ink)
-        painter.setPen(ink)
-        painter.setFont(look.fit(text, 2.6, self.width() - 8 * u, bold=True))
-        put(painter, head.adjusted(5.6 * u, 0, -u, 0), LEFT, text)
+        painter.fill(head, tone.value)
+        draw_sign(painter, QRectF(1.6 * u, 1.5 * u, 2.6 * u, 2.6 * u), tone, look.colour("on_state"))
+        painter.write(head.adjusted(5.6 * u, 0, -u, 0), text, 2.6, "on_state", margin=1.4)
         return self.area().adjusted(2 * u, 6.8 * u, -2 * u, -1.4 * u)
 
-    def _draw_message(self, painter: QPainter) -> None:
+    def _draw_message(self, painter: Painter) -> None:
         room = self._head(painter, Tone.PAUSE, "PROGRAM STOP")
         u = self.look.u
         foot = QRectF(room.x(), room.bottom() - 3.4 * u, room.width(), 3.4 * u)
         room.setBottom(foot.top() - 0.6 * u)
         self._wrapped(painter, room, self.message, 6.0, "text")
-        painter.setPen(self.look.colour("accent"))
-        painter.setFont(self.look.fit(self._go_on, 2.2, foot.width(), bold=True))
-        put(painter, foot, LEFT, self._go_on)
+        painter.write(foot, self._go_on, 2.2, "accent")
 
-    def _draw_alarm(self, painter: QPainter, alarm: Alarm, *more: Alarm) -> None:
+    def _draw_alarm(self, painter: Painter, alarm: Alarm, *more: Alarm) -> None:
         """What came first is the cause of what came behind it more often than not."""
         parts = [f"ALARM {alarm.number}: {alarm.text}", *([f"LINE {alarm.line}"] if alarm.line else [])]
         room = self._head(painter, Tone.ALARM, "  ·  ".join(parts))
@@ -85,24 +80,20 @@ class Notice(Panel):
             box = QRectF(room.x(), room.y() + y * high, room.width(), part * high)
             self._labelled(painter, box, label, text)
 
-    def _draw_more(self, painter: QPainter, room: QRectF, more: tuple[Alarm, ...]) -> QRectF:
+    def _draw_more(self, painter: Painter, room: QRectF, more: tuple[Alarm, ...]) -> QRectF:
         """The others in one line at the foot; the room that is left."""
-        look, u = self.look, self.look.u
+        u = self.look.u
         foot = QRectF(room.x(), room.bottom() - 2.6 * u, room.width(), 2.6 * u)
         text = "ALSO: " + "  ·  ".join(f"{each.number} {tr(each.text)}" for each in more)
-        painter.setPen(look.colour("alarm"))
-        painter.setFont(look.fit(text, 1.9, foot.width(), bold=True))
-        put(painter, foot, LEFT, text)
+        painter.write(foot, text, 1.9, "alarm")
         return room.adjusted(0, 0, 0, -3.0 * u)
 
-    def _labelled(self, painter: QPainter, room: QRectF, label: str, text: str) -> None:
-        look, u = self.look, self.look.u
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.font(1.6, bold=True))
-        put(painter, QRectF(room.x(), room.y(), room.width(), 2.0 * u), LEFT, label)
+    def _labelled(self, painter: Painter, room: QRectF, label: str, text: str) -> None:
+        u = self.look.u
+        painter.write(QRectF(room.x(), room.y(), room.width(), 2.0 * u), label, 1.6, "soft")
         self._wrapped(painter, room.adjusted(0, 2.1 * u, 0, 0), text, 2.3, "text")
 
-    def _wrapped(self, painter: QPainter, room: QRectF, text: str, size: float, colour: str) -> None:
+    def _wrapped(self, painter: Painter, room: QRectF, text: str, size: float, colour: str) -> None:
         """Text in words, from ``size`` down as far as needed so that all of it is there."""
         painter.setPen(self.look.colour(colour))
         while True:
@@ -147,48 +138,39 @@ class AlarmList(Panel):
         """The mouse wheel goes through the entries, as Page up and down do."""
         self.look_at(-1 if event.angleDelta().y() > 0 else 1)
 
-    def draw(self, painter: QPainter) -> None:
-        look, u = self.look, self.look.u
+    def draw(self, painter: Painter) -> None:
+        u = self.look.u
         room = self.inside()
         if not self.entries:
-            painter.setPen(look.colour("soft"))
-            painter.setFont(look.font(2.0))
-            put(painter, QRectF(room.x(), room.y(), room.width(), 3 * u), LEFT, "No alarm and no stop yet.")
+            room.setHeight(3 * u)
+            painter.write(room, "No alarm and no stop yet.", 2.0, "soft", bold=False)
             return
         for number, entry in enumerate(self.entries[self._top : self._top + self.rows]):
             y = room.y() + number * _HIGH * u
             self._entry(painter, QRectF(room.x(), y, room.width(), _HIGH * u), entry)
         self._pages(painter, QRectF(room.x(), room.bottom() - _FOOT * u, room.width(), _FOOT * u))
 
-    def _entry(self, painter: QPainter, row: QRectF, entry: LoggedStop) -> None:
-        look, u, alarm = self.look, self.look.u, entry.alarm
+    def _entry(self, painter: Painter, row: QRectF, entry: LoggedStop) -> None:
+        u, alarm = self.look.u, entry.alarm
         grave = CATALOGUE[alarm.code].reaction in {Reaction.OFF, Reaction.STOP} or alarm.code == "estop"
         left, wide = row.x() + _WHEN * u, row.width() - _WHEN * u
-        painter.fillRect(QRectF(row.x(), row.bottom() - 0.3 * u, row.width(), 0.1 * u), look.colour("frame"))
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.fit(entry.at, 1.8, (_WHEN - 1) * u))
-        put_raw(painter, QRectF(row.x(), row.y(), _WHEN * u, 2.4 * u), LEFT, entry.at)
+        painter.fill(QRectF(row.x(), row.bottom() - 0.3 * u, row.width(), 0.1 * u), "frame")
+        when, ink = QRectF(row.x(), row.y(), _WHEN * u, 2.4 * u), "alarm" if grave else "text"
+        painter.write(when, entry.at, 1.8, "soft", bold=False, raw=True, margin=1.0)
         if alarm.line:
-            painter.setFont(look.font(1.8))
-            put(painter, QRectF(row.x(), row.y() + 2.3 * u, _WHEN * u, 2.1 * u), LEFT, f"line {alarm.line}")
-        painter.setPen(look.colour("alarm" if grave else "text"))
-        painter.setFont(look.font(2.0, bold=True))
-        put(painter, QRectF(left, row.y(), wide, 2.4 * u), LEFT, f"{alarm.number}  ·  {alarm.text}")
+            place = QRectF(row.x(), row.y() + 2.3 * u, _WHEN * u, 2.1 * u)
+            painter.write(place, f"line {alarm.line}", 1.8, "soft", bold=False)
+        what = f"{alarm.number}  ·  {alarm.text}"
+        painter.write(QRectF(left, row.y(), wide, 2.4 * u), what, 2.0, ink, fit=False)
         for y, ink, text in ((2.3, "text", exactly(alarm)), (4.3, "soft", alarm.remedy)):
-            painter.setPen(look.colour(ink))
-            painter.setFont(look.fit(text, 1.8, wide))
-            put(painter, QRectF(left, row.y() + y * u, wide, 2.1 * u), LEFT, text)
+            painter.write(QRectF(left, row.y() + y * u, wide, 2.1 * u), text, 1.8, ink, bold=False)
 
-    def _pages(self, painter: QPainter, foot: QRectF) -> None:
+    def _pages(self, painter: Painter, foot: QRectF) -> None:
         """Two places for a finger, where there is more than fits."""
-        look, u = self.look, self.look.u
+        u = self.look.u
         for number, (label, by) in enumerate((("NEWER", -self.rows), ("OLDER", self.rows))):
             possible = self._top > 0 if by < 0 else self._top + self.rows < len(self.entries)
             if not possible:
                 continue
             box = QRectF(foot.right() - (2 - number) * 17 * u, foot.y(), 16 * u, foot.height())
-            painter.fillRect(box, look.colour("key"))
-            painter.setPen(look.colour("text"))
-            painter.setFont(look.font(2.0, bold=True))
-            put(painter, box, CENTRE, label)
-            self.place(box, partial(self.look_at, by))
+            self.key(painter, box, label, 2.0, partial(self.look_at, by))

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QFontMetricsF, QPainter
+from PySide6.QtGui import QFontMetricsF
 from PySide6.QtWidgets import QLineEdit, QWidget
 
-from app.screen.look import CENTRE, LEFT, Look, put, put_raw
-from app.screen.panel import Panel
+from app.screen.look import Look, Painter
+from app.screen.panel import Panel, Shown
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,65 +29,45 @@ class EntryPanel(Panel):
     """Redrawn when one of its words has changed."""
 
     ground = "panel"
+    asked = Shown(EntryWords())
 
-    def __init__(self, look: Look, parent: QWidget) -> None:
-        super().__init__(look, parent)
-        self.asked = EntryWords()
-
-    def show_entry(self, asked: EntryWords) -> None:
-        """Show these words; redraw when one of them is another."""
-        if asked != self.asked:
-            self.asked = asked
-            self.update()
-
-    def draw(self, painter: QPainter) -> None:
-        look, u, asked = self.look, self.look.u, self.asked
+    def draw(self, painter: Painter) -> None:
+        u, asked = self.look.u, self.asked
         room = self.area().adjusted(1.4 * u, 0.4 * u, -1.4 * u, -0.3 * u)
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.fit(asked.which, 1.9, 27 * u))
-        put(painter, QRectF(room.x(), room.y(), 27 * u, 3.2 * u), LEFT, asked.which)
+        painter.write(QRectF(room.x(), room.y(), 27 * u, 3.2 * u), asked.which, 1.9, "text", bold=False)
         left = 28 * u if asked.which else 0.0
         change = QRectF(room.x() + left, room.y(), room.width() - left, 3.2 * u)
-        painter.setPen(look.colour("accent"))
-        painter.setFont(look.fit(asked.change, 2.0, change.width(), bold=True))
-        put(painter, change, LEFT, asked.change)
+        painter.write(change, asked.change, 2.0, "accent")
         self._ask(painter, QRectF(room.x(), room.y() + 3.5 * u, room.width(), 4.8 * u))
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.fit(asked.foot, 1.8, room.width()))
-        put(painter, QRectF(room.x(), room.bottom() - 3.0 * u, room.width(), 3.0 * u), LEFT, asked.foot)
+        room.setTop(room.bottom() - 3.0 * u)
+        painter.write(room, asked.foot, 1.8, "soft", bold=False)
 
-    def _ask(self, painter: QPainter, row: QRectF) -> None:
-        look, u, asked = self.look, self.look.u, self.asked
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.fit(asked.question, 2.4, 36 * u, bold=True))
-        put(painter, QRectF(row.x(), row.y(), 36 * u, row.height()), LEFT, asked.question)
+    def _ask(self, painter: Painter, row: QRectF) -> None:
+        u, asked = self.look.u, self.asked
+        painter.write(QRectF(row.x(), row.y(), 36 * u, row.height()), asked.question, 2.4, "text")
         if not asked.question:
             return
         box = row.adjusted(37 * u, 0.2 * u, 0, -0.2 * u)
-        draw_entry_box(painter, look, box, asked.text)
+        draw_entry_box(painter, box, asked.text)
 
 
 def draw_entry(
-    painter: QPainter, look: Look, inside: QRectF, text: str, *, size: float = 2.8, cursor: bool = True
+    painter: Painter, inside: QRectF, text: str, *, size: float = 2.8, cursor: bool = True
 ) -> None:
     """What is typed, in letters of ``size`` units, and the bar behind it."""
-    u = look.u
-    font = look.fit(text, size, inside.width() - u, bold=True)
-    painter.setFont(font)
-    painter.setPen(look.colour("text"))
-    put_raw(painter, inside, LEFT, text)
+    u = painter.look.u
+    painter.write(inside, text, size, "text", raw=True, margin=1.0)
     if cursor:
-        at = inside.x() + min(QFontMetricsF(font).horizontalAdvance(text), inside.width() - u) + 0.3 * u
+        wide = QFontMetricsF(painter.font()).horizontalAdvance(text)
+        at = inside.x() + min(wide, inside.width() - u) + 0.3 * u
         high = (size + 0.2) * u
-        painter.fillRect(QRectF(at, inside.center().y() - high / 2, 0.3 * u, high), look.colour("accent"))
+        painter.fill(QRectF(at, inside.center().y() - high / 2, 0.3 * u, high), "accent")
 
 
-def draw_entry_box(painter: QPainter, look: Look, box: QRectF, text: str, size: float = 2.8) -> None:
+def draw_entry_box(painter: Painter, box: QRectF, text: str, size: float = 2.8) -> None:
     """A frame to type in, and what is typed."""
-    painter.setPen(look.pen("accent", 0.2))
-    painter.setBrush(look.colour("ground"))
-    painter.drawRect(box)
-    draw_entry(painter, look, box.adjusted(look.u, 0, -look.u, 0), text, size=size)
+    painter.box(box, "accent", 0.2, "ground")
+    draw_entry(painter, box.adjusted(painter.look.u, 0, -painter.look.u, 0), text, size=size)
 
 
 def dress_line(edit: QLineEdit, look: Look, size: float, left: float) -> None:
@@ -125,7 +105,7 @@ class KeyPad(Panel):
         super().__init__(look, parent)
         self._press, self._own = press, own
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         u = self.look.u
         gap = 0.6 * u
         high = (self.height() + gap) / (len(_KEYS) + 1)
@@ -140,11 +120,6 @@ class KeyPad(Panel):
         foot = QRectF(0, len(_KEYS) * high, self.width(), high - gap)
         self._key(painter, foot, "Enter", _SHOWN["Enter"])
 
-    def _key(self, painter: QPainter, box: QRectF, key: str, shown: str) -> None:
-        look = self.look
-        figure = key.isdigit() or key == "."
-        painter.fillRect(box, look.colour("key"))
-        painter.setPen(look.colour("text" if figure else "accent"))
-        painter.setFont(look.fit(shown, 3.0, box.width() - look.u, bold=True))
-        put(painter, box, CENTRE, shown)
-        self.place(box, partial(self._press, key))
+    def _key(self, painter: Painter, box: QRectF, key: str, shown: str) -> None:
+        ink = "text" if key.isdigit() or key == "." else "accent"
+        self.key(painter, box, shown, 3.0, partial(self._press, key), ink=ink, margin=1.0)

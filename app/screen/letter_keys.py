@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from PySide6.QtCore import QEvent, QRectF, Qt
-from PySide6.QtGui import QKeyEvent, QPainter
+from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk.translation import tr
-from app.screen.look import CENTRE, Look, put_raw
+from app.screen.look import Look, Painter
 from app.screen.panel import Panel
 
 Rows = Sequence[Sequence[str]]
@@ -52,7 +52,7 @@ class LetterPad(Panel):
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
         self.setFocusProxy(field)
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         gap = 0.6 * self.look.u
         high = (self.height() + gap) / len(self._rows)
         for row, keys in enumerate(self._rows):
@@ -60,15 +60,11 @@ class LetterPad(Panel):
             for column, key in enumerate(keys):
                 self._key(painter, QRectF(column * wide, row * high, wide - gap, high - gap), key)
 
-    def _key(self, painter: QPainter, box: QRectF, key: str) -> None:
-        look = self.look
+    def _key(self, painter: Painter, box: QRectF, key: str) -> None:
         words = {"Esc": "ESC", "Back": tr("DEL"), "Enter": tr("RETURN"), " ": tr("SPACE"), **_ARROWS}
         shown = words.get(key, key)
-        painter.fillRect(box, look.colour("key"))
-        painter.setPen(look.colour("text" if key.isalnum() and len(key) == 1 else "accent"))
-        painter.setFont(look.fit(shown, 2.8, box.width() - 0.4 * look.u, bold=True))
-        put_raw(painter, box, CENTRE, shown)
-        self.place(box, partial(self._press, key))
+        ink = "text" if key.isalnum() and len(key) == 1 else "accent"
+        self.key(painter, box, shown, 2.8, partial(self._press, key), ink=ink, raw=True, margin=0.4)
 
 
 def strike(key: str, target: QWidget) -> None:

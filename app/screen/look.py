@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from importlib.resources import files
+from typing import Self
 
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import (
@@ -12,6 +13,7 @@ from PySide6.QtGui import (
     QFont,
     QFontDatabase,
     QFontMetricsF,
+    QPaintDevice,
     QPainter,
     QPalette,
     QPen,
@@ -128,6 +130,52 @@ def put_raw(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str)
     elif flags & Qt.AlignmentFlag.AlignHCenter:
         x = rect.center().x() - width / 2
     painter.drawText(round(x), round(rect.center().y() + metrics.capHeight() / 2), text)
+
+
+class Painter(QPainter):
+    """A painter that knows colours, fonts and unit of a look."""
+
+    def __init__(self, device: QPaintDevice, look: Look) -> None:
+        super().__init__(device)
+        self.look = look
+
+    def __enter__(self) -> Self:
+        super().__enter__()
+        return self
+
+    def write(
+        self,
+        rect: QRectF,
+        text: str,
+        size: float,
+        ink: str,
+        *,
+        at: Qt.AlignmentFlag = LEFT,
+        bold: bool = True,
+        raw: bool = False,
+        margin: float = 0.0,
+        fit: bool = True,
+    ) -> None:
+        """Draw one line of text in an ink of the palette: ``size`` units high, or smaller to fit.
+
+        It is fitted into ``rect``, with ``margin`` units left over, or else elided. ``raw`` text is anybody's
+        and is not translated: see ``put_raw``. Ink and font stay for what is drawn next.
+        """
+        look = self.look
+        room = rect.width() - margin * look.u
+        self.setPen(look.colour(ink))
+        self.setFont(look.fit(text, size, room, bold=bold) if fit else look.font(size, bold=bold))
+        (put_raw if raw else put)(self, rect, at, text)
+
+    def fill(self, rect: QRectF, ground: str) -> None:
+        """Fill a rectangle with a colour of the palette."""
+        self.fillRect(rect, self.look.colour(ground))
+
+    def box(self, rect: QRectF, line: str, width: float, ground: str) -> None:
+        """A filled rectangle with an edge ``width`` units wide; without a ``ground`` it is hollow."""
+        self.setPen(self.look.pen(line, width))
+        self.setBrush(self.look.colour(ground) if ground else Qt.BrushStyle.NoBrush)
+        self.drawRect(rect)
 
 
 def dress(palette: Palette) -> None:

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QPainter, QResizeEvent
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.screen import page_table
-from app.screen.look import CENTRE, LEFT, Look, put
+from app.screen.look import CENTRE, Look, Painter
 from app.screen.page_base import Host, KeyActions, Page
 from app.screen.page_table import IN_MENU, PageEntry
 from app.screen.panel import Panel
@@ -62,7 +62,7 @@ class _Tiles(Panel):
         super().__init__(look, parent)
         self._press = press
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         u, room = self.look.u, self.inside()
         rows = -(-len(IN_MENU) // COLUMNS)
         wide, high = room.width() / COLUMNS, min(room.height() / rows, 13.0 * u)
@@ -72,19 +72,11 @@ class _Tiles(Panel):
             self._tile(painter, box, entry)
             self.place(box, partial(self._press, entry.key))
 
-    def _tile(self, painter: QPainter, box: QRectF, entry: PageEntry) -> None:
-        look, u = self.look, self.look.u
-        painter.setPen(look.pen("accent", 0.2))
-        painter.setBrush(look.colour("key"))
-        painter.drawRect(box)
-        painter.setPen(look.colour("accent"))
-        painter.setFont(look.font(3.4, bold=True))
-        put(painter, QRectF(box.x() + u, box.y(), 8 * u, box.height()), CENTRE, entry.key)
+    def _tile(self, painter: Painter, box: QRectF, entry: PageEntry) -> None:
+        u = self.look.u
+        painter.box(box, "accent", 0.2, "key")
+        painter.write(QRectF(box.x() + u, box.y(), 8 * u, box.height()), entry.key, 3.4, "accent", at=CENTRE)
         text = box.adjusted(10.5 * u, 0.14 * box.height(), -1.5 * u, -0.14 * box.height())
-        half = text.height() / 2
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.fit(entry.name, 3.0, text.width(), bold=True))
-        put(painter, QRectF(text.x(), text.y(), text.width(), half), LEFT, entry.name)
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.fit(entry.use, 1.9, text.width()))
-        put(painter, QRectF(text.x(), text.y() + half, text.width(), half), LEFT, entry.use)
+        text.setHeight(text.height() / 2)
+        painter.write(text, entry.name, 3.0, "text")
+        painter.write(text.translated(0, text.height()), entry.use, 1.9, "soft", bold=False)

@@ -4,19 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import QEventPoint, QFontMetricsF, QMouseEvent, QPainter, QPaintEvent, QPen, QTouchEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.screen.look import LEFT, Look, put
+from app.screen.look import CENTRE, LEFT, Look, Painter, put
 
 Press = Callable[[], None]
+T = TypeVar("T")
+
+
+class Shown(Generic[T]):
+    """An attribute of a panel: the panel is drawn anew when it becomes another."""
+
+    def __init__(self, first: T) -> None:
+        self._first = first
+
+    def __set_name__(self, _owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, panel: QWidget, _owner: type | None = None) -> T:
+        value: T = vars(panel).get(self._name, self._first)
+        return value
+
+    def __set__(self, panel: QWidget, value: T) -> None:
+        if value != self.__get__(panel):
+            vars(panel)[self._name] = value
+            panel.update()
 
 
 class Panel(QWidget):
-    """Draws itself from what it was last shown, and only when that has changed. Never takes the keyboard."""
+    """Draws itself from what it shows, and only when that has changed. Never takes the keyboard."""
 
     title = ""
     ground = "ground"
@@ -30,15 +51,15 @@ class Panel(QWidget):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Qt's call to draw. The painter ends whatever happens: one left open takes the process with it."""
-        with QPainter(self) as painter:
+        with Painter(self, self.look) as painter:
             painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-            painter.fillRect(self.rect(), self.look.colour(self.ground))
+            painter.fill(self.area(), self.ground)
             self._places.clear()
             if self.title:
                 self.frame(painter, self.title)
             self.draw(painter)
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         """What a part of the page draws inside its frame."""
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
@@ -57,6 +78,23 @@ class Panel(QWidget):
         """While drawing: remember that pressing inside ``rect`` does this."""
         self._places.append((rect, press))
 
+    def key(
+        self,
+        painter: Painter,
+        box: QRectF,
+        word: str,
+        size: float,
+        press: Press,
+        *,
+        ink: str = "text",
+        raw: bool = False,
+        margin: float = 0.0,
+    ) -> None:
+        """While drawing: a key for a finger with its word in the middle."""
+        painter.fill(box, "key")
+        painter.write(box, word, size, ink, at=CENTRE, raw=raw, margin=margin)
+        self.place(box, press)
+
     def area(self) -> QRectF:
         """The whole widget, in pixels."""
         return QRectF(self.rect())
@@ -66,7 +104,7 @@ class Panel(QWidget):
         u = self.look.u
         return self.area().adjusted(1.2 * u, 2.6 * u, -1.2 * u, -0.9 * u)
 
-    def frame(self, painter: QPainter, title: str, colour: str = "frame", width: float = 0.16) -> None:
+    def frame(self, painter: Painter, title: str, colour: str = "frame", width: float = 0.16) -> None:
         """A box with its title set into the top line, as text screens drew them."""
         look, u, title = self.look, self.look.u, tr(title)
         top = 1.0 * u
@@ -86,7 +124,7 @@ class Panel(QWidget):
         painter.fillRect(
             QRectF(patch.x(), top - half - 1, patch.width(), 2 * half + 2), look.colour("ground")
         )
-        painter.fillRect(QRectF(patch.x(), top, patch.width(), 1.0 * u), look.colour("panel"))
+        painter.fill(QRectF(patch.x(), top, patch.width(), 1.0 * u), "panel")
         painter.setPen(look.colour("soft"))
         put(painter, patch.adjusted(0.6 * u, 0, 0, 0), LEFT, title)
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QPainter, QWheelEvent
+from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.screen.look import LEFT, RIGHT, Look, put, put_raw
+from app.screen.look import RIGHT, Look, Painter
 from app.screen.panel import Panel
 
 ROW = 2.9  # units from line to line
@@ -80,8 +80,8 @@ class Listing(Panel):
         """Three lines a notch."""
         self.look_at(-round(event.angleDelta().y() / 40))
 
-    def draw(self, painter: QPainter) -> None:
-        look, u = self.look, self.look.u
+    def draw(self, painter: Painter) -> None:
+        u = self.look.u
         count = len(self._lines)
         title = f"PROGRAM  ·  {count} LINES" if count else "PROGRAM"
         self.frame(painter, title if self.follows else f"{title}  ·  HOME FOLLOWS AGAIN")
@@ -98,42 +98,35 @@ class Listing(Panel):
                 break
             number += 1
         if not count:
-            painter.setFont(look.font(2.0))
-            painter.setPen(look.colour("soft"))
-            put(
-                painter, self.inside().adjusted(0, 0, 0, -self.inside().height() + 4 * u), LEFT, "No program."
-            )
+            room = self.inside()
+            room.setHeight(4 * u)
+            painter.write(room, "No program.", 2.0, "soft", bold=False)
 
-    def _source(self, painter: QPainter, row: QRectF, number: int) -> None:
-        look, u = self.look, self.look.u
+    def _source(self, painter: Painter, row: QRectF, number: int) -> None:
+        u = self.look.u
         here, bad = number == self._line, number in self._bad
         if here:
-            painter.fillRect(row, look.colour("here"))
-            painter.fillRect(QRectF(row.x(), row.y(), 0.7 * u, row.height()), look.colour("lit"))
+            painter.fill(row, "here")
+            painter.fill(QRectF(row.x(), row.y(), 0.7 * u, row.height()), "lit")
         if bad:
-            painter.fillRect(QRectF(row.x(), row.y(), 0.7 * u, row.height()), look.colour("alarm"))
-        painter.setFont(look.font(1.7))
-        painter.setPen(look.colour("alarm" if bad else "soft"))
+            painter.fill(QRectF(row.x(), row.y(), 0.7 * u, row.height()), "alarm")
         wide = max(4, len(str(len(self._lines)))) * 1.2 * u
-        put(painter, QRectF(row.x() + 1.2 * u, row.y(), wide, row.height()), RIGHT, str(number))
-        painter.setFont(look.font(2.1, bold=here))
-        painter.setPen(look.colour("text"))
-        text = self._lines[number - 1].expandtabs(4)
-        put_raw(painter, row.adjusted(wide + 2.4 * u, 0, -0.8 * u, 0), LEFT, text)
+        margin = QRectF(row.x() + 1.2 * u, row.y(), wide, row.height())
+        painter.write(margin, str(number), 1.7, "alarm" if bad else "soft", at=RIGHT, bold=False)
+        text, room = self._lines[number - 1].expandtabs(4), row.adjusted(wide + 2.4 * u, 0, -0.8 * u, 0)
+        painter.write(room, text, 2.1, "text", bold=here, raw=True, fit=False)
 
-    def _generated(self, painter: QPainter, row: QRectF) -> QRectF:
-        look, u = self.look, self.look.u
+    def _generated(self, painter: Painter, row: QRectF) -> QRectF:
+        u = self.look.u
         for text, name in ((self._block, "accent"), (self._next, "soft")):
             if not text or row.bottom() > self.height() - 0.2 * u:
                 break
             if name == "accent":
-                painter.fillRect(row, look.colour("here"))
-                painter.fillRect(QRectF(row.x(), row.y(), 0.7 * u, row.height()), look.colour("lit"))
-            painter.setPen(look.colour(name))
-            painter.setFont(look.font(1.6, bold=True))
+                painter.fill(row, "here")
+                painter.fill(QRectF(row.x(), row.y(), 0.7 * u, row.height()), "lit")
             label = "BLOCK" if name == "accent" else "NEXT"
-            put(painter, QRectF(row.x() + 1.2 * u, row.y(), 5.6 * u, row.height()), LEFT, label)
-            painter.setFont(look.font(2.0, bold=name == "accent"))
-            put_raw(painter, row.adjusted(7.6 * u, 0, -0.8 * u, 0), LEFT, text)
+            painter.write(QRectF(row.x() + 1.2 * u, row.y(), 5.6 * u, row.height()), label, 1.6, name)
+            room = row.adjusted(7.6 * u, 0, -0.8 * u, 0)
+            painter.write(room, text, 2.0, name, bold=name == "accent", raw=True, fit=False)
             row = row.translated(0, ROW * u)
         return row

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.desk import formats
@@ -13,8 +12,8 @@ from app.desk.formats import percent
 from app.desk.machine_status import MachineStatus, Tone
 from app.desk.readouts import AxisFigures, FeedFigures, PositionFigures, SpindleFigures
 from app.desk.translation import tr
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, draw_sign, put, put_raw
-from app.screen.panel import Panel
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter, draw_sign, put
+from app.screen.panel import Panel, Shown
 
 FIGURES = 9  # −12.34567
 LATHE_ROWS = 3
@@ -24,23 +23,15 @@ ROOMY = 6.3  # units of height that figures of the full size need
 class PositionPanel(Panel):
     """The readout. X is marked by a filled Ø or a hollow R, so that one is never taken for the other."""
 
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
-        super().__init__(look, parent)
-        self._view: PositionFigures | None = None
+    view: Shown[PositionFigures | None] = Shown(None)  # all at once: of one instant, in one unit
 
     @property
     def readout(self) -> str:
         """What the large figures are."""
-        return self._view.readout.value if self._view else ""
+        return self.view.readout.value if self.view else ""
 
-    def show_position(self, view: PositionFigures) -> None:
-        """All figures at once: they belong to one instant and one unit."""
-        if view != self._view:
-            self._view = view
-            self.update()
-
-    def draw(self, painter: QPainter) -> None:
-        view = self._view
+    def draw(self, painter: Painter) -> None:
+        view = self.view
         if view is None:
             self.frame(painter, "POSITION")
             return
@@ -54,109 +45,87 @@ class PositionPanel(Panel):
             self._row(painter, QRectF(0, top + row * high, room.width(), high), axis)
             if row:
                 line = QRectF(1.2 * u, top + row * high, room.width() - 2.4 * u, max(1.0, 0.08 * u))
-                painter.fillRect(line, self.look.colour("key"))
+                painter.fill(line, "key")
 
-    def _heading(self, painter: QPainter, view: PositionFigures) -> None:
-        look, u = self.look, self.look.u
-        painter.setFont(look.font(1.5, bold=True))
-        painter.setPen(look.colour("soft"))
-        put(painter, QRectF(0, 1.8 * u, self.width() - 1.6 * u, 2.0 * u), RIGHT, view.beside.value)
+    def _heading(self, painter: Painter, view: PositionFigures) -> None:
+        u = self.look.u
+        place = QRectF(0, 1.8 * u, self.width() - 1.6 * u, 2.0 * u)
+        painter.write(place, view.beside.value, 1.5, "soft", at=RIGHT)
 
-    def _row(self, painter: QPainter, row: QRectF, axis: AxisFigures) -> None:
-        look, u = self.look, self.look.u
+    def _row(self, painter: Painter, row: QRectF, axis: AxisFigures) -> None:
+        u = self.look.u
         share = self._share(row)
-        painter.setPen(look.colour("accent"))
-        painter.setFont(look.font(5.6 * share, bold=True))
-        put(painter, QRectF(1.8 * u, row.y(), 5.6 * u, row.height()), LEFT, axis.name)
+        painter.write(QRectF(1.8 * u, row.y(), 5.6 * u, row.height()), axis.name, 5.6 * share, "accent")
         if axis.mark:
             box = QRectF(7.4 * u, row.center().y() - 2.6 * u, 4.8 * u, 5.2 * u)
-            draw_mark(painter, look, box, axis.mark, 4.6, 0.4)
-        painter.setPen(look.colour("text" if axis.homed else "soft"))
-        painter.setFont(look.font(7.0 * share, bold=True))
-        put(painter, QRectF(12.6 * u, row.y(), 39.0 * u, row.height()), RIGHT, axis.value)
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.font(2.7 * max(share, 0.8)))
-        put(painter, QRectF(52.4 * u, row.y(), self.width() - 54.0 * u, row.height()), RIGHT, axis.beside)
+            draw_mark(painter, box, axis.mark, 4.6, 0.4)
+        large = QRectF(12.6 * u, row.y(), 39.0 * u, row.height())
+        painter.write(large, axis.value, 7.0 * share, "text" if axis.homed else "soft", at=RIGHT)
+        beside = QRectF(52.4 * u, row.y(), self.width() - 54.0 * u, row.height())
+        painter.write(beside, axis.beside, 2.7 * max(share, 0.8), "soft", at=RIGHT, bold=False)
         if not axis.homed:
-            painter.setPen(look.colour("alarm"))
-            painter.setFont(look.font(1.5, bold=True))
-            at = QRectF(52.4 * u, row.y() + 0.6 * u, self.width() - 54.0 * u, 2.0 * u)
-            put(painter, at, RIGHT, "NOT HOMED")
+            above = QRectF(beside.x(), row.y() + 0.6 * u, beside.width(), 2.0 * u)
+            painter.write(above, "NOT HOMED", 1.5, "alarm", at=RIGHT)
 
     def _share(self, row: QRectF) -> float:
         """Of the full size: five axes of a mill leave less room than three of a lathe."""
-        few = self._view is None or len(self._view.axes) <= LATHE_ROWS
+        few = self.view is None or len(self.view.axes) <= LATHE_ROWS
         return 1.0 if few else min(1.0, row.height() / (ROOMY * self.look.u))
 
 
-def draw_mark(painter: QPainter, look: Look, box: QRectF, mark: str, size: float, line: float) -> None:
+def draw_mark(painter: Painter, box: QRectF, mark: str, size: float, line: float) -> None:
     """X as a diameter has a filled Ø, as a radius a hollow R; letter and line in units."""
     filled = mark == "Ø"
-    painter.setPen(look.pen("mark", line))
-    painter.setBrush(look.colour("mark") if filled else Qt.BrushStyle.NoBrush)
-    painter.drawRect(box)
-    painter.setPen(look.colour("on_mark" if filled else "mark"))
-    painter.setFont(look.font(size, bold=True))
-    put(painter, box, CENTRE, mark)
+    painter.box(box, "mark", line, "mark" if filled else "")
+    painter.write(box, mark, size, "on_mark" if filled else "mark", at=CENTRE)
 
 
 # --- feed, spindle, tool and times --------------------------------------------------------------------
 
 
 class Gauge(Panel):
-    """Draws from one frozen value; another value redraws it."""
+    """Draws from one frozen value; the same value again costs a comparison."""
+
+    value: Shown[object] = Shown(None)
 
     def __init__(self, look: Look, title: str, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
         self.title = title
-        self.value: object = None
-
-    def show_value(self, value: object) -> None:
-        """Show this; the same value again costs a comparison."""
-        if value != self.value:
-            self.value = value
-            self.update()
 
     def row(self, y: float, high: float) -> QRectF:
         """A row inside the frame; units."""
         u = self.look.u
         return QRectF(1.4 * u, y * u, self.width() - 2.8 * u, high * u)
 
-    def label(self, painter: QPainter, at: QRectF, text: str, flags: Qt.AlignmentFlag = LEFT) -> None:
+    def label(self, painter: Painter, at: QRectF, text: str, flags: Qt.AlignmentFlag = LEFT) -> None:
         """A small word that names a figure."""
-        painter.setPen(self.look.colour("soft"))
-        painter.setFont(self.look.fit(text, 1.6, at.width(), bold=True))
-        put(painter, at, flags, text)
+        painter.write(at, text, 1.6, "soft", at=flags)
 
     def figure(
-        self, painter: QPainter, at: QRectF, text: str, size: float, flags: Qt.AlignmentFlag = RIGHT
+        self, painter: Painter, at: QRectF, text: str, size: float, flags: Qt.AlignmentFlag = RIGHT
     ) -> None:
         """Draw a figure in bold, smaller where its place is narrow."""
-        painter.setPen(self.look.colour("text"))
-        painter.setFont(self.look.fit(text, size, at.width(), bold=True))
-        put(painter, at, flags, text)
+        painter.write(at, text, size, "text", at=flags)
 
-    def bar(self, painter: QPainter, at: QRectF, fraction: float, most: float) -> None:
+    def bar(self, painter: Painter, at: QRectF, fraction: float, most: float) -> None:
         """An override: a bar with its figure; anything but 100 % stands out."""
-        look, u = self.look, self.look.u
+        u = self.look.u
         plain = abs(fraction - 1.0) < 0.005
         figure = QRectF(at.right() - 9 * u, at.y(), 9 * u, at.height())
         track = QRectF(at.x(), at.center().y() - 0.6 * u, at.width() - 9.6 * u, 1.2 * u)
-        painter.fillRect(track, look.colour("key"))
+        painter.fill(track, "key")
         share = max(0.0, min(1.0, fraction / most))
         filled = QRectF(track.x(), track.y(), track.width() * share, track.height())
-        painter.fillRect(filled, look.colour("accent" if plain else "pause"))
+        painter.fill(filled, "accent" if plain else "pause")
         full = track.x() + track.width() / most
-        painter.fillRect(QRectF(full - 0.1 * u, track.y() - 0.4 * u, 0.2 * u, 2.0 * u), look.colour("text"))
-        painter.setPen(look.colour("text" if plain else "pause"))
-        painter.setFont(look.font(2.1, bold=True))
-        put(painter, figure, RIGHT, formats.percent(fraction))
+        painter.fill(QRectF(full - 0.1 * u, track.y() - 0.4 * u, 0.2 * u, 2.0 * u), "text")
+        painter.write(figure, formats.percent(fraction), 2.1, "text" if plain else "pause", at=RIGHT)
 
 
 class FeedGauge(Gauge):
     """Programmed feed large, actual feed and override below."""
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         view = self.value
         if not isinstance(view, FeedFigures):
             return
@@ -174,7 +143,7 @@ class FeedGauge(Gauge):
 class SpindleGauge(Gauge):
     """Commanded and actual rpm, surface speed, override and its switch."""
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         view = self.value
         if not isinstance(view, SpindleFigures):
             return
@@ -196,19 +165,16 @@ class SpindleGauge(Gauge):
         self.figure(painter, surface.adjusted(5 * u, 0, 0, 0), view.surface, 2.5)
         self.bar(painter, self.row(11.2, 2.8), view.override, 1.0)
 
-    def _switch(self, painter: QPainter, box: QRectF, view: SpindleFigures) -> None:
-        look = self.look
-        painter.fillRect(box, look.colour("key" if view.auto else "alarm"))
-        painter.setPen(look.colour("text" if view.auto else "on_state"))
+    def _switch(self, painter: Painter, box: QRectF, view: SpindleFigures) -> None:
+        painter.fill(box, "key" if view.auto else "alarm")
         text = "AUTO" if view.auto else "SWITCH OFF"
-        painter.setFont(look.fit(text, 1.5, box.width() - 0.4 * look.u, bold=True))
-        put(painter, box, CENTRE, text)
+        painter.write(box, text, 1.5, "text" if view.auto else "on_state", at=CENTRE, margin=0.4)
 
 
 class ToolGauge(Gauge):
     """Active tool and secondary offset."""
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         if not isinstance(self.value, tuple):
             return
         tool, secondary = self.value
@@ -222,7 +188,7 @@ class ToolGauge(Gauge):
 class TimesGauge(Gauge):
     """Part count, time of this cycle, time left."""
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         if not isinstance(self.value, tuple):
             return
         room = self.inside()
@@ -246,31 +212,22 @@ LATHE_COLUMNS = 3  # X, Z and C; a mill has more
 class HeadLine(Panel):
     """Everything of one snapshot; X keeps its filled Ø or hollow R."""
 
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
-        super().__init__(look, parent)
-        self.view: MachineStatus | None = None
-        self._shown: object = None
+    view: MachineStatus | None = None
+    _shown: Shown[object] = Shown(None)
 
     def show_view(self, view: MachineStatus) -> None:
         """Redraw when one of its figures has changed."""
         self.view = view
-        shown = (view.position, view.feed, view.spindle, view.tool, view.secondary)
-        if shown != self._shown:
-            self._shown = shown
-            self.update()
+        self._shown = (view.position, view.feed, view.spindle, view.tool, view.secondary)
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         view = self.view
         if view is None:
             return
         position = view.position
         self.frame(painter, f"{position.readout.value}  ·  {position.unit}  ·  {position.x_words}")
-        u, room = (
-            self.look.u,
-            self.area().adjusted(
-                1.2 * self.look.u, 2.2 * self.look.u, -1.2 * self.look.u, -0.6 * self.look.u
-            ),
-        )
+        u = self.look.u
+        room = self.area().adjusted(1.2 * u, 2.2 * u, -1.2 * u, -0.6 * u)
         columns = max(LATHE_COLUMNS, len(position.axes))
         share = (0.58 if columns == LATHE_COLUMNS else 0.7) * room.width() / columns
         for number, axis in enumerate(position.axes):
@@ -280,21 +237,17 @@ class HeadLine(Panel):
         rest = QRectF(room.x() + taken, room.y(), room.width() - taken, room.height())
         self._figures(painter, rest, view)
 
-    def _axis(self, painter: QPainter, at: QRectF, axis: AxisFigures) -> None:
-        look, u = self.look, self.look.u
-        painter.setPen(look.colour("accent"))
-        painter.setFont(look.font(2.8, bold=True))
-        put(painter, QRectF(at.x(), at.y(), 3 * u, at.height()), LEFT, axis.name)
+    def _axis(self, painter: Painter, at: QRectF, axis: AxisFigures) -> None:
+        u = self.look.u
+        painter.write(QRectF(at.x(), at.y(), 3 * u, at.height()), axis.name, 2.8, "accent")
         if axis.mark:
             box = QRectF(at.x() + 2.8 * u, at.center().y() - 1.5 * u, 3.0 * u, 3.0 * u)
-            draw_mark(painter, look, box, axis.mark, 2.4, 0.25)
-        painter.setPen(look.colour("text" if axis.homed else "alarm"))
+            draw_mark(painter, box, axis.mark, 2.4, 0.25)
         room = at.adjusted((6.4 if axis.mark else 3.2) * u, 0, 0, 0)
-        painter.setFont(look.fit(axis.value, 3.4, room.width(), bold=True))
-        put(painter, room, RIGHT, axis.value)
+        painter.write(room, axis.value, 3.4, "text" if axis.homed else "alarm", at=RIGHT)
 
-    def _figures(self, painter: QPainter, room: QRectF, view: MachineStatus) -> None:
-        look, u = self.look, self.look.u
+    def _figures(self, painter: Painter, room: QRectF, view: MachineStatus) -> None:
+        u = self.look.u
         feed, spindle = view.feed, view.spindle
         cells = (
             (f"FEED {percent(feed.override)}", f"{feed.actual} {tr(feed.actual_unit)}", 0.42),
@@ -308,12 +261,9 @@ class HeadLine(Panel):
         x = room.x() + 1.6 * u
         for label, figure, share in cells:
             wide = share * (room.width() - 1.6 * u)
-            painter.setPen(look.colour("soft"))
-            painter.setFont(look.fit(label, 1.5, wide - u, bold=True))
-            put(painter, QRectF(x, room.y() - 0.4 * u, wide - u, 1.9 * u), LEFT, label)
-            painter.setPen(look.colour("text"))
-            painter.setFont(look.fit(figure, 2.3, wide - u, bold=True))
-            put(painter, QRectF(x, room.y() + 1.5 * u, wide - u, room.height() - 1.7 * u), LEFT, figure)
+            painter.write(QRectF(x, room.y() - 0.4 * u, wide - u, 1.9 * u), label, 1.5, "soft")
+            below = QRectF(x, room.y() + 1.5 * u, wide - u, room.height() - 1.7 * u)
+            painter.write(below, figure, 2.3, "text")
             x += wide
 
 
@@ -328,23 +278,18 @@ class RunLine(Panel):
     """One low row at the lower left, where the Automatic page has its comment."""
 
     ground = "panel"
-
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
-        super().__init__(look, parent)
-        self.comment, self.block, self.message = "", "", ""
-        self.times: Times = ()
-        self.stop = ""  # number and words of what stopped the machine
-        self._tone = ""
+    comment, block, message = Shown(""), Shown(""), Shown("")
+    times: Shown[Times] = Shown(())
+    stop = Shown("")  # number and words of what stopped the machine
+    _tone = Shown("")
 
     def show_run(self, view: MachineStatus, times: Times) -> None:
         """Redraw when something of it has changed."""
-        block = f"L{view.line}  {view.block_text}" if view.line else ""
-        shown = (view.comment, block, view.message, times, stop_words(view), view.tone.value)
-        if shown != (self.comment, self.block, self.message, self.times, self.stop, self._tone):
-            self.comment, self.block, self.message, self.times, self.stop, self._tone = shown
-            self.update()
+        self.comment, self.message, self.times = view.comment, view.message, times
+        self.block = f"L{view.line}  {view.block_text}" if view.line else ""
+        self.stop, self._tone = stop_words(view), view.tone.value
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         u, wide, high = self.look.u, float(self.width()), float(self.height())
         if self.stop:
             self._alarm(painter)
@@ -358,43 +303,30 @@ class RunLine(Panel):
             self._text(painter, block, "text", self.block)
         self._times(painter, QRectF((COMMENT + BLOCK) * wide, 0, (1 - COMMENT - BLOCK) * wide - u, high))
 
-    def _alarm(self, painter: QPainter) -> None:
+    def _alarm(self, painter: Painter) -> None:
         """Over all of it: nothing runs, and this has to be read from where the machine is."""
         look, u = self.look, self.look.u
-        painter.fillRect(self.area(), look.colour(self._tone))
-        ink = look.colour("on_state")
-        draw_sign(painter, QRectF(u, 0.3 * u, 2.2 * u, 2.2 * u), Tone(self._tone), ink)
-        painter.setPen(ink)
-        room = self.area().adjusted(4.4 * u, 0, -u, 0)
-        painter.setFont(look.fit(self.stop, 2.5, room.width(), bold=True))
-        put(painter, room, LEFT, self.stop)
+        painter.fill(self.area(), self._tone)
+        sign = QRectF(u, 0.3 * u, 2.2 * u, 2.2 * u)
+        draw_sign(painter, sign, Tone(self._tone), look.colour("on_state"))
+        painter.write(self.area().adjusted(4.4 * u, 0, -u, 0), self.stop, 2.5, "on_state")
 
-    def _text(self, painter: QPainter, box: QRectF, ink: str, text: str) -> None:
-        painter.setPen(self.look.colour(ink))
-        painter.setFont(self.look.fit(text, 2.0, box.width(), bold=ink == "text"))
-        put_raw(painter, box, LEFT, text)
+    def _text(self, painter: Painter, box: QRectF, ink: str, text: str) -> None:
+        painter.write(box, text, 2.0, ink, bold=ink == "text", raw=True)
 
-    def _stop(self, painter: QPainter, box: QRectF) -> None:
+    def _stop(self, painter: Painter, box: QRectF) -> None:
         """What the operator must do now: filled, over comment and block, as long as an M00 or M01 lasts."""
-        painter.fillRect(box.adjusted(-1.4 * self.look.u, 0, 0, 0), self.look.colour("pause"))
-        painter.setPen(self.look.colour("on_state"))
-        painter.setFont(self.look.fit(self.message, 2.4, box.width(), bold=True))
-        put_raw(painter, box, LEFT, self.message)
+        painter.fill(box.adjusted(-1.4 * self.look.u, 0, 0, 0), "pause")
+        painter.write(box, self.message, 2.4, "on_state", raw=True)
 
-    def _times(self, painter: QPainter, room: QRectF) -> None:
+    def _times(self, painter: Painter, room: QRectF) -> None:
         """Name and figure beside each other, each in a column of its own."""
         u, share = self.look.u, room.width() / max(1, len(self.times))
         for number, (name, figure) in enumerate(self.times):
             box = QRectF(room.x() + number * share, 0, share - 0.8 * u, room.height())
             half = 0.46 * box.width()
-            painter.setPen(self.look.colour("soft"))
-            painter.setFont(self.look.fit(tr(name), 1.5, half, bold=True))
-            put(painter, QRectF(box.x(), 0, half, box.height()), RIGHT, name)
-            painter.setPen(self.look.colour("text"))
-            painter.setFont(self.look.fit(figure, 2.0, box.width() - half - u, bold=True))
-            put_raw(
-                painter, QRectF(box.x() + half + u, 0, box.width() - half - u, box.height()), LEFT, figure
-            )
+            painter.write(QRectF(box.x(), 0, half, box.height()), name, 1.5, "soft", at=RIGHT)
+            painter.write(box.adjusted(half + u, 0, 0, 0), figure, 2.0, "text", raw=True)
 
 
 def stop_words(view: MachineStatus) -> str:

@@ -7,13 +7,13 @@ from functools import partial
 from typing import Protocol
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QPainter, QWheelEvent
+from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.sheet import Key, Row, Sheet
 from app.screen import page_table
 from app.screen.entry_panel import draw_entry_box
-from app.screen.look import LEFT, RIGHT, Look, put, put_raw
+from app.screen.look import LEFT, RIGHT, Look, Painter
 from app.screen.page_base import Host, Page
 from app.screen.panel import Panel
 
@@ -59,7 +59,7 @@ class SheetPanel(Panel):
             self.top = min(max(self.top, marked - self.rows + 1), marked)
         self.top = max(0, min(self.top, len(self.sheet.rows) - self.rows))
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         u, sheet = self.look.u, self.sheet
         self.frame(painter, sheet.title)
         self._follow()
@@ -82,63 +82,53 @@ class SheetPanel(Panel):
             yield number, QRectF(x, box.y(), share * wide - 1.0 * u, box.height())
             x += share * wide
 
-    def _head(self, painter: QPainter, box: QRectF) -> None:
-        look = self.look
-        painter.setPen(look.colour("soft"))
+    def _head(self, painter: Painter, box: QRectF) -> None:
         for number, at in self._columns(box):
-            painter.setFont(look.fit(self.sheet.heads[number], 1.6, at.width(), bold=True))
-            put(painter, at, self._side(number), self.sheet.heads[number])
+            painter.write(at, self.sheet.heads[number], 1.6, "soft", at=self._side(number))
 
     def _side(self, number: int) -> Qt.AlignmentFlag:
         return RIGHT if number in self.sheet.figures else LEFT
 
-    def _row(self, painter: QPainter, box: QRectF, row: Row, marked: bool) -> None:
-        look, u = self.look, self.look.u
+    def _row(self, painter: Painter, box: QRectF, row: Row, marked: bool) -> None:
+        u = self.look.u
         if marked:
-            painter.fillRect(box, look.colour("here"))
-            painter.fillRect(QRectF(box.x(), box.y(), 0.5 * u, box.height()), look.colour("lit"))
+            painter.fill(box, "here")
+            painter.fill(QRectF(box.x(), box.y(), 0.5 * u, box.height()), "lit")
         if row.lit is not None:
             side = 1.6 * u
             lamp = QRectF(box.x() + 1.0 * u, box.center().y() - side / 2, side, side)
-            painter.setPen(look.pen(row.tone.value, 0.2))
-            painter.setBrush(look.colour(row.tone.value) if row.lit else Qt.BrushStyle.NoBrush)
-            painter.drawRect(lamp)
-        painter.setPen(look.colour("text"))
+            painter.box(lamp, row.tone.value, 0.2, row.tone.value if row.lit else "")
         for number, at in self._columns(box):
-            text = row.cells[number]
-            painter.setFont(look.fit(text, 2.1, at.width(), bold=number == 0 or marked))
-            (put_raw if number in self.sheet.raw else put)(painter, at, self._side(number), text)
+            side, bold, raw = self._side(number), number == 0 or marked, number in self.sheet.raw
+            painter.write(at, row.cells[number], 2.1, "text", at=side, bold=bold, raw=raw)
 
-    def _bar(self, painter: QPainter, room: QRectF) -> None:
+    def _bar(self, painter: Painter, room: QRectF) -> None:
         """How much of the table is seen, and where."""
         count = len(self.sheet.rows)
         if count <= self.rows:
             return
         u = self.look.u
         track = QRectF(room.right() - 0.5 * u, room.y() + HEAD * u, 0.6 * u, self.rows * ROW * u)
-        painter.fillRect(track, self.look.colour("key"))
+        painter.fill(track, "key")
         part = QRectF(track.x(), 0, track.width(), track.height() * self.rows / count)
         part.moveTop(track.y() + track.height() * self.top / count)
-        painter.fillRect(part, self.look.colour("accent"))
+        painter.fill(part, "accent")
 
-    def _foot(self, painter: QPainter, room: QRectF) -> None:
-        look, u, sheet = self.look, self.look.u, self.sheet
+    def _foot(self, painter: Painter, room: QRectF) -> None:
+        u, sheet = self.look.u, self.sheet
         y = room.bottom() - len(sheet.notes) * NOTE * u
-        painter.setPen(look.colour("soft"))
         for number, note in enumerate(sheet.notes):
-            painter.setFont(look.fit(note, 1.8, room.width()))
-            put(painter, QRectF(room.x(), y + number * NOTE * u, room.width(), NOTE * u), LEFT, note)
+            row = QRectF(room.x(), y + number * NOTE * u, room.width(), NOTE * u)
+            painter.write(row, note, 1.8, "soft", bold=False)
         if sheet.question:
             self._ask(painter, QRectF(room.x(), y - ASKED * u, room.width(), (ASKED - 0.6) * u))
 
-    def _ask(self, painter: QPainter, row: QRectF) -> None:
-        look, u, sheet = self.look, self.look.u, self.sheet
+    def _ask(self, painter: Painter, row: QRectF) -> None:
+        u, sheet = self.look.u, self.sheet
         asked = QRectF(row.x(), row.y(), 0.5 * row.width(), row.height())
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.fit(sheet.question, 2.2, asked.width() - u, bold=True))
-        put(painter, asked, LEFT, sheet.question)
+        painter.write(asked, sheet.question, 2.2, "text", margin=1.0)
         box = QRectF(asked.right(), row.y() + 0.2 * u, row.right() - asked.right(), row.height() - 0.4 * u)
-        draw_entry_box(painter, look, box, sheet.text, 2.6)
+        draw_entry_box(painter, box, sheet.text, 2.6)
 
 
 # --- a page that comes up with such a list -----------------------------------------------------------------

@@ -6,15 +6,15 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QFontMetricsF, QPainter, QWheelEvent
+from PySide6.QtGui import QFontMetricsF, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk import formats
 from app.desk.desk import Desk
 from app.desk.station_hands import OVERRIDE_MOST
 from app.desk.translation import tr
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
-from app.screen.panel import Control, FingerPanel
+from app.screen.look import CENTRE, RIGHT, Look, Painter
+from app.screen.panel import Control, FingerPanel, Shown
 from core.executor.snapshot import Snapshot
 
 DRAWN_FOR = 71.6  # units of height; a taller dock gives every row its share
@@ -24,12 +24,12 @@ class StationDock(FingerPanel):
     """E-stop, spindle switch, two pots, feed hold and the palms."""
 
     title = "OPERATOR STATION"
+    _shown: Shown[object] = Shown(())
+    _auto = Shown(True)
 
     def __init__(self, look: Look, desk: Desk, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
         self._desk = desk
-        self._shown: tuple[object, ...] = ()
-        self._auto = True
         self._twisting = False
 
     def show_station(self, snapshot: Snapshot) -> None:
@@ -37,10 +37,7 @@ class StationDock(FingerPanel):
         desk = self._desk
         self._auto = snapshot.spindle_auto
         palms = frozenset(desk.hands.palms.down)
-        shown = (desk.hands.estop_pressed, self._auto, desk.hands.spindle_pot, desk.hands.feed_pot, palms)
-        if shown != self._shown:
-            self._shown = shown
-            self.update()
+        self._shown = (desk.hands.estop_pressed, desk.hands.spindle_pot, desk.hands.feed_pot, palms)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Over a pot the wheel turns it."""
@@ -61,7 +58,7 @@ class StationDock(FingerPanel):
     def _feed_box(self) -> QRectF:
         return self._row(40.4, 5.4)
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         self.controls.clear()
         desk = self._desk
         self._mushroom(painter)
@@ -75,18 +72,14 @@ class StationDock(FingerPanel):
         self._hold(painter)
         self._start(painter)
 
-    def _label(self, painter: QPainter, at: QRectF, text: str, right: str, colour: str) -> None:
-        painter.setFont(self.look.font(1.6, bold=True))
-        painter.setPen(self.look.colour("soft"))
-        put(painter, at, LEFT, text)
-        painter.setPen(self.look.colour(colour))
-        painter.setFont(self.look.font(2.0, bold=True))
-        put(painter, at, RIGHT, right)
+    def _label(self, painter: Painter, at: QRectF, text: str, right: str, colour: str) -> None:
+        painter.write(at, text, 1.6, "soft", fit=False)
+        painter.write(at, right, 2.0, colour, at=RIGHT)
 
-    def _mushroom(self, painter: QPainter) -> None:
+    def _mushroom(self, painter: Painter) -> None:
         look, u = self.look, self.look.u
         box, pressed = self._row(2.6, 15.0), self._desk.hands.estop_pressed
-        painter.fillRect(box, look.colour("estop_plate"))
+        painter.fill(box, "estop_plate")
         side = min(box.width() - 8.0 * u, box.height() - 1.6 * u)
         head = QRectF(box.x() + 0.8 * u, box.center().y() - side / 2, side, side)
         painter.setPen(Qt.PenStyle.NoPen)
@@ -95,25 +88,20 @@ class StationDock(FingerPanel):
         inset = (2.0 if pressed else 0.8) * u
         painter.setBrush(look.colour("estop"))
         painter.drawEllipse(head.adjusted(inset, inset, -inset, -inset))
-        painter.setPen(look.colour("estop_ink"))
         for text, size, down in (("STOP", 2.2, -1.4), ("IS IN" if pressed else "SCR LOCK", 1.6, 1.6)):
-            painter.setFont(look.fit(text, size, head.width() - 2.4 * u, bold=True))
-            put(painter, head.translated(0, down * u), CENTRE, text)
+            painter.write(head.translated(0, down * u), text, size, "estop_ink", at=CENTRE, margin=2.4)
         self.controls.append(Control(head, self._struck, always=True))
         out = QRectF(head.right() + 0.6 * u, box.y() + 0.8 * u, 0, box.height() - 1.6 * u)
         out.setRight(box.right() - 0.6 * u)
         self._release(painter, out, pressed)
 
-    def _release(self, painter: QPainter, box: QRectF, pressed: bool) -> None:
-        look, u = self.look, self.look.u
-        painter.setPen(look.pen("estop_ground", 0.14))
-        painter.setBrush(look.colour("estop_ground") if pressed else Qt.BrushStyle.NoBrush)
-        painter.drawRect(box)
-        painter.setPen(look.colour("estop_plate" if pressed else "estop_ground"))
-        high = box.height() / 3
+    def _release(self, painter: Painter, box: QRectF, pressed: bool) -> None:
+        painter.box(box, "estop_ground", 0.14, "estop_ground" if pressed else "")
+        ink, third = "estop_plate" if pressed else "estop_ground", QRectF(box)
+        third.setHeight(box.height() / 3)
         for number, word in enumerate(("TWIST", "OUT", "U")):
-            painter.setFont(look.fit(word, 1.7, box.width() - 0.6 * u, bold=True))
-            put(painter, QRectF(box.x(), box.y() + number * high, box.width(), high), CENTRE, word)
+            row = third.translated(0, number * third.height())
+            painter.write(row, word, 1.7, ink, at=CENTRE, margin=0.6)
         self.controls.append(Control(box, self._twist_begins, None, self._twist_ends))
 
     def _struck(self, _at: QPointF) -> None:
@@ -128,40 +116,31 @@ class StationDock(FingerPanel):
         if self._twisting and not self.fingers:
             self._desk.hands.estop(pressed=False)
 
-    def _switch(self, painter: QPainter) -> None:
-        look = self.look
+    def _switch(self, painter: Painter) -> None:
         self._label(painter, self._row(18.6, 2.6), "SPINDLE SWITCH", "A", "accent")
         box = self._row(21.4, 5.6)
         half = box.width() / 2
         for number, word in enumerate(("OFF", "AUTO")):
             on = self._auto is (word == "AUTO")
             at = QRectF(box.x() + number * half, box.y(), half, box.height())
-            painter.setPen(look.pen("frame", 0.14))
-            painter.setBrush(look.colour("lit" if on else "panel"))
-            painter.drawRect(at)
-            painter.setPen(look.colour("on_lit" if on else "soft"))
-            painter.setFont(look.font(2.2, bold=True))
-            put(painter, at, CENTRE, word)
+            painter.box(at, "frame", 0.14, "lit" if on else "panel")
+            painter.write(at, word, 2.2, "on_lit" if on else "soft", at=CENTRE)
             self.controls.append(Control(at, self._switcher(word == "AUTO")))
 
     def _switcher(self, auto: bool) -> Callable[[QPointF], None]:
         return lambda _at: self._desk.hands.set_spindle_auto(auto)
 
-    def _pot(self, painter: QPainter, box: QRectF, keys: tuple[str, str], value: float, most: float) -> None:
-        look, u = self.look, self.look.u
+    def _pot(self, painter: Painter, box: QRectF, keys: tuple[str, str], value: float, most: float) -> None:
+        u = self.look.u
         turn = self._desk.override if most > 1 else self._desk.hands.turn_spindle_pot
         less = QRectF(box.x(), box.y(), 4.6 * u, box.height())
         more = QRectF(box.right() - 4.6 * u, box.y(), 4.6 * u, box.height())
         for at, key, steps in ((less, keys[0], -1), (more, keys[1], 1)):
-            painter.fillRect(at, look.colour("key"))
-            painter.setPen(look.colour("accent"))
-            painter.setFont(look.font(2.8, bold=True))
-            put(painter, at, CENTRE, key)
+            painter.fill(at, "key")
+            painter.write(at, key, 2.8, "accent", at=CENTRE)
             self.controls.append(Control(at, self._turner(turn, steps)))
         track = box.adjusted(5.2 * u, 0, -5.2 * u, 0)
-        painter.setPen(look.pen("frame", 0.14))
-        painter.setBrush(look.colour("panel"))
-        painter.drawRect(track)
+        painter.box(track, "frame", 0.14, "panel")
         self._slider(painter, track.adjusted(0.3 * u, 0.3 * u, -0.3 * u, -0.3 * u), value / most)
         setter = self._desk.hands.set_feed_pot if most > 1 else self._desk.hands.set_spindle_pot
 
@@ -173,47 +152,38 @@ class StationDock(FingerPanel):
     def _turner(self, turn: Callable[[int], None], steps: int) -> Callable[[QPointF], None]:
         return lambda _at: turn(steps)
 
-    def _slider(self, painter: QPainter, inner: QRectF, share: float) -> None:
-        look, u = self.look, self.look.u
+    def _slider(self, painter: Painter, inner: QRectF, share: float) -> None:
+        u = self.look.u
         filled = inner.width() * max(0.0, min(1.0, share))
-        painter.fillRect(QRectF(inner.x(), inner.y(), filled, inner.height()), look.colour("here"))
+        painter.fill(QRectF(inner.x(), inner.y(), filled, inner.height()), "here")
         x = min(max(inner.x() + filled - 0.5 * u, inner.x()), inner.right() - u)
-        painter.fillRect(QRectF(x, inner.y(), u, inner.height()), look.colour("accent"))
+        painter.fill(QRectF(x, inner.y(), u, inner.height()), "accent")
 
-    def _hold(self, painter: QPainter) -> None:
+    def _hold(self, painter: Painter) -> None:
         look, u, desk = self.look, self.look.u, self._desk
         box = self._row(47.4, 7.0)
-        painter.setPen(look.pen("pause", 0.3))
-        painter.setBrush(look.colour("panel"))
-        painter.drawRect(box.adjusted(0.15 * u, 0.15 * u, -0.15 * u, -0.15 * u))
+        painter.box(box.adjusted(0.15 * u, 0.15 * u, -0.15 * u, -0.15 * u), "pause", 0.3, "panel")
         inner = box.adjusted(1.4 * u, 0, -1.4 * u, 0)
-        painter.setPen(look.colour("text"))
-        font = look.font(2.3, bold=True)
-        painter.setFont(font)
         room = inner.adjusted(0, 0, -3.0 * u, 0)
         words = tr("FEED HOLD")
-        wide = QFontMetricsF(font).horizontalAdvance(words) > room.width()
+        wide = QFontMetricsF(look.font(2.3, bold=True)).horizontalAdvance(words) > room.width()
         lines = words.split(" ", 1) if wide else [words]
         high = min(room.height() / len(lines), 3.0 * u)
         top = room.center().y() - high * len(lines) / 2
         for number, line in enumerate(lines):
-            put(painter, QRectF(room.x(), top + number * high, room.width(), high), LEFT, line)
-        painter.setPen(look.colour("accent"))
-        painter.setFont(look.font(2.2, bold=True))
-        put(painter, QRectF(inner.x(), inner.y(), inner.width(), inner.height() / 2), RIGHT, "H")
-        painter.setFont(look.font(1.5, bold=True))
-        half = inner.height() / 2
-        put(painter, QRectF(inner.x(), inner.y() + half, inner.width(), half), RIGHT, "PAUSE")
+            row = QRectF(room.x(), top + number * high, room.width(), high)
+            painter.write(row, line, 2.3, "text", fit=False)
+        inner.setHeight(inner.height() / 2)
+        painter.write(inner, "H", 2.2, "accent", at=RIGHT)
+        painter.write(inner.translated(0, inner.height()), "PAUSE", 1.5, "accent", at=RIGHT)
         press, release = partial(desk.hands.hold, down=True), partial(desk.hands.hold, down=False)
         self.controls.append(Control(box, lambda _at: press(), None, release, always=True))
 
-    def _start(self, painter: QPainter) -> None:
-        look, desk = self.look, self._desk
+    def _start(self, painter: Painter) -> None:
+        desk = self._desk
         head = self._row(55.4, 2.6)
-        painter.setPen(look.colour("soft"))
         text = "CYCLE START: BOTH PALMS" if desk.two_hand else "CYCLE START"
-        painter.setFont(look.fit(text, 1.6, head.width(), bold=True))
-        put(painter, head, LEFT, text)
+        painter.write(head, text, 1.6, "soft")
         box = self._row(58.2, 12.4)
         if not desk.two_hand:
             self._palm(painter, box, "F12", down=False)
@@ -229,7 +199,7 @@ class StationDock(FingerPanel):
         press, release = (partial(self._desk.hands.palm, side, down) for down in (True, False))
         return Control(at, lambda _at: press(), None, release)
 
-    def _palm(self, painter: QPainter, box: QRectF, key: str, down: bool) -> None:
+    def _palm(self, painter: Painter, box: QRectF, key: str, down: bool) -> None:
         look, u = self.look, self.look.u
         size = min(box.width(), box.height()) - 0.8 * u
         head = QRectF(box.center().x() - size / 2, box.center().y() - size / 2, size, size)
@@ -240,6 +210,4 @@ class StationDock(FingerPanel):
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(look.colour("lit" if down else "run"))
         painter.drawEllipse(head.adjusted(inset, inset, -inset, -inset))
-        painter.setPen(look.colour("on_lit" if down else "on_state"))
-        painter.setFont(look.font(2.3, bold=True))
-        put(painter, head, CENTRE, key)
+        painter.write(head, key, 2.3, "on_lit" if down else "on_state", at=CENTRE)

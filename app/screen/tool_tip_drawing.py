@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QPainter, QPainterPath
+from PySide6.QtGui import QPainterPath
 
-from app.screen.look import Look
+from app.screen.look import Painter
 
 # Quadrant → (Z, X) from the nose centre to the tip; X+ is down on the screen. 0 and 9: the centre itself.
 DIRECTIONS = {
@@ -25,7 +25,7 @@ DIRECTIONS = {
 _SPREAD = 0.7  # radians from the tool's axis to its flanks
 
 
-def draw_tip(painter: QPainter, box: QRectF, look: Look, quadrant: int, colour: str = "text") -> None:
+def draw_tip(painter: Painter, box: QRectF, quadrant: int, colour: str = "text") -> None:
     """The tip in a square: body away from the tip, nose circle, and a dot where X and Z are set."""
     side = min(box.width(), box.height())
     centre, radius = box.center(), 0.16 * side
@@ -34,13 +34,13 @@ def draw_tip(painter: QPainter, box: QRectF, look: Look, quadrant: int, colour: 
     painter.save()
     painter.setClipRect(box)
     painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(look.colour("ghost"))
+    painter.setBrush(painter.look.colour("ghost"))
     if (z, x) != (0, 0):
         painter.drawPath(_body(middle, math.atan2(-x, -z), radius, side))
-    painter.setPen(look.pen(colour, 0.16))
+    painter.setPen(painter.look.pen(colour, 0.16))
     painter.drawEllipse(middle, radius, radius)
     painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(look.colour("tip"))
+    painter.setBrush(painter.look.colour("tip"))
     dot = max(1.5, 0.06 * side)
     painter.drawEllipse(middle + QPointF(radius * z, radius * x), dot, dot)
     painter.restore()

@@ -4,20 +4,20 @@ function keys.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QFontMetricsF, QPainter
+from PySide6.QtGui import QFontMetricsF
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import Tone
 from app.desk.readouts import Lamp
 from app.desk.translation import tr
 from app.screen.keys import ANSWER
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, draw_sign, put, put_raw
-from app.screen.panel import Panel
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter, draw_sign, put
+from app.screen.panel import Panel, Shown
 from app.screen.window_layout import FINGER
 
 TARGET = 13.0  # units: width of an answer to touch
@@ -28,10 +28,8 @@ class TitleLine(Panel):
 
     ground = "panel"
 
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
-        super().__init__(look, parent)
-        self._shown = ("", "STARTING", Tone.OFF, "", "")
-        self.page = ""
+    page = Shown("")
+    _shown = Shown(("", "STARTING", Tone.OFF, "", ""))
 
     @property
     def program(self) -> str:
@@ -43,44 +41,29 @@ class TitleLine(Panel):
         """The state of the machine in words, as shown."""
         return self._shown[1]
 
-    def show_page(self, page: str) -> None:
-        """The page that is in front."""
-        if page != self.page:
-            self.page = page
-            self.update()
-
     def show_state(self, program: str, state: str, tone: Tone, machine: str, clock: str) -> None:
         """What stands in the line."""
-        if (program, state, tone, machine, clock) != self._shown:
-            self._shown = (program, state, tone, machine, clock)
-            self.update()
+        self._shown = (program, state, tone, machine, clock)
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         program, state, tone, machine, clock = self._shown
-        look, u, high = self.look, self.look.u, self.height()
-        painter.fillRect(QRectF(0, high - 0.16 * u, self.width(), 0.16 * u), look.colour("frame"))
-        painter.setFont(look.fit(self.page, 2.2, 24 * u, bold=True))
-        painter.setPen(look.colour("accent"))
-        put(painter, QRectF(1.4 * u, 0, 24 * u, high), LEFT, self.page)
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.fit(program, 2.4, 31 * u, bold=True))
-        put_raw(painter, QRectF(27 * u, 0, 31 * u, high), LEFT, program or tr("NO PROGRAM"))
+        u, high = self.look.u, self.height()
+        painter.fill(QRectF(0, high - 0.16 * u, self.width(), 0.16 * u), "frame")
+        painter.write(QRectF(1.4 * u, 0, 24 * u, high), self.page, 2.2, "accent")
+        painter.write(QRectF(27 * u, 0, 31 * u, high), program or tr("NO PROGRAM"), 2.4, "text", raw=True)
         self._draw_state(painter, state, tone)
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.fit(machine, 1.8, 30 * u))
-        put(painter, QRectF(self.width() - 47 * u, 0, 30 * u, high), RIGHT, machine)
-        painter.setFont(look.font(2.2))
-        painter.setPen(look.colour("text"))
-        put(painter, QRectF(self.width() - 16 * u, 0, 14.6 * u, high), RIGHT, clock)
+        right = QRectF(self.width() - 47 * u, 0, 30 * u, high)
+        painter.write(right, machine, 1.8, "soft", at=RIGHT, bold=False)
+        right = QRectF(self.width() - 16 * u, 0, 14.6 * u, high)
+        painter.write(right, clock, 2.2, "text", at=RIGHT, bold=False)
 
-    def _draw_state(self, painter: QPainter, state: str, tone: Tone) -> None:
+    def _draw_state(self, painter: Painter, state: str, tone: Tone) -> None:
         look, u, high, state = self.look, self.look.u, self.height(), tr(state)
         box = QRectF(60 * u, 0.6 * u, 50 * u, high - 1.3 * u)
-        painter.fillRect(box, look.colour(tone.value))
+        painter.fill(box, tone.value)
         ink = look.colour("on_state")
-        font = look.fit(state, 2.5, box.width() - 8 * u, bold=True)
-        painter.setFont(font)
-        wide = QFontMetricsF(font).horizontalAdvance(state)
+        painter.setFont(look.fit(state, 2.5, box.width() - 8 * u, bold=True))
+        wide = QFontMetricsF(painter.font()).horizontalAdvance(state)
         left = box.center().x() - (wide + 3.6 * u) / 2
         draw_sign(painter, QRectF(left, box.center().y() - 1.2 * u, 2.4 * u, 2.4 * u), tone, ink)
         painter.setPen(ink)
@@ -93,47 +76,38 @@ class PromptLine(Panel):
     A question has two targets for a finger.
     """
 
+    text, reason, asked = Shown(""), Shown(""), Shown("")
+    _answer = Shown(False)
+
     def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
         self._press = press
-        self.text = self.reason = ""
-        self._answer = False
-        self.asked = ""
 
     def show_text(self, text: str, *, answer: bool, asked: str = "", reason: str = "") -> None:
         """``answer`` when it answers a key: it stands out then. ``asked``: the key that means yes."""
-        shown = (text, answer, asked, reason)
-        if shown != (self.text, self._answer, self.asked, self.reason):
-            self.text, self._answer, self.asked, self.reason = shown
-            self.update()
+        self.text, self._answer, self.asked, self.reason = text, answer, asked, reason
 
-    def draw(self, painter: QPainter) -> None:
-        look, u = self.look, self.look.u
+    def draw(self, painter: Painter) -> None:
+        u = self.look.u
         area = self.area()
-        painter.fillRect(area, look.colour("pause" if self._answer else "panel"))
+        painter.fill(area, "pause" if self._answer else "panel")
         if self.asked:
             area.setRight(self._targets(painter, area))
-        painter.setPen(look.colour("on_state" if self._answer else "text"))
+        ink = "on_state" if self._answer else "text"
         room = area.adjusted(1.4 * u, 0, -1.4 * u, 0)
         if self.reason:
             low = room.adjusted(0, 0.48 * room.height(), 0, -0.05 * room.height())
-            painter.setFont(look.fit(self.reason, 1.9, room.width()))
-            put(painter, low, LEFT, self.reason)
+            painter.write(low, self.reason, 1.9, ink, bold=False)
             room.setBottom(low.top())
-        painter.setFont(look.fit(self.text, 2.1 if self.reason else 2.3, room.width(), bold=True))
-        put(painter, room, LEFT, self.text)
+        painter.write(room, self.text, 2.1 if self.reason else 2.3, ink)
 
-    def _targets(self, painter: QPainter, area: QRectF) -> float:
+    def _targets(self, painter: Painter, area: QRectF) -> float:
         """Yes and no for a finger, at the right end, where no key is that asks; where the text ends."""
-        look, u = self.look, self.look.u
+        u = self.look.u
         left = area.right() - 2 * TARGET * u
         for number, (word, key) in enumerate((("YES", ANSWER), ("NO", "Esc"))):
             box = QRectF(left + number * TARGET * u, area.y(), (TARGET - 0.6) * u, area.height())
-            painter.fillRect(box, look.colour("key"))
-            painter.setPen(look.colour("text"))
-            painter.setFont(look.font(2.1, bold=True))
-            put(painter, box, CENTRE, word)
-            self.place(box, partial(self._press, key))
+            self.key(painter, box, word, 2.1, partial(self._press, key))
         return left
 
 
@@ -141,54 +115,36 @@ class CommentLine(Panel):
     """The last comment of the program, at the lower left."""
 
     title = "COMMENT"
+    text = Shown("")
 
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
-        super().__init__(look, parent)
-        self.text = ""
-
-    def show_text(self, text: str) -> None:
-        """The comment's own text, untouched."""
-        if text != self.text:
-            self.text = text
-            self.update()
-
-    def draw(self, painter: QPainter) -> None:
-        look, u = self.look, self.look.u
-        painter.setPen(look.colour("accent"))
+    def draw(self, painter: Painter) -> None:
+        u = self.look.u
         room = self.area().adjusted(1.4 * u, 1.5 * u, -1.2 * u, -0.5 * u)
-        painter.setFont(look.fit(self.text, 2.0, room.width()))
-        put_raw(painter, room, LEFT, self.text)
+        painter.write(room, self.text, 2.0, "accent", bold=False, raw=True)
 
 
 class FunctionKeys(Panel):
     """F1 to F10 with labels of up to eight characters; each is a target for a finger too."""
 
+    labels: Shown[tuple[str, ...]] = Shown(("",) * 10)  # an empty one is no key
+
     def __init__(self, look: Look, press: Callable[[int], None], parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
         self._press = press
-        self.labels: tuple[str, ...] = ("",) * 10
 
-    def show_labels(self, labels: tuple[str, ...]) -> None:
-        """The labels of another page; an empty one is no key."""
-        if labels != self.labels:
-            self.labels = labels
-            self.update()
-
-    def draw(self, painter: QPainter) -> None:
-        look, u = self.look, self.look.u
+    def draw(self, painter: Painter) -> None:
+        u = self.look.u
         gap = 0.6 * u
         wide = (self.width() + gap) / len(self.labels)
         for number, label in enumerate(self.labels, 1):
             if not label:
                 continue
             box = QRectF((number - 1) * wide, 0, wide - gap, self.height())
-            painter.fillRect(box, look.colour("key"))
-            painter.setPen(look.colour("accent"))
-            painter.setFont(look.font(1.8, bold=True))
-            put(painter, QRectF(box.x(), box.y() + 0.5 * u, box.width(), 2.4 * u), CENTRE, f"F{number}")
-            painter.setPen(look.colour("text"))
-            painter.setFont(look.fit(label, 2.1, box.width() - u, bold=True))
-            put(painter, QRectF(box.x(), box.y() + 3.0 * u, box.width(), 3.2 * u), CENTRE, label)
+            painter.fill(box, "key")
+            upper = QRectF(box.x(), box.y() + 0.5 * u, box.width(), 2.4 * u)
+            painter.write(upper, f"F{number}", 1.8, "accent", at=CENTRE)
+            lower = QRectF(box.x(), box.y() + 3.0 * u, box.width(), 3.2 * u)
+            painter.write(lower, label, 2.1, "text", at=CENTRE, margin=1.0)
             self.place(box, partial(self._press, number))
 
 
@@ -198,52 +154,44 @@ class FunctionKeys(Panel):
 class LampStrip(Panel):
     """A row of words. Lit is filled and dark is hollow, so that the difference needs no colour."""
 
+    lamps: Shown[tuple[Lamp, ...]] = Shown(())
+    mute: Shown[frozenset[str]] = Shown(
+        frozenset()
+    )  # keys that are text now, and not shown: the finger's alone
+
     def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
         self._press = press
-        self._lamps: tuple[Lamp, ...] = ()
-        self.mute: frozenset[str] = frozenset()  # keys that are text now: the finger's alone
 
-    def show_lamps(self, lamps: Sequence[Lamp], mute: frozenset[str] = frozenset()) -> None:
-        """The words from left to right; the keys that are ``mute`` are not shown."""
-        if (tuple(lamps), mute) != (self._lamps, self.mute):
-            self._lamps, self.mute = tuple(lamps), mute
-            self.update()
-
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         u = self.look.u
         gap = 0.6 * u
-        wide = (self.width() + gap) / max(1, len(self._lamps))
-        for number, lamp in enumerate(self._lamps):
+        wide = (self.width() + gap) / max(1, len(self.lamps))
+        for number, lamp in enumerate(self.lamps):
             box = QRectF(number * wide, 0, wide - gap, self.height())
             self._lamp(painter, box, lamp)
             if lamp.key:
                 self.place(box, partial(self._press, lamp.key))
 
-    def _lamp(self, painter: QPainter, box: QRectF, lamp: Lamp) -> None:
+    def _lamp(self, painter: Painter, box: QRectF, lamp: Lamp) -> None:
         look, u = self.look, self.look.u
         lit = "pause" if lamp.warn else "lit"
-        line = look.pen(lit if lamp.lit else "frame", 0.14)
-        inset = line.widthF() / 2
-        painter.setPen(line)
-        painter.setBrush(look.colour(lit) if lamp.lit else look.colour("panel"))
-        painter.drawRect(box.adjusted(inset, inset, -inset, -inset))
-        ink = look.colour(("on_state" if lamp.warn else "on_lit") if lamp.lit else "soft")
-        painter.setBrush(Qt.BrushStyle.NoBrush)
+        line = lit if lamp.lit else "frame"
+        inset = look.pen(line, 0.14).widthF() / 2
+        painter.box(box.adjusted(inset, inset, -inset, -inset), line, 0.14, lit if lamp.lit else "panel")
+        ink = ("on_state" if lamp.warn else "on_lit") if lamp.lit else "soft"
         room = box.adjusted(0.5 * u, 0.5 * u, -0.5 * u, -0.5 * u)
         if lamp.key and lamp.key not in self.mute:
             cap = QRectF(room.x() + 0.1 * u, room.center().y() - 1.5 * u, 2.6 * u, 3.0 * u)
-            painter.setPen(ink)
-            painter.setFont(look.font(2.2, bold=True))
+            painter.setPen(look.colour(ink))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRect(cap)
-            put(painter, cap, CENTRE, lamp.key)
+            painter.write(cap, lamp.key, 2.2, ink, at=CENTRE)
             room.setLeft(cap.right() + 0.4 * u)
-        painter.setPen(ink)
         words = tr(lamp.word).split(" ", 1)
-        high = room.height() / 2 if len(words) > 1 else room.height()
+        room.setHeight(room.height() / len(words))
         for number, word in enumerate(words):
-            painter.setFont(look.fit(word, 1.75, room.width(), bold=True))
-            put(painter, QRectF(room.x(), room.y() + number * high, room.width(), high), CENTRE, word)
+            painter.write(room.translated(0, number * room.height()), word, 1.75, ink, at=CENTRE)
 
 
 # --- notices that stay --------------------------------------------------------------------------------
@@ -264,10 +212,11 @@ class NoticeRow:
 class NoticeRows(Panel):
     """Filled in the colour of what waits for an operator; a finger on a key presses it."""
 
+    rows: Shown[tuple[NoticeRow, ...]] = Shown(())
+
     def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
         self._press = press
-        self.rows: tuple[NoticeRow, ...] = ()
         self._stand_for = 0
 
     @property
@@ -285,39 +234,27 @@ class NoticeRows(Panel):
         self._stand_for = len(self.rows)
         return self.high
 
-    def show_rows(self, rows: Sequence[NoticeRow]) -> None:
-        """Show these notices in the place of those before."""
-        before, self.rows = self.rows, tuple(rows)
-        if before != self.rows:
-            self.update()
-
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         high = self.height() / max(1, len(self.rows))
         for number, row in enumerate(self.rows):
             self._row(painter, QRectF(0, number * high, self.width(), high - 2), row)
 
-    def _row(self, painter: QPainter, box: QRectF, row: NoticeRow) -> None:
-        look, u = self.look, self.look.u
-        painter.fillRect(box, look.colour("pause"))
-        painter.setPen(look.colour("on_state"))
+    def _row(self, painter: Painter, box: QRectF, row: NoticeRow) -> None:
+        u = self.look.u
+        painter.fill(box, "pause")
         wide = box.width() - len(row.keys) * NOTICE_KEY * u - 2.4 * u
         upper = QRectF(box.x() + 1.2 * u, box.y(), wide, box.height() * (0.52 if row.figures else 1.0))
-        painter.setFont(look.fit(row.text, 2.0, wide, bold=True))
-        put_raw(painter, upper, LEFT, row.text)
+        painter.write(upper, row.text, 2.0, "on_state", raw=True)
         if row.figures:
-            painter.setFont(look.fit(row.figures, 1.7, wide))
-            put_raw(painter, upper.translated(0, upper.height()), LEFT, row.figures)
+            below = upper.translated(0, upper.height())
+            painter.write(below, row.figures, 1.7, "on_state", bold=False, raw=True)
         for number, (name, label) in enumerate(row.keys):
             x = box.right() - (len(row.keys) - number) * NOTICE_KEY * u
             self._key(painter, QRectF(x, box.y(), NOTICE_KEY * u - 0.6 * u, box.height()), name, label)
 
-    def _key(self, painter: QPainter, box: QRectF, name: str, label: str) -> None:
-        look, u = self.look, self.look.u
-        painter.fillRect(box, look.colour("key"))
-        painter.setPen(look.colour("accent"))
-        painter.setFont(look.font(1.8, bold=True))
-        put(painter, QRectF(box.x() + 0.8 * u, box.y(), 3.2 * u, box.height()), LEFT, name)
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.fit(tr(label), 1.8, box.width() - 4.4 * u, bold=True))
-        put(painter, box.adjusted(3.8 * u, 0, -0.4 * u, 0), CENTRE, label)
+    def _key(self, painter: Painter, box: QRectF, name: str, label: str) -> None:
+        u = self.look.u
+        painter.fill(box, "key")
+        painter.write(QRectF(box.x() + 0.8 * u, box.y(), 3.2 * u, box.height()), name, 1.8, "accent")
+        painter.write(box.adjusted(3.8 * u, 0, -0.4 * u, 0), label, 1.8, "text", at=CENTRE, margin=0.2)
         self.place(box, partial(self._press, name))

@@ -94,7 +94,7 @@ class Frame(QWidget):
     def _front(self) -> None:
         page = self.page
         self.desk.starts_here, self.desk.field_open = page.STARTS, page.has_field
-        self.keys.show_labels(page.labels())
+        self.keys.labels = page.labels()
         self._lay_out()
         self.log.hide()
         self.notice.stackUnder(self.log)
@@ -208,15 +208,14 @@ class Frame(QWidget):
     def refresh(self) -> None:
         """Take one snapshot and show it everywhere."""
         snapshot, view, loaded = self.desk.look()
-        self.notices.show_rows(self._notices_of(snapshot, loaded, here=self.page is self.automatic))
+        self.notices.rows = self._notices_of(snapshot, loaded, here=self.page is self.automatic)
         by_hand = self._by_hand(snapshot)
         if self._dock_moved or (self.notices.other_room and not by_hand):
             self._lay_out()
         self._show_bars(snapshot, view, loaded)
         lamps = self._lamps_of(snapshot, view)
-        self.strip.show_lamps(
-            lamps, frozenset(lamp.key for lamp in lamps if self.has_field() or self.is_text(lamp.key))
-        )
+        mute = frozenset(lamp.key for lamp in lamps if self.has_field() or self.is_text(lamp.key))
+        self.strip.lamps, self.strip.mute = lamps, mute
         if self.page is self.automatic:
             self._show_readouts(snapshot, view, loaded)
             self.notice.show_notice(view.message, self.desk.start_words + " TO GO ON", view.alarms)
@@ -228,7 +227,7 @@ class Frame(QWidget):
         if self.dock is not None:
             self.dock.show_station(snapshot)
         self.page.refresh(snapshot, view, loaded)
-        self.keys.show_labels(self.page.labels())
+        self.keys.labels = self.page.labels()
 
     def is_text(self, key: str) -> bool:
         """Whether a character goes to an entry now: the page's, or a field that has the keyboard."""
@@ -245,7 +244,7 @@ class Frame(QWidget):
     def _show_bars(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
         desk = self.desk
         name = view.program or loaded.name
-        self.title.show_page(self.page.NAME)
+        self.title.page = self.page.NAME
         self.title.show_state(name, view.state, view.tone, desk.machine, desk.time_of_day())
         text = self.page.asks() or desk.prompt(snapshot, loaded, self.page.prompt())
         reason = prompt_line.reason(view) or prompt_line.remedy(loaded, text)
@@ -253,11 +252,9 @@ class Frame(QWidget):
 
     def _show_readouts(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
         """The figures of this instant, large."""
-        self.position.show_position(view.position)
-        self.feed.show_value(view.feed)
-        self.spindle.show_value(view.spindle)
-        self.tool.show_value((view.tool, view.secondary))
-        self.times.show_value(self._times_of(snapshot, view, loaded))
+        self.position.view, self.feed.value, self.spindle.value = view.position, view.feed, view.spindle
+        self.tool.value = (view.tool, view.secondary)
+        self.times.value = self._times_of(snapshot, view, loaded)
 
     def _times_of(
         self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.screen.look import CENTRE, LEFT, Look, put
-from app.screen.panel import Panel
+from app.screen.look import CENTRE, LEFT, Look, Painter
+from app.screen.panel import Panel, Shown
 from app.searchto.searchto_plan import StateRow
 
 DIFFERS = "≠"
@@ -43,20 +42,15 @@ class StateShown:
 
 
 class StatePanel(Panel):
-    """Draws from what it was shown last, and only when that has changed."""
+    """The rows or the refusal of this instant."""
+
+    shown = Shown(StateShown())
 
     def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget) -> None:
         super().__init__(look, parent)
         self._press = press
-        self.shown = StateShown()
 
-    def show_state(self, shown: StateShown) -> None:
-        """The rows or the refusal of this instant."""
-        if shown != self.shown:
-            self.shown = shown
-            self.update()
-
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         shown = self.shown
         self.frame(painter, shown.title, "alarm" if shown.why else "frame", 0.3 if shown.why else 0.16)
         if shown.why:
@@ -68,23 +62,17 @@ class StatePanel(Panel):
                 room.adjust(0, 0, 0, -(_PASSES + 0.6) * self.look.u)
             self._table(painter, room)
 
-    def _passes(self, painter: QPainter, room: QRectF) -> None:
+    def _passes(self, painter: Painter, room: QRectF) -> None:
         """Which pass it is, and a place for a finger on either side of it."""
-        look, wide = self.look, room.height() * 2
+        wide = room.height() * 2
         sides = ((room.x(), "◀", PASS_BEFORE), (room.right() - wide, "▶", PASS_AFTER))
         for left, sign, key in sides:
             box = QRectF(left, room.y(), wide, room.height())
-            painter.fillRect(box, look.colour("key"))
-            painter.setPen(look.colour("accent"))
-            painter.setFont(look.font(2.4, bold=True))
-            put(painter, box, CENTRE, sign)
-            self.place(box, partial(self._press, key))
+            self.key(painter, box, sign, 2.4, partial(self._press, key), ink="accent")
         words = room.adjusted(wide, 0, -wide, 0)
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.fit(self.shown.passes, 2.0, words.width(), bold=True))
-        put(painter, words, CENTRE, self.shown.passes)
+        painter.write(words, self.shown.passes, 2.0, "text", at=CENTRE)
 
-    def _table(self, painter: QPainter, room: QRectF) -> None:
+    def _table(self, painter: Painter, room: QRectF) -> None:
         u = self.look.u
         high = min(2.7 * u, room.height() / (len(self.shown.rows) + 1))
         size = min(1.9, high / u * 0.78)
@@ -93,27 +81,21 @@ class StatePanel(Panel):
             box = QRectF(room.x(), room.y() + number * high, room.width(), high)
             self._row(painter, box, row, size, head=number == 0)
 
-    def _row(self, painter: QPainter, box: QRectF, row: StateRow, size: float, *, head: bool) -> None:
-        look, u = self.look, self.look.u
+    def _row(self, painter: Painter, box: QRectF, row: StateRow, size: float, *, head: bool) -> None:
+        u = self.look.u
         label, sign = _LABEL * box.width(), _SIGN * box.width()
         differs = row.differs and not head
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.fit(row.label, size, label - u))
-        put(painter, QRectF(box.x(), box.y(), label - u, box.height()), LEFT, row.label)
+        painter.write(QRectF(box.x(), box.y(), label - u, box.height()), row.label, size, "soft", bold=False)
         wanted = QRectF(box.x() + label, box.y(), sign - label - u, box.height())
         now = box.adjusted(sign + 2.4 * u, 0, 0, 0)
-        painter.setPen(look.colour("accent" if head else "mark" if differs else "text"))
-        painter.setFont(look.fit(row.wanted, size, wanted.width(), bold=True))
-        put(painter, wanted, LEFT, row.wanted)
-        painter.setPen(look.colour("accent" if head else "text" if differs else "soft"))
-        painter.setFont(look.fit(row.now, size, now.width(), bold=head or differs))
-        put(painter, now, LEFT, row.now)
+        painter.write(wanted, row.wanted, size, "accent" if head else "mark" if differs else "text")
+        ink = "accent" if head else "text" if differs else "soft"
+        painter.write(now, row.now, size, ink, bold=head or differs)
         if differs:
-            painter.setPen(look.colour("mark"))
-            painter.setFont(look.font(size + 0.3, bold=True))
-            put(painter, QRectF(box.x() + sign, box.y(), 2 * u, box.height()), CENTRE, DIFFERS)
+            between = QRectF(box.x() + sign, box.y(), 2 * u, box.height())
+            painter.write(between, DIFFERS, size + 0.3, "mark", at=CENTRE)
 
-    def _refusal(self, painter: QPainter) -> None:
+    def _refusal(self, painter: Painter) -> None:
         look, u, room = self.look, self.look.u, self.inside()
         painter.setPen(look.colour("alarm"))
         painter.setFont(look.fit(self.shown.why, 2.2, 2 * room.width(), bold=True))
@@ -123,18 +105,14 @@ class StatePanel(Panel):
             box = QRectF(room.x(), room.y() + (11 + 9.4 * number) * u, room.width(), 8.4 * u)
             self._near(painter, box, near)
 
-    def _near(self, painter: QPainter, box: QRectF, near: NearestGood) -> None:
-        look, u = self.look, self.look.u
-        painter.fillRect(box, look.colour("key"))
-        painter.setPen(look.colour("accent" if near.line else "soft"))
-        painter.setFont(look.font(2.4, bold=True))
-        put(painter, QRectF(box.x(), box.y(), 5 * u, box.height()), CENTRE, near.key)
+    def _near(self, painter: Painter, box: QRectF, near: NearestGood) -> None:
+        u = self.look.u
+        painter.fill(box, "key")
+        ink = "accent" if near.line else "soft"
+        painter.write(QRectF(box.x(), box.y(), 5 * u, box.height()), near.key, 2.4, ink, at=CENTRE)
         text = box.adjusted(5.6 * u, 0.6 * u, -u, -0.6 * u)
-        half = text.height() / 2
-        painter.setFont(look.fit(near.label, 2.1, text.width(), bold=True))
-        put(painter, QRectF(text.x(), text.y(), text.width(), half), LEFT, near.label)
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.font(2.0))
-        put(painter, QRectF(text.x(), text.y() + half, text.width(), half), LEFT, near.text)
+        text.setHeight(text.height() / 2)
+        painter.write(text, near.label, 2.1, ink)
+        painter.write(text.translated(0, text.height()), near.text, 2.0, "text", bold=False, fit=False)
         if near.line:
             self.place(box, partial(self._press, near.key))

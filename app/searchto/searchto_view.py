@@ -7,7 +7,7 @@ from functools import partial
 from textwrap import wrap
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QPainter, QResizeEvent
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
@@ -17,9 +17,9 @@ from app.path.path_aspects import Tip, tip_of
 from app.path.path_view import PathView
 from app.screen import page_table
 from app.screen.entry_panel import draw_entry
-from app.screen.look import LEFT, Look, put
+from app.screen.look import Painter
 from app.screen.page_base import Host, KeyActions, Page
-from app.screen.panel import Panel
+from app.screen.panel import Panel, Shown
 from app.screen.program_listing import Listing
 from app.searchto.searchto_model import SearchtoModel, SearchtoStage
 from app.searchto.searchto_plan import Plan, WayOut
@@ -33,29 +33,16 @@ class SearchEntryPanel(Panel):
     """The question and the answer as far as it is typed."""
 
     ground = "panel"
+    text = Shown("")
 
-    def __init__(self, look: Look, parent: QWidget) -> None:
-        super().__init__(look, parent)
-        self.text = ""
-
-    def show_text(self, text: str) -> None:
-        """Show what is typed to find a line."""
-        if text != self.text:
-            self.text = text
-            self.update()
-
-    def draw(self, painter: QPainter) -> None:
-        look, u = self.look, self.look.u
+    def draw(self, painter: Painter) -> None:
+        u = self.look.u
         room = self.area().adjusted(1.2 * u, 0.4 * u, -0.8 * u, -0.4 * u)
-        painter.setPen(look.colour("text"))
         question = tr("LINE OR TEXT?")
-        painter.setFont(look.fit(question, 1.9, 14 * u, bold=True))
-        put(painter, QRectF(room.x(), room.y(), 14 * u, room.height()), LEFT, question)
+        painter.write(QRectF(room.x(), room.y(), 14 * u, room.height()), question, 1.9, "text")
         box = room.adjusted(14.5 * u, 0, 0, 0)
-        painter.setPen(look.pen("accent", 0.2))
-        painter.setBrush(look.colour("ground"))
-        painter.drawRect(box)
-        draw_entry(painter, look, box.adjusted(0.8 * u, 0, -0.8 * u, 0), self.text)
+        painter.box(box, "accent", 0.2, "ground")
+        draw_entry(painter, box.adjusted(0.8 * u, 0, -0.8 * u, 0), self.text)
 
 
 # --- what will start ----------------------------------------------------------------------------------
@@ -68,35 +55,29 @@ ACROSS = 40  # characters of a line of trouble
 class StartsPanel(Panel):
     """``choices`` are told with their keys; ``trouble`` keeps it from starting, or has to be looked at."""
 
-    def __init__(self, look: Look, parent: QWidget) -> None:
-        super().__init__(look, parent)
-        self.starts: tuple[str, ...] = ()
-        self.choices: tuple[str, ...] = ()
-        self.trouble = ""
-        self.confirmed = False
+    starts: Shown[tuple[str, ...]] = Shown(())
+    choices: Shown[tuple[str, ...]] = Shown(())
+    trouble = Shown("")
+    confirmed = Shown(False)
 
     def show_starts(
         self, starts: Sequence[str], choices: Sequence[str], trouble: str, confirmed: bool
     ) -> None:
         """The list of this instant."""
-        shown = (tuple(starts), tuple(choices), trouble, confirmed)
-        if shown != (self.starts, self.choices, self.trouble, self.confirmed):
-            self.starts, self.choices, self.trouble, self.confirmed = shown
-            self.update()
+        self.starts, self.choices = tuple(starts), tuple(choices)
+        self.trouble, self.confirmed = trouble, confirmed
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         title = tr("CONFIRMED: CYCLE START BEGINS IT") if self.confirmed else tr("WILL START")
         self.frame(painter, title, "lit" if self.confirmed else "frame", 0.3 if self.confirmed else 0.16)
-        look, u, room = self.look, self.look.u, self.inside()
+        u, room = self.look.u, self.inside()
         lines = [(text, "text", True) for text in self.starts]
         lines += [(text, "soft", False) for text in self.choices]
         lines += [(text, "alarm", True) for text in wrap(self.trouble, ACROSS)]
         high = min(ROW * u, room.height() / max(1, len(lines)))
         for number, (text, colour, bold) in enumerate(lines):
             row = QRectF(room.x(), room.y() + number * high, room.width(), high)
-            painter.setPen(look.colour(colour))
-            painter.setFont(look.fit(text, min(1.9, high / u * 0.75), row.width(), bold=bold))
-            put(painter, row, LEFT, text)
+            painter.write(row, text, min(1.9, high / u * 0.75), colour, bold=bold)
 
 
 LIST, STATE, ASKED, STARTS = 0.26, 0.46, 4.6, 19.0  # shares of the width; units of height
@@ -210,9 +191,9 @@ class SearchtoPage(Page):
             self._loaded = loaded
             self.listing.show_source(model.cursor.lines, {})
             self.path.show_picture(loaded.picture)
-        self.asked.show_text(model.cursor.text)
+        self.asked.text = model.cursor.text
         self.listing.show_run(model.cursor.line, "", "")
-        self.state.show_state(self._shown())
+        self.state.shown = self._shown()
         self._show_plan()
         self.path.show_tip(self._tip(snapshot))
         self.path.advance()

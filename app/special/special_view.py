@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QPainter, QResizeEvent
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
@@ -14,9 +14,9 @@ from app.desk.program_loading import Loaded
 from app.screen import page_table
 from app.screen.entry_panel import KeyPad
 from app.screen.letter_keys import LetterPad
-from app.screen.look import CENTRE, LEFT, Look, put
+from app.screen.look import CENTRE, Look, Painter
 from app.screen.page_base import Host, KeyActions
-from app.screen.panel import Panel
+from app.screen.panel import Panel, Shown
 from app.screen.sheet_panel import ListPage, SheetPanel
 from app.special.special_functions import SpecialFunctions
 from core.executor.snapshot import Snapshot
@@ -31,22 +31,15 @@ class ItemList(Panel):
     """The one that is shown is filled; it has a bar while the keys are its own."""
 
     title = "SPECIAL FUNCTIONS"
+    mark: Shown[object] = Shown(None)  # where it stands: redrawn when it has moved
 
     def __init__(
         self, look: Look, model: SpecialFunctions, enter: Callable[[int], None], parent: QWidget
     ) -> None:
         super().__init__(look, parent)
         self.model, self._enter = model, enter
-        self._shown: tuple[int, bool] | None = None
 
-    def show_items(self) -> None:
-        """Redraw when the mark has moved."""
-        shown = (self.model.at, self.model.inside)
-        if shown != self._shown:
-            self._shown = shown
-            self.update()
-
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         room, functions = self.inside(), self.model.functions
         high = min(room.height() / max(1, len(functions)), ROW * self.look.u)
         for number, function in enumerate(functions):
@@ -54,24 +47,19 @@ class ItemList(Panel):
             self._item(painter, box, number, function.name, function.use)
             self.place(box, partial(self._enter, number))
 
-    def _item(self, painter: QPainter, box: QRectF, number: int, name: str, use: str) -> None:
-        look, u = self.look, self.look.u
+    def _item(self, painter: Painter, box: QRectF, number: int, name: str, use: str) -> None:
+        u = self.look.u
         here = number == self.model.at
-        painter.fillRect(box, look.colour("here" if here else "key"))
+        painter.fill(box, "here" if here else "key")
         if here:
             wide = (1.0 if self.model.inside else 0.4) * u
-            painter.fillRect(QRectF(box.x(), box.y(), wide, box.height()), look.colour("lit"))
-        painter.setPen(look.colour("accent"))
-        painter.setFont(look.font(2.6, bold=True))
-        put(painter, QRectF(box.x() + u, box.y(), 3.6 * u, box.height()), CENTRE, str(number + 1))
+            painter.fill(QRectF(box.x(), box.y(), wide, box.height()), "lit")
+        figure = QRectF(box.x() + u, box.y(), 3.6 * u, box.height())
+        painter.write(figure, str(number + 1), 2.6, "accent", at=CENTRE)
         text = box.adjusted(5.2 * u, 0.1 * box.height(), -0.6 * u, -0.1 * box.height())
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.fit(name, 2.0, text.width(), bold=True))
-        put(painter, QRectF(text.x(), text.y(), text.width(), 0.55 * text.height()), LEFT, name)
-        painter.setPen(look.colour("text" if here else "soft"))
-        painter.setFont(look.fit(use, 1.6, text.width()))
+        painter.write(QRectF(text.x(), text.y(), text.width(), 0.55 * text.height()), name, 2.0, "text")
         below = QRectF(text.x(), text.y() + 0.55 * text.height(), text.width(), 0.45 * text.height())
-        put(painter, below, LEFT, use)
+        painter.write(below, use, 1.6, "text" if here else "soft", bold=False)
 
 
 LIST, PAD = 34.0, 28.4  # units: widths
@@ -127,7 +115,7 @@ class SpecialPage(ListPage):
         self.model.look()
         shown = self.model.shown
         sheet = shown.sheet(snapshot)
-        self.items.show_items()
+        self.items.mark = (self.model.at, self.model.inside)
         self.table.show_sheet(sheet)
         letters = bool(sheet.question) and shown.takes("a")
         figures = bool(sheet.question) and shown.takes("1") and not letters

@@ -10,8 +10,8 @@ from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPen, QPolygonF, QWheel
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.screen.look import CENTRE, LEFT, Look, put, put_raw
-from app.screen.panel import Panel
+from app.screen.look import CENTRE, Look, Painter, put_raw
+from app.screen.panel import Panel, Shown
 
 if TYPE_CHECKING:
     from app.working_plane.plane_drawing import Camera, Face, FloatArray, Stroke
@@ -45,13 +45,13 @@ class WorkingPlaneView(Panel):
     """Shows a scene at an instant; the next aspect comes by its button, its key or a tap on its name."""
 
     title = "TABLE AND PLANE"
+    words = Shown("")
+    _instant: Shown[Instant | None] = Shown(None)
+    _camera: Shown[Camera | None] = Shown(None)
 
     def __init__(self, look: Look, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
-        self.words = ""
         self._scene: Scene | None = None
-        self._instant: Instant | None = None
-        self._camera: Camera | None = None
         self._held: QPointF | None = None
         self.hide()
 
@@ -79,9 +79,7 @@ class WorkingPlaneView(Panel):
 
     def show_instant(self, instant: Instant, words: str) -> None:
         """Where the machine stands, and what the plane is called."""
-        if (instant, words) != (self._instant, self.words):
-            self._instant, self.words = instant, words
-            self.update()
+        self._instant, self.words = instant, words
 
     # --- looking around ------------------------------------------------------------------------------
 
@@ -104,7 +102,6 @@ class WorkingPlaneView(Panel):
     def _look(self, camera: Camera | None) -> None:
         if camera is not None:
             self._camera = camera
-            self.update()
 
     # --- Qt's calls ----------------------------------------------------------------------------------
 
@@ -133,7 +130,7 @@ class WorkingPlaneView(Panel):
 
     # --- drawing -------------------------------------------------------------------------------------
 
-    def draw(self, painter: QPainter) -> None:
+    def draw(self, painter: Painter) -> None:
         room = self.inside()
         if self._scene is None or self._instant is None or self._camera is None:
             return
@@ -150,7 +147,7 @@ class WorkingPlaneView(Panel):
         painter.restore()
         self._words(painter, room)
 
-    def _face(self, painter: QPainter, face: Face) -> None:
+    def _face(self, painter: Painter, face: Face) -> None:
         fill, share, edge = _FILLS[face.role]
         colour = QColor(self.look.colour(fill))
         colour.setAlpha(share)
@@ -158,7 +155,7 @@ class WorkingPlaneView(Panel):
         painter.setPen(self.look.pen(edge, 0.10))
         painter.drawPolygon(_polygon(face.points))
 
-    def _stroke(self, painter: QPainter, stroke: Stroke) -> None:
+    def _stroke(self, painter: Painter, stroke: Stroke) -> None:
         colour, width, dashed = _STROKES[stroke.role]
         pen = QPen(self.look.pen(colour, width))
         fine = len(stroke.points) <= SMOOTH  # a wide, smoothed pen takes a tenth of a second for the others
@@ -176,22 +173,13 @@ class WorkingPlaneView(Panel):
             painter.setFont(self.look.font(1.6, bold=True))
             put_raw(painter, QRectF(x - 2 * u, y - 1.4 * u, 4 * u, 2.2 * u), CENTRE, stroke.name)
 
-    def _words(self, painter: QPainter, room: QRectF) -> None:
-        look, u = self.look, self.look.u
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.fit(self.words, 1.7, room.width(), bold=True))
-        put_raw(
-            painter,
-            QRectF(room.x(), room.bottom() - 2.4 * u, room.width(), 2.4 * u),
-            LEFT,
-            self.words,
-        )
+    def _words(self, painter: Painter, room: QRectF) -> None:
+        u = self.look.u
+        foot = room.adjusted(0, room.height() - 2.4 * u, 0, 0)
+        painter.write(foot, self.words, 1.7, "text", raw=True)
         assert self._camera is not None
         button = QRectF(room.right() - 8 * u, room.top(), 8 * u, 3.4 * u)
-        painter.fillRect(button, look.colour("key"))
-        painter.setFont(look.font(1.6, bold=True))
-        put(painter, button, CENTRE, tr(self._camera.shown.name))
-        self.place(button, self.next_view)
+        self.key(painter, button, tr(self._camera.shown.name), 1.6, self.next_view)
 
 
 def _polygon(points: FloatArray) -> QPolygonF:

@@ -38,7 +38,7 @@ def test_an_interrupted_job_and_a_full_disk_stand_on_every_page(hands: Hands, pa
     ]
     assert rows.rows[1].figures.endswith("20 parts")
     assert not rows.geometry().intersects(hands.frame.page.geometry())
-    assert "NOT KEPT" in [lamp.word for lamp in hands.frame.strip._lamps]
+    assert "NOT KEPT" in [lamp.word for lamp in hands.frame.strip.lamps]
     hands.machine.now = replace(hands.machine.now, interrupted=None)
     hands.desk.not_kept = str
     hands.window.refresh()
@@ -58,7 +58,7 @@ def test_no_target_slips_away_under_a_finger_that_jogs(hands: Hands) -> None:
     time[0] += 1.0
     hands.window.refresh()
     assert hands.frame.page.geometry() == stands
-    assert "NOT KEPT" in [lamp.word for lamp in hands.frame.strip._lamps]  # the lamp says it at once
+    assert "NOT KEPT" in [lamp.word for lamp in hands.frame.strip.lamps]  # the lamp says it at once
     time[0] += 3.0
     hands.window.refresh()
     assert hands.frame.page.geometry() != stands

@@ -313,10 +313,10 @@ def test_a_run_that_will_be_no_part_is_not_the_last_of_the_target(hands: Hands, 
 
 
 def test_no_count_is_switched_by_key_and_finger_and_lights_a_lamp(hands: Hands) -> None:
-    assert not any(lamp.word == "NO COUNT" for lamp in hands.frame.strip._lamps)
+    assert not any(lamp.word == "NO COUNT" for lamp in hands.frame.strip.lamps)
     hands.key(Key.Key_P)
     assert hands.machine.now.no_count
-    hands.sees(lambda: any(lamp.word == "NO COUNT" and lamp.lit for lamp in hands.frame.strip._lamps))
+    hands.sees(lambda: any(lamp.word == "NO COUNT" and lamp.lit for lamp in hands.frame.strip.lamps))
     open_function(hands, 2)
     hands.key(Key.Key_F5)
     assert not hands.machine.now.no_count
