@@ -49,7 +49,7 @@ ROOMS = (
 # Scripts and tables that no screen shows, and what the console is told where there is no screen.
 APART = frozenset(
     {
-        *("pictures.py", "code_table.py", "language_page.py", "keys.py", "run_without_screen.py"),
+        *("code_table.py", "language_page.py", "keys.py", "run_without_screen.py"),
         "screen/display.py",
     }
 )

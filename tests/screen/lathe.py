@@ -10,9 +10,9 @@ from PySide6.QtTest import QTest
 
 from app.mdi.mdi_model import MdiModel
 from app.screen.main_window import MainWindow
-from app.screen.pictures import Stage
 from app.screen.window_frame import Frame
 from core.executor.snapshot import Snapshot, State
+from tests.screen.pictures import Stage
 
 Key = Qt.Key
 LIMIT = 20.0

@@ -12,10 +12,10 @@ from app.screen import page_table
 from app.screen.letter_keys import LINES
 from app.screen.look import Look
 from app.screen.main_window import MainWindow
-from app.screen.pictures import Stage
 from app.screen.theme import DARK
 from core.executor.snapshot import Starts, State
 from tests.screen.lathe import Key, Operator
+from tests.screen.pictures import Stage
 from tests.screen.yes import yes
 
 INCH = 25.4

@@ -10,10 +10,10 @@ from PySide6.QtTest import QTest
 from app.desk.desk import Desk
 from app.screen.look import Look
 from app.screen.main_window import MainWindow
-from app.screen.pictures import Stage
 from app.screen.theme import DARK
 from core.executor.snapshot import State
 from tests.screen.hands import Key
+from tests.screen.pictures import Stage
 from tests.screen.yes import twist_out
 
 

@@ -11,12 +11,12 @@ from app.desk.prompt_line import HOW_TO_HOLD
 from app.screen import page_table
 from app.screen.look import Look
 from app.screen.main_window import MainWindow
-from app.screen.pictures import Stage as Lathe
 from app.screen.theme import DARK
 from app.searchto.searchto_model import SearchtoModel, SearchtoStage
 from app.searchto.searchto_view import SearchtoPage
 from core.executor.snapshot import Starts, State
 from tests.screen.lathe import Key, Operator
+from tests.screen.pictures import Stage as Lathe
 from tests.screen.yes import twist_out
 
 

@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtGui import QFontInfo, QFontMetricsF, QRawFont
 
 from app.screen.look import LEAST, Look, load_fonts
-from app.screen.theme import DARK, PALETTES, Palette, contrast
+from app.screen.theme import DARK, PALETTES, Palette
 
 TEXT = [
     *((ink, ground) for ink in ("text", "soft", "accent") for ground in ("ground", "panel", "key")),
@@ -32,6 +32,21 @@ SHAPES = [
     ("frame", "ground"),
     ("estop", "estop_plate"),
 ]
+
+
+def luminance(colour: str) -> float:
+    """Relative luminance after WCAG 2.2, 0…1."""
+    linear = []
+    for at in (1, 3, 5):
+        share = int(colour[at : at + 2], 16) / 255
+        linear.append(share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4)
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(one: str, other: str) -> float:
+    """Contrast ratio after WCAG 2.2, 1…21."""
+    low, high = sorted((luminance(one), luminance(other)))
+    return (high + 0.05) / (low + 0.05)
 
 
 def test_known_ratios() -> None:

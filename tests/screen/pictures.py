@@ -1,7 +1,6 @@
-"""Pictures of the pages, made without a display: ``python -m app.screen.pictures OUT``.
+"""Pictures of the pages, made without a display: ``python -m tests.screen.pictures OUT``.
 
-A sample program stands ready and then runs on the simulated lathe, on a clock that this script moves. What is
-pictured stands in ``app.screen.scenes``.
+A sample program stands ready and then runs on the simulated lathe, on a clock that this script moves.
 """
 
 from __future__ import annotations
@@ -14,17 +13,25 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
 
+import numpy as np
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QImage
+from PySide6.QtWidgets import QApplication
+
+from app.compose.journal import Journal
+from app.compose.screen_desk import desk_and_executor, step_clock
+from app.compose.stored_offsets import read_offsets
+from app.compose.workshop import samples
+from app.desk.desk import Desk
+from app.editor.editor_view import EditorPage
+from app.offsets.offset_book import OffsetBook
 from app.screen import page_table
-
-if TYPE_CHECKING:
-    from PySide6.QtGui import QImage
-
-    from app.compose.journal import Journal
-    from app.desk.desk import Desk
-    from app.screen.main_window import MainWindow
-    from core.store.store import Store
+from app.screen.look import Look, dress, load_fonts
+from app.screen.main_window import MainWindow
+from app.screen.theme import PALETTES
+from core.executor.snapshot import State
+from core.store.store import Store
 
 SIZES = ((1024, 600), (1920, 1080), (3840, 2160))
 THEMES = ("dark", "light")
@@ -47,12 +54,6 @@ class Stage:
     """One desk on the simulated lathe, moved by hand."""
 
     def __init__(self, journal: Journal | None = None, machine: str | None = None) -> None:
-        from app.compose.screen_desk import desk_and_executor, step_clock
-        from app.compose.stored_offsets import read_offsets
-        from app.compose.workshop import samples
-        from app.offsets.offset_book import OffsetBook
-        from core.store.store import Store
-
         self.clock = step_clock()
         self.desk, self._executor = desk_and_executor(
             machine, lambda: read_offsets(samples() / "offsets.toml"), self.clock, journal
@@ -69,9 +70,6 @@ class Stage:
 
     def _fill(self, store: Store) -> None:
         """The offsets of the samples and some corrections."""
-        from app.compose.stored_offsets import read_offsets
-        from app.compose.workshop import samples
-
         for number, tool in read_offsets(samples() / "offsets.toml").tools.items():
             store.set_tool(number, "touched off", x=tool.x, z=tool.z, nose_radius=tool.nose_radius)
         for number, x, z, why in CORRECTIONS:
@@ -95,8 +93,6 @@ class Stage:
 
     def make_ready(self, program: str = PROGRAM) -> None:
         """Load a program, prove it and switch the drives on."""
-        from core.executor.snapshot import State
-
         desk = self.desk
         desk.choose(program)
         loaded = desk.session.settled(LOADING)
@@ -113,8 +109,6 @@ class Stage:
 
     def press_start(self) -> None:
         """Both palms, until something happens."""
-        from core.executor.snapshot import State
-
         desk = self.desk
         desk.look()  # what was changed since is read anew first
         desk.session.settled(LOADING)
@@ -128,7 +122,7 @@ class Stage:
 
 def main(argv: list[str] | None = None) -> int:
     """Write the pictures; the exit status."""
-    parser = argparse.ArgumentParser(prog="python -m app.screen.pictures", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m tests.screen.pictures", description=__doc__)
     parser.add_argument("out", metavar="OUT", type=Path, help="folder for the PNG files")
     parser.add_argument("--guide", action="store_true", help="the small dark ones of the guide only")
     args = parser.parse_args(argv)
@@ -144,10 +138,6 @@ def main(argv: list[str] | None = None) -> int:
 
 def _pictures(out: Path, sizes: tuple[tuple[int, int], ...], themes: tuple[str, ...]) -> Iterator[Path]:
     """First what a standing machine shows, then what a running one does."""
-    from PySide6.QtWidgets import QApplication
-
-    from app.compose.journal import Journal
-
     _app = QApplication.instance() or QApplication(sys.argv[:1])
     journal = Journal.at_home()
     stage = Stage(journal)
@@ -164,7 +154,6 @@ def _pictures(out: Path, sizes: tuple[tuple[int, int], ...], themes: tuple[str, 
 
 def _of_the_mill(out: Path, sizes: tuple[tuple[int, int], ...], themes: tuple[str, ...]) -> Iterator[Path]:
     """A tilted program, standing and caught in a cut of its second slope."""
-
     stage = Stage(machine=MILL)
     stage.make_ready(TILTED)
     yield from taken(stage.desk, out, False, sizes, themes, mill=True)
@@ -238,10 +227,6 @@ def taken(
     mill: bool = False,
 ) -> Iterator[Path]:
     """The scenes of a machine that runs or stands, at every size and in every theme."""
-    from app.screen.look import Look, dress, load_fonts
-    from app.screen.main_window import MainWindow
-    from app.screen.theme import PALETTES
-
     load_fonts()
     for theme in themes:
         dress(PALETTES[theme])
@@ -281,8 +266,6 @@ def press(window: MainWindow, keys: str) -> None:
 
 
 def _to_line(window: MainWindow, line: int) -> None:
-    from app.editor.editor_view import EditorPage
-
     page = window.frame.page if window.frame is not None else None
     if line and isinstance(page, EditorPage):
         _settle(window, SETTLE)
@@ -290,8 +273,6 @@ def _to_line(window: MainWindow, line: int) -> None:
 
 
 def _settle(window: MainWindow, seconds: float) -> None:
-    from PySide6.QtWidgets import QApplication
-
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         QApplication.processEvents()
@@ -308,10 +289,6 @@ def _grab(window: MainWindow, path: Path) -> None:
 
 def _lean(image: QImage) -> QImage:
     """The same with its 256 most frequent colours: a third of the file, and no difference to be seen."""
-    import numpy as np
-    from PySide6.QtCore import Qt
-    from PySide6.QtGui import QImage
-
     image = image.convertToFormat(QImage.Format.Format_RGB32)
     pixels = np.frombuffer(image.constBits(), dtype=np.uint32)
     colours, counts = np.unique(pixels, return_counts=True)
