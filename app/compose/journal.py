@@ -8,6 +8,7 @@ from collections.abc import Callable, Collection
 from pathlib import Path
 
 from app.desk.data_folder import data_folder
+from app.desk.persistence import Persistence
 from app.offsets.offset_book import OffsetBook
 from app.programs.run_record import note_cut_off_runs
 from core.executor.interrupted_job import InterruptedJob, of_plain, plain
@@ -24,7 +25,7 @@ UNDER_WAY = "under_way"  # setting: what a power cut would leave interrupted
 AGAIN = 5.0  # s between two tries to open a store
 
 
-class Journal:
+class Journal(Persistence):
     """Writes by the store's own thread, so that neither executor nor screen ever waits for the disk.
 
     Without a store (``trouble`` says why) the machine runs all the same. What happens is held in memory, and

@@ -22,7 +22,7 @@ from app.compose.workshop import drawer, give_mdi, give_searchto, samples, works
 from app.desk.alarm_log import KEPT, KINDS
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
-from app.desk.persistence import NoPersistence
+from app.desk.persistence import Persistence
 from app.desk.program_folder import ProgramFile, ProgramFolders
 from app.desk.program_loading import LoadingSteps, ProgramLoader
 from app.desk.translation import tr
@@ -178,7 +178,7 @@ def _desk(
 ) -> Desk:
     """The desk with all its pages."""
     journal, say = events.journal, events.say
-    keep = journal or NoPersistence()
+    keep = journal or Persistence()
 
     def left() -> Modal:
         return executor.snapshot.modal

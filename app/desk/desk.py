@@ -69,14 +69,6 @@ class OwnStart(Protocol):
 A = TypeVar("A", bound=Attached)
 
 
-def _nothing() -> None:
-    """A desk without an executor of its own has nothing to close."""
-
-
-def _time_of_day() -> str:
-    return time.strftime("%H:%M:%S")
-
-
 @dataclass(slots=True)
 class Desk:
     """The model behind the Automatic page, and what every page shares.
@@ -94,14 +86,12 @@ class Desk:
     machine: str = ""
     lathe: Machine | None = None  # what the machine file says, for moves by hand
     simulated: bool = True
-    shut: Callable[[], None] = _nothing
+    shut: Callable[[], None] = field(default=lambda: None)  # what drives the machine
     waiting: Callable[[], str] = str  # what of it waits in memory, in words
     differs: Callable[[], str] = str  # how the file on the disk is not the program on the desk
-    not_kept: Callable[[], str] = (
-        str  # why events, parts and versions are not being kept; empty while they are
-    )
+    not_kept: Callable[[], str] = str  # why events, parts and versions are not being kept
     clock: Callable[[], float] = time.monotonic
-    time_of_day: Callable[[], str] = _time_of_day
+    time_of_day: Callable[[], str] = field(default=partial(time.strftime, "%H:%M:%S"))
     settings: SettingsBook = field(default_factory=SettingsBook)
     counter: PartCounter = field(default_factory=PartCounter)
     record: RunRecord = field(default_factory=RunRecord)

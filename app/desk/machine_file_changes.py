@@ -9,17 +9,13 @@ from app.desk.translation import tr
 from core.machine.machine_changes import Change
 
 
-def _forget() -> None:
-    """Nothing is kept here."""
-
-
 @dataclass(slots=True)
 class FileChanges:
     """``source`` is the file; ``keep`` remembers it as it is now. No changes: it is as it was accepted."""
 
     source: str = ""
     changes: Sequence[Change] = field(default_factory=tuple)
-    keep: Callable[[], None] = _forget
+    keep: Callable[[], None] = field(default=lambda: None)
 
     @property
     def barred(self) -> str:

@@ -20,11 +20,6 @@ if TYPE_CHECKING:
     from app.path.path_picture import Picture
 
 
-def _same(job: Job) -> Job:
-    """Where no offsets are kept nothing ever changes."""
-    return job
-
-
 class Phase(StrEnum):
     """How far loading has come."""
 
@@ -56,7 +51,7 @@ class LoadingSteps:
     make_job: Callable[[Source, bool], Job]  # text, block delete
     prove: Callable[[Job, Watch], Proved]
     draw: Callable[[Job, Watch], Picture]
-    renew_job: Callable[[Job], Job] = _same  # the same program with the offsets of now
+    renew_job: Callable[[Job], Job] = field(default=lambda job: job)  # the same with the offsets of now
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +106,7 @@ class ProgramLoader:
         with self.worker.lock:
             self.loads += 1
             self._now = Loaded(Phase.READING, path, block_delete)
-            self.worker.ask(partial(self._load, path, block_delete), _published, self._failed)
+            self.worker.ask(partial(self._load, path, block_delete), lambda _: None, self._failed)
 
     def adopt(self, loaded: Loaded) -> None:
         """The same program under other circumstances is the one on the desk now."""
@@ -154,10 +149,6 @@ class ProgramLoader:
 
     def _failed(self, why: str) -> None:
         self._now = replace(self._now, phase=Phase.UNREADABLE, trouble=why)
-
-
-def _published(_done: None) -> None:
-    """What was loaded has been published step by step."""
 
 
 def _keep_out_of_collections() -> None:

@@ -77,10 +77,6 @@ class RunningRenewal:
         self._told = True
         return ready.proof.errors[0] if ready.proof.errors else ""
 
-    def settled(self, timeout: float) -> None:
-        """Wait until the worker has done with it; for scripts and tests, never for the screen."""
-        self.worker.settle(timeout)
-
     def _renew(self, now: Loaded, old: Job, request: Request) -> Loaded:
         steps, watch = self.session.workshop, partial(self._go_on, request)
         job = steps.renew_job(old)

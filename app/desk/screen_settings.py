@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from enum import StrEnum
 
-from app.desk.persistence import NoPersistence, Persistence
+from app.desk.persistence import Persistence
 from core.store.store_errors import StoreError
 
 KEY = "screen"
@@ -48,7 +48,7 @@ CHOICES: Mapping[str, tuple[object, ...]] = {
 class SettingsBook:
     """The choices in force. A value that is kept but no choice any more is forgotten, not obeyed."""
 
-    persistence: Persistence = field(default_factory=NoPersistence)
+    persistence: Persistence = field(default_factory=Persistence)
     now: Settings = field(init=False)
 
     def __post_init__(self) -> None:

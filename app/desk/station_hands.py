@@ -114,14 +114,6 @@ OVERRIDE_MOST = 1.5
 LONGEST_TURN = 0.1  # seconds of turning at a time: a screen that was away does not catch up with a jump
 
 
-def _free() -> str:
-    return ""
-
-
-def _just_now() -> float:
-    return 0.0
-
-
 @dataclass(slots=True)
 class StationHands:
     """What is held and where the knobs stand. Without a station (a real machine has its own) nothing happens.
@@ -135,8 +127,8 @@ class StationHands:
     say: Callable[[str], None]
     clear: Callable[[], None]
     starting: Callable[[], None]
-    barred: Callable[[], str] = _free
-    ago: Callable[[], float] = _just_now  # s since the press that is handled now really happened
+    barred: Callable[[], str] = str
+    ago: Callable[[], float] = float  # s since the press that is handled now really happened
     palms: Palms = field(default_factory=Palms)
     estop_pressed: bool = False
     spindle_knob: Pot = field(default_factory=lambda: Pot(1.0))

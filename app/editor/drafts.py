@@ -24,7 +24,7 @@ class Drafts:
     archive: Archive
     trouble: str = ""  # why the last could not be kept
     _wanted: dict[str, str | None] = field(default_factory=dict)  # None: it is not needed any more
-    _worker: Latest = field(default_factory=lambda: Latest("editing-drafts"))
+    worker: Latest = field(default_factory=lambda: Latest("editing-drafts"))
 
     def look(self, document: Document, text: str) -> None:
         """This is in the editor now."""
@@ -38,7 +38,7 @@ class Drafts:
 
     def recover(self, document: Document, say: Callable[[str], None]) -> None:
         """A draft that was left for it goes into the history, before anything is written for it now."""
-        self._worker.queue(lambda: self._recovered(document), say, say)
+        self.worker.queue(lambda: self._recovered(document), say, say)
 
     def _recovered(self, document: Document) -> str:
         place = self._place(document.name)
@@ -60,25 +60,21 @@ class Drafts:
 
     def poll(self) -> None:
         """Once a frame: take up what was written, and write what was typed since."""
-        self._worker.poll()
+        self.worker.poll()
         self._go_on()
-
-    def settle(self, timeout: float) -> None:
-        """Wait until all is written; for scripts and tests, never for the screen."""
-        self._worker.settle(timeout)
 
     def close(self) -> None:
         """Write what is left and end the worker."""
-        self._worker.close()
+        self.worker.close()
         for name in list(self._wanted):
             self._write(name, self._wanted.pop(name))
 
     def _go_on(self) -> None:
-        if self._worker.busy or not self._wanted:
+        if self.worker.busy or not self._wanted:
             return
         name, text = next(iter(self._wanted.items()))
         del self._wanted[name]
-        self._worker.queue(lambda: self._write(name, text), self._written, self._written)
+        self.worker.queue(lambda: self._write(name, text), self._written, self._written)
 
     def _written(self, trouble: str) -> None:
         self.trouble = trouble

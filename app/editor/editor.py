@@ -54,10 +54,6 @@ class LeftProgram:
     to_desk: bool
 
 
-def nowhere(_left: LeftProgram) -> None:
-    """Nobody wants to know what was saved."""
-
-
 @dataclass(slots=True)
 class Editor:
     """One document at a time. ``left`` hears of the program that was left in good order.
@@ -69,7 +65,7 @@ class Editor:
     archive: Archive
     programs: Path
     samples: Path
-    left: Callable[[LeftProgram], None] = nowhere
+    left: Callable[[LeftProgram], None] = field(default=lambda _: None)
     stage: Stage = Stage.CLOSED
     document: Document | None = None
     notice: str = ""

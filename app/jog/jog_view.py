@@ -54,7 +54,7 @@ class JogPage(Page):
             Key.__members__[f"Key_{each.key}"]: (each.axis, each.sign) for each in self.model.directions
         }
         self.pad = JogPad(self.look, self.model, self)
-        self.numbers = KeyPad(self.look, self._touched, own=("L", tr("ALONE")), parent=self)
+        self.numbers = KeyPad(self.look, self.touched, own=("L", tr("ALONE")), parent=self)
         self.tool = ToolPanel(self.look, self.model, self)
         self.asked = EntryPanel(self.look, self)
         self._was_active = False  # the window, before anything was held
@@ -131,12 +131,6 @@ class JogPage(Page):
     def has_field(self) -> bool:
         """A question about the tool."""
         return bool(self.model.tool.asked)
-
-    def _touched(self, key: str) -> None:
-        if key == "Esc":
-            self.host.press(key)
-        else:
-            self.typed(key)
 
     # --- as every page -------------------------------------------------------------------------------
 

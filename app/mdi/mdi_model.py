@@ -9,7 +9,7 @@ from functools import partial
 
 from app.desk import prompt_line
 from app.desk.latest import Latest, Watch
-from app.desk.persistence import NoPersistence, Persistence
+from app.desk.persistence import Persistence
 from app.desk.program_loading import Proved
 from app.desk.translation import tr
 from core.executor.commands import Command, Prepare, SpindleStop
@@ -54,7 +54,7 @@ KEPT = 100  # lines
 class MdiLine:
     """One line with a cursor; arrows up and down go through the history, as in every shell."""
 
-    persistence: Persistence = field(default_factory=NoPersistence)
+    persistence: Persistence = field(default_factory=Persistence)
     text: str = ""
     at: int = 0  # the cursor stands before this character
     history: list[str] = field(default_factory=list)  # oldest first
@@ -262,11 +262,6 @@ class MdiModel:
         if self.snapshot().state is State.IDLE and self.ready is None:
             return tr("NO LINE IS READY: TYPE ONE AND PRESS ENTER")
         return ""
-
-    def settle(self, timeout: float) -> None:
-        """Wait for the proof; for scripts and tests, never for the screen."""
-        self.worker.settle(timeout)
-        self.look(self.snapshot())
 
     def _failed(self, why: str) -> None:
         self.say(tr("THE LINE CANNOT BE PROVED: {why}").format(why=why))

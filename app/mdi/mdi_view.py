@@ -151,7 +151,7 @@ class MdiPage(Page):
         self.model = model
         self.line = LinePanel(self.look, self._other_hand, self)
         self.history = HistoryPanel(self.look, self._recall, self)
-        self.letters = LetterPad(self.look, self._touched, self, LINES)
+        self.letters = LetterPad(self.look, self.touched, self, LINES)
         self.inforce = ModalPanel(self.look, self)
 
     def key_actions(self) -> KeyActions:
@@ -173,9 +173,6 @@ class MdiPage(Page):
         """A finger on the line: letters to touch in the place of the history, or the history again."""
         self.letters.setVisible(self.letters.isHidden())
         self.letters.raise_()
-
-    def _touched(self, key: str) -> None:
-        self.typed(key)
 
     def typed(self, key: str) -> bool:
         """At rest, text; while a line is under way the letters are the keys they are everywhere."""

@@ -133,7 +133,7 @@ class OffsetPage(Page):
         self.effect_model = EffectDisplay(model)
         self.effect = EffectView(self.look, self.effect_model, self)
         own = ("C", "C") if model.clears else None
-        self.pad = KeyPad(self.look, self._touched, own=own, parent=self)
+        self.pad = KeyPad(self.look, self.touched, own=own, parent=self)
 
     def show_table(self, snapshot: Snapshot) -> None:
         """The table as it is now."""
@@ -174,12 +174,6 @@ class OffsetPage(Page):
     def takes(self, key: str) -> bool:
         """Whether a character is text of the entry."""
         return self.model.takes(key)
-
-    def _touched(self, key: str) -> None:
-        if key == "Esc":
-            self.host.press(key)
-        else:
-            self.typed(key)
 
     def has_field(self) -> bool:
         """Figures are always typed here, but while one looks at what they do."""

@@ -7,7 +7,7 @@ is told as done when it has been written, brought to the disk and read back.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
@@ -114,10 +114,6 @@ def _keep_old(target: Path, persistence: Persistence, text: bytes) -> None:
 # --- the chooser of folders, and what came of it ----------------------------------------------------------
 
 
-def _nobody() -> None:
-    """Nobody waits for the end of a copy."""
-
-
 @dataclass(slots=True)
 class ImportExport:
     """``check`` proves a program that has come in; ``finished`` is told when the list is to be read again."""
@@ -128,7 +124,7 @@ class ImportExport:
     worker: Latest
     check: Check
     chooser: FolderChooser
-    finished: Callable[[], None] = _nobody
+    finished: Callable[[], None] = field(default=lambda: None)
     open: bool = False
     out: bool = False
     all: tuple[Path, ...] = ()  # what the list shows

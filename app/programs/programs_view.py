@@ -84,7 +84,7 @@ class ProgramsPage(ListPage):
         self.space = PreviewSpace(self.look, self)
         self._shown: Picture | None = None
         self.record = RecordPanel(self.look, self)
-        self.letters = LetterPad(self.look, self._touched, self)
+        self.letters = LetterPad(self.look, self.touched, self)
 
     def labels(self) -> tuple[str, ...]:
         """Those of the list or of the chooser."""
@@ -118,12 +118,6 @@ class ProgramsPage(ListPage):
             self.typed("Enter")
         else:
             model.choose(row)
-
-    def _touched(self, key: str) -> None:
-        if key == "Esc":
-            self.host.press(key)
-        else:
-            self.typed(key)
 
     def typed(self, key: str) -> bool:
         """Return on a program loads it and leads to Automatic; everything else is the model's."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk import prompt_line
-from app.desk.persistence import NoPersistence, Persistence
+from app.desk.persistence import Persistence
 from app.desk.program_loading import Loaded, Phase
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store
@@ -23,7 +23,7 @@ _SETTLED = frozenset({Phase.READY, Phase.REFUSED, Phase.UNREADABLE})
 class RunRecord:
     """Looks at every snapshot; posts what has happened to the store and never waits for it."""
 
-    persistence: Persistence = field(default_factory=NoPersistence)
+    persistence: Persistence = field(default_factory=Persistence)
     running: str = ""  # the program under way
     _parts: int | None = None
     _ends: int = 0

@@ -33,14 +33,10 @@ from app.screen.window_layout import LEAST
 FRAME_MS = 16  # at most 60 pictures a second
 
 
-def _nobody() -> None:
-    """Nobody has to be told."""
-
-
 class MainWindow(QWidget):
     """One page at a time; without a desk yet it shows that it is starting."""
 
-    def __init__(self, look: Look, closed: Callable[[], None] = _nobody) -> None:
+    def __init__(self, look: Look, closed: Callable[[], None] = lambda: None) -> None:
         super().__init__()
         self._closed = closed
         self._meant = False  # to leave, whatever is lost by it

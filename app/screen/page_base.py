@@ -99,6 +99,13 @@ class Page(QWidget):
         """Take a typed key; False leaves it to the window."""
         return False
 
+    def touched(self, key: str) -> None:
+        """A finger on a drawn key: Esc is the window's, any other is typed here."""
+        if key == "Esc":
+            self.host.press(key)
+        else:
+            self.typed(key)
+
     def takes(self, _key: str) -> bool:
         """Whether a character is text here."""
         return False

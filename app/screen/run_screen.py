@@ -69,15 +69,13 @@ class _Start:
 
     def run(self) -> None:
         """Build the desk and open it; what goes wrong ends the program and is raised by ``close``."""
-        with _Carry(self._failed):
+        try:
             desk = self._desk = self._build()
             self._window.open_desk(desk)
             desk.begin_with(self._program)
-
-    def _failed(self, error: Exception) -> None:
-        """Nothing may be raised into Qt's loop: it is carried past its end."""
-        self._trouble = error
-        QApplication.exit(1)
+        except Exception as error:  # noqa: BLE001 - raised into Qt's loop nobody could catch it
+            self._trouble = error
+            QApplication.exit(1)
 
     def mistake(self, kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
         """A mistake of the screen, raised into Qt's loop: to the log whole, to the operator in a sentence."""
@@ -91,24 +89,6 @@ class _Start:
             self._desk.close()
         if self._trouble is not None:
             raise self._trouble
-
-
-class _Carry:
-    """A ``with`` block whose failure is handed on instead of being raised where nobody could catch it."""
-
-    def __init__(self, failed: Callable[[Exception], None]) -> None:
-        self._failed = failed
-
-    def __enter__(self) -> None:
-        return None
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> bool:
-        if isinstance(error, Exception):
-            self._failed(error)
-            return True
-        return False
 
 
 def _composed(machine: str | None, offsets: str | None) -> Desk:

@@ -65,7 +65,7 @@ class Frame(QWidget):
         self.notice = Notice(look, self)
         self.log = AlarmList(look, self)
         self._docked = True
-        host = Host(look, desk, press, self.go, self._close_log)
+        host = Host(look, desk, press, self.go, self.log.hide)
         self._host = host
         self._moved_at: float | None = None  # when slides were last moved by hand
         self.automatic = AutomaticPage(host, self)
@@ -124,9 +124,6 @@ class Frame(QWidget):
         """The log of alarms over the page, or away again."""
         self.log.setVisible(not self.log.isVisible())
         self.log.raise_()
-
-    def _close_log(self) -> None:
-        self.log.hide()
 
     def escape(self) -> bool:
         """Close what lies over the page, or what is open in it; False when nothing was."""

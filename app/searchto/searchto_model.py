@@ -291,11 +291,6 @@ class SearchtoModel:
             return ""
         return tr("NO START: SEARCH A LINE AND CONFIRM IT FIRST (F10)")
 
-    def settle(self, timeout: float) -> None:
-        """Wait for the worker; for scripts and tests, never for the screen."""
-        self.finder.worker.settle(timeout)
-        self.look(self.snapshot(), self.session.now)
-
     def _see_start(self, snapshot: Snapshot) -> None:
         waits = self._job is not None and snapshot.prepared == self._job.digest
         if self._accepted and not waits and self.leaving is not None:

@@ -53,7 +53,7 @@ class BackupAndRestore(SpecialFunction):
         self.persistence, self.worker, self.folder, self.plugged = persistence, worker, folder, plugged
         self.places: tuple[Place, ...] = ()
         self.busy = ""
-        self.restored: Callable[[], None] = _nobody
+        self.restored: Callable[[], None] = lambda: None
 
     @property
     def count(self) -> int:
@@ -163,10 +163,6 @@ class BackupAndRestore(SpecialFunction):
     def prompt(self) -> str:
         """What Return does, for the prompt line."""
         return "RETURN ON A PLACE BACKS UP, ON A BACKUP RESTORES IT; F4 LOOKS FOR STICKS AGAIN"
-
-
-def _nobody() -> None:
-    """Nobody has to read anything again."""
 
 
 def _places(folder: Path, plugged: Sequence[Stick]) -> tuple[Place, ...]:

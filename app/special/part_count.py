@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from app.desk.persistence import NoPersistence, Persistence
+from app.desk.persistence import Persistence
 from app.desk.translation import tr
 from core.executor.commands import Command, PartsMade, SetSwitch
 from core.executor.snapshot import Snapshot, State
@@ -23,7 +23,7 @@ class PartCounter:
     In the cycle that makes the last part Cycle Repeat is switched off, so that the machine stops by itself.
     """
 
-    persistence: Persistence = field(default_factory=NoPersistence)
+    persistence: Persistence = field(default_factory=Persistence)
     program: str = ""
     count: int = 0
     target: int = 0

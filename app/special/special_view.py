@@ -76,8 +76,8 @@ class SpecialPage(ListPage):
         super().__init__(host, model, parent)
         self.items = ItemList(self.look, model, self._enter, self)
         self.table = SheetPanel(self.look, self._chosen, self)
-        self.pad = KeyPad(self.look, self._touched, own=None, parent=self)
-        self.letters = LetterPad(self.look, self._touched, self)
+        self.pad = KeyPad(self.look, self.touched, own=None, parent=self)
+        self.letters = LetterPad(self.look, self.touched, self)
 
     def _enter(self, number: int) -> None:
         self.model.enter(number)
@@ -86,12 +86,10 @@ class SpecialPage(ListPage):
         self.model.inside = True
         self.model.shown.choose(row)
 
-    def _touched(self, key: str) -> None:
+    def touched(self, key: str) -> None:
+        """A finger on a key is for the function that is shown."""
         self.model.inside = True
-        if key == "Esc":
-            self.host.press(key)
-        else:
-            self.model.typed(key)
+        super().touched(key)
 
     def labels(self) -> tuple[str, ...]:
         """Those of the function that is shown, beside the page's own."""

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.compose.journal import UNDER_WAY, Journal
+from app.desk.persistence import Persistence
 from core.executor.snapshot import Event
 from core.store.store_errors import StoreError
 from tests.interrupted import broken_off
@@ -18,6 +19,12 @@ def journal(tmp_path: Path) -> Iterator[Journal]:
     journal = Journal(tmp_path / "home")
     yield journal
     journal.close()
+
+
+def test_the_journal_keeps_all_that_there_is_to_keep() -> None:
+    asked = {name for name, what in vars(Persistence).items() if callable(what) and not name.startswith("_")}
+    assert len(asked) > 10
+    assert asked <= vars(Journal).keys()
 
 
 def test_a_bad_backup_leaves_everything_as_it_was(journal: Journal, tmp_path: Path) -> None:

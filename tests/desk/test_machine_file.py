@@ -16,7 +16,7 @@ from app.compose.machine_files import load_machine
 from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import NONE
 from app.desk.desk import Desk
-from app.desk.persistence import NoPersistence
+from app.desk.persistence import Persistence
 from app.special.machine_file_acceptance import MachineFileAcceptance
 from app.special.special_functions import SpecialFunctions
 from core.executor.executor import Executor
@@ -153,7 +153,7 @@ def bus_machine(tmp_path: Path) -> Machine:
 
 
 def test_the_same_file_that_means_other_values_in_a_drive_is_a_change(tmp_path: Path) -> None:
-    machine, kept = bus_machine(tmp_path), NoPersistence()
+    machine, kept = bus_machine(tmp_path), Persistence()
     record = record_of(machine)
     drives = record["drives"]
     assert isinstance(drives, dict)
@@ -168,6 +168,6 @@ def test_the_same_file_that_means_other_values_in_a_drive_is_a_change(tmp_path: 
 
 @pytest.mark.parametrize("damaged", [None, 3, {}, {"text": 5}])
 def test_a_record_that_is_none_counts_as_a_first_start(tmp_path: Path, damaged: object) -> None:
-    machine, kept = bus_machine(tmp_path), NoPersistence()
+    machine, kept = bus_machine(tmp_path), Persistence()
     kept.save_setting(key_of(machine), damaged)
     assert differences(machine, kept) is None

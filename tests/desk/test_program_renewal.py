@@ -54,7 +54,7 @@ def test_it_is_announced_before_it_is_proved(shop: Shop) -> None:
     assert shop.renewing.begin()
     assert shop.posted == [Renew()]
     shop.go_on.set()
-    shop.renewing.settled(LIMIT)
+    shop.renewing.worker.settle(LIMIT)
     ready = shop.posted[1]
     assert isinstance(ready, Renew)
     assert ready.job is not None
@@ -65,7 +65,7 @@ def test_it_is_announced_before_it_is_proved(shop: Shop) -> None:
 def test_the_screen_keeps_the_old_program_until_the_executor_has_the_new_one(shop: Shop) -> None:
     before = shop.session.now
     shop.renewing.begin()
-    shop.renewing.settled(LIMIT)
+    shop.renewing.worker.settle(LIMIT)
     assert not shop.renewing.taken(shop.running("digest of part.nc"))
     assert shop.session.now is before
     assert shop.renewing.taken(shop.running("renewed 1"))
@@ -81,7 +81,7 @@ def test_a_later_one_takes_its_place(shop: Shop) -> None:
     assert shop.proving.wait(LIMIT)
     shop.renewing.begin()
     shop.go_on.set()
-    shop.renewing.settled(LIMIT)
+    shop.renewing.worker.settle(LIMIT)
     jobs = [command.job.digest for command in shop.posted if isinstance(command, Renew) and command.job]
     assert jobs == ["renewed 2"]
     assert shop.renewing.trouble() == ""
@@ -93,7 +93,7 @@ def test_a_program_that_is_loaded_meanwhile_ends_it(shop: Shop) -> None:
     assert shop.proving.wait(LIMIT)
     shop.session.load(Path("other.nc"))
     shop.go_on.set()
-    shop.renewing.settled(LIMIT)
+    shop.renewing.worker.settle(LIMIT)
     assert shop.settled().name == "other.nc"
     assert not shop.renewing.taken(shop.running("renewed 1"))
     assert shop.renewing.trouble() == ""
@@ -103,7 +103,7 @@ def test_a_program_that_is_loaded_meanwhile_ends_it(shop: Shop) -> None:
 def test_errors_are_told_once_while_the_part_still_runs(shop: Shop) -> None:
     shop.found = (BAD,)
     shop.renewing.begin()
-    shop.renewing.settled(LIMIT)
+    shop.renewing.worker.settle(LIMIT)
     assert shop.renewing.trouble() == "The arc's radius is too small."
     assert shop.renewing.trouble() == ""
     assert shop.renewing.taken(shop.running("renewed 1"))
@@ -113,7 +113,7 @@ def test_errors_are_told_once_while_the_part_still_runs(shop: Shop) -> None:
 def test_offsets_that_cannot_be_read_are_told_to_the_executor_too(shop: Shop) -> None:
     shop.broken = True
     shop.renewing.begin()
-    shop.renewing.settled(LIMIT)
+    shop.renewing.worker.settle(LIMIT)
     assert shop.renewing.trouble() == "Input/output error"
     assert shop.posted[-1] == Renew(trouble="Input/output error")
     assert shop.renewing.trouble() == ""

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import pytest
 
-from app.desk.persistence import NoPersistence
+from app.desk.persistence import Persistence
 from app.desk.screen_settings import KEY, Settings, SettingsBook, Units
 
 
 def test_a_choice_is_kept() -> None:
-    keep = NoPersistence()
+    keep = Persistence()
     SettingsBook(keep).choose("theme", "light")
     assert SettingsBook(keep).now == Settings(theme="light")
 
 
 @pytest.mark.parametrize("kept", [{"theme": "pink"}, {"dock": 1}, {"nothing": 2}, ["dark"], "dark", None, 7])
 def test_what_is_no_choice_is_forgotten(kept: object) -> None:
-    assert SettingsBook(NoPersistence({KEY: kept})).now == Settings()
+    assert SettingsBook(Persistence({KEY: kept})).now == Settings()
 
 
 @pytest.mark.parametrize(("name", "value"), [("theme", "pink"), ("colour", "dark"), ("dock", 1)])

@@ -12,7 +12,7 @@ from app.compose.machine_setup import setup_for
 from app.compose.workshop import proof_of
 from app.desk.latest import Watch
 from app.desk.program_loading import LoadingSteps, Proved
-from app.editor.editor import Editor, LeftProgram, nowhere
+from app.editor.editor import Editor, LeftProgram
 from app.path.path_picture import Picture, picture_of
 from core.executor.job import Job
 from core.interpreter.dialects import ReadProgram
@@ -72,7 +72,7 @@ def workshop() -> LoadingSteps:
 
 
 def editor_in(
-    folder: Path, archive: Memory | None = None, left: Callable[[LeftProgram], None] = nowhere
+    folder: Path, archive: Memory | None = None, left: Callable[[LeftProgram], None] = lambda _: None
 ) -> Editor:
     """The operator's programs and the samples, both empty at first."""
     (folder / "samples").mkdir(exist_ok=True)

@@ -37,7 +37,7 @@ def start(tmp_path: Path, memory: Memory) -> Iterator[Start]:
 def settle(editor: Editor) -> None:
     for _ in range(3):
         editor.worker.settle(LIMIT)
-        editor.drafts.settle(LIMIT)
+        editor.drafts.worker.settle(LIMIT)
     editor.poll()
 
 

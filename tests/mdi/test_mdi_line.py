@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from app.desk.persistence import NoPersistence
+from app.desk.persistence import Persistence
 from app.mdi.mdi_model import KEPT, KEY, LONGEST, MdiLine
 from core.store.store_errors import StoreError
 
@@ -57,7 +57,7 @@ def test_the_same_line_twice_is_kept_once_and_an_empty_one_never() -> None:
 
 
 def test_the_history_is_kept_and_what_is_none_is_forgotten() -> None:
-    keep = NoPersistence()
+    keep = Persistence()
     typing = MdiLine(keep)
     for number in range(KEPT + 3):
         typing.put(f"X{number}")
@@ -71,7 +71,7 @@ def test_the_history_is_kept_and_what_is_none_is_forgotten() -> None:
 
 
 def test_a_store_that_fails_takes_no_line_away() -> None:
-    class Broken(NoPersistence):
+    class Broken(Persistence):
         def setting(self, key: str) -> object:
             raise StoreError(f"{key} is gone")
 

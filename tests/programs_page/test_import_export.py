@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.persistence import NoPersistence
+from app.desk.persistence import Persistence
 from app.programs import import_export
 from app.programs.copy_rename_delete import checked_name, delete_program, rename_program
 from app.programs.folder_chooser import UP, FolderChooser, Stick
@@ -56,7 +56,7 @@ def test_where_versions_are_not_kept_nothing_is_replaced(tmp_path: Path) -> None
     own = tmp_path / "own"
     made(own, a="M00\n")
     with pytest.raises(FileError, match="CANNOT BE KEPT"):
-        import_programs(sources, own, NoPersistence(), lambda _path: "", replace=True)
+        import_programs(sources, own, Persistence(), lambda _path: "", replace=True)
     assert (own / "a.nc").read_text() == "M00\n"
 
 
@@ -117,15 +117,15 @@ def test_a_name_that_will_not_do(typed: str) -> None:
 
 def test_another_case_of_letters_is_another_name_of_the_same_file(tmp_path: Path) -> None:
     (path,) = made(tmp_path / "own", a="M30\n")
-    assert rename_program(path, "A", NoPersistence()) == "A.nc"
+    assert rename_program(path, "A", Persistence()) == "A.nc"
     with pytest.raises(FileError, match="IS ITS NAME ALREADY"):
-        rename_program(path.with_name("A.nc"), "A.nc", NoPersistence())
+        rename_program(path.with_name("A.nc"), "A.nc", Persistence())
 
 
 def test_what_cannot_be_kept_is_not_deleted(tmp_path: Path) -> None:
     (path,) = made(tmp_path / "own", a="M30\n")
     with pytest.raises(FileError, match="NOT DELETED"):
-        delete_program(path, NoPersistence())
+        delete_program(path, Persistence())
     assert path.exists()
 
 

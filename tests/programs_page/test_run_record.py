@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.persistence import NoPersistence
+from app.desk.persistence import Persistence
 from app.desk.program_loading import Loaded, Phase
 from app.programs.run_record import RunRecord
 from core.executor.job import Proof
@@ -20,7 +20,7 @@ NO_PROGRAM = Loaded()
 
 
 @dataclass
-class Kept(NoPersistence):
+class Kept(Persistence):
     """Writes down what is posted."""
 
     told: list[tuple[object, ...]] = field(default_factory=list)

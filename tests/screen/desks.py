@@ -11,7 +11,7 @@ from app.compose.special_functions import furnish
 from app.compose.workshop import drawer, proof_of
 from app.desk.desk import Desk
 from app.desk.latest import Watch
-from app.desk.persistence import NoPersistence, Persistence
+from app.desk.persistence import Persistence
 from app.desk.program_folder import ProgramFolders
 from app.desk.program_loading import LoadingSteps, ProgramLoader, Proved
 from app.editor.editor import Editor
@@ -73,7 +73,7 @@ def desk_on(
     )
     desk.attach(Effect(drawer(lathe)))
     desk.attach(Editor(work, archive, folders[0] if folders else Path("/dev/null"), SAMPLES))
-    furnish(desk, lathe, keep or NoPersistence(), work, folders[0] if folders else None)
+    furnish(desk, lathe, keep or Persistence(), work, folders[0] if folders else None)
     built.append(desk)
     machine.hear = desk.hear
     return desk

@@ -80,7 +80,7 @@ class Operator:
         """Type a line of MDI and have it proved."""
         self.type(text)
         self.key(Key.Key_Return)
-        self.mdi.settle(5.0)
+        self.mdi.worker.settle(5.0)
         self.pause(0.02)
 
     def run(self, text: str) -> None:
