@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from dataclasses import fields as fields_of
 from difflib import get_close_matches
 from enum import Enum, StrEnum
 from math import inf
-from typing import NamedTuple, TypeGuard
+from typing import TYPE_CHECKING, NamedTuple, TypeGuard, TypeVar
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 # --- Units of a machine file. The file writes its own; the model has mm, seconds, degrees, rpm.
 
@@ -96,6 +100,7 @@ class MachineFileError(Exception):
 Pair = tuple[float, float]
 Triple = tuple[float, float, float]
 Value = float | bool | str | Pair | Triple
+_Model = TypeVar("_Model", bound="DataclassInstance")
 
 
 class Kind(Enum):
@@ -177,6 +182,15 @@ class Values:
         if not isinstance(value, tuple) or len(value) != 3:
             raise TypeError(f"{path} holds no triple")
         return value
+
+    def model(self, kind: type[_Model], path: str, keys: Mapping[str, str] = {}, **given: object) -> _Model:
+        """A table as a dataclass, once nothing is wrong with it.
+
+        A field has the value under its own name, or under the key that ``keys`` has for it, or is ``given``.
+        """
+        names = [field.name for field in fields_of(kind) if field.name not in given]
+        said = {name: self.found[f"{path}.{keys.get(name, name)}"] for name in names}
+        return kind(**said, **given)
 
 
 def written(value: object) -> str:
@@ -286,6 +300,8 @@ def _converted(raw: object, field: Field, inch: bool) -> Value:
     if isinstance(raw, bool | str):
         return raw
     numbers = [to_model(part, field.unit, inch) for part in _parts(raw)]
+    if field.kind is Kind.WHOLE:
+        return int(numbers[0])
     if field.kind is Kind.TRIPLE:
         return numbers[0], numbers[1], numbers[2]
     return (numbers[0], numbers[1]) if field.kind is Kind.PAIR else numbers[0]

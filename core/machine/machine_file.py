@@ -33,6 +33,21 @@ from core.table_schema import Driver, FileReading, Finding, MachineFileError
 
 _NONE = (-math.inf, math.inf)
 _ONE_TURN = (-360.0, 360.0)  # of a C that does not wrap, degrees
+# Keys of the file that are not called as the model's fields: they end in their unit, or are short.
+_AXIS_KEYS = {
+    "following_window": "fe_window",
+    "following_time": "fe_time_ms",
+    "in_position": "in_pos",
+    "still_time": "still_ms",
+}
+_SPINDLE_KEYS = {
+    "accel": "accel_rpm_s",
+    "decel": "decel_rpm_s",
+    "at_speed": "at_speed_pct",
+    "at_speed_time": "at_speed_s",
+    "timeout": "timeout_s",
+}
+_TIMING_KEYS = {name: f"{name}_ms" for name in ("commit", "lookahead", "low_water", "lease", "setpoint")}
 
 
 def text_of(path: Path) -> str:
@@ -86,20 +101,17 @@ def parse_machine(text: str, source: str, drivers: Sequence[Driver]) -> Machine:
 
 def _machine(reading: Reading, added: DriverReading, kinematics: KinematicsReading, source: str) -> Machine:
     values = reading.values
+    slowest, fastest = values.pair("spindle.rpm")
+    opens, closes = values.number("collet.open_s"), values.number("collet.close_s")
     return Machine(
         name=values.text("machine.name"),
         backend=values.text("machine.backend"),
         axes=_axes(reading),
         c_enabled=reading.kind == "lathe" and values.flag("axis.C.enabled"),
         c_feedback=values.flag("c_axis.feedback"),
-        spindle=_spindle(reading),
-        timing=_timing(reading),
-        interlocks=Interlocks(
-            spindle_with_collet_open=values.flag("interlocks.spindle_with_collet_open"),
-            unclamp_while_turning=values.flag("interlocks.unclamp_while_turning"),
-            two_hand_start=values.flag("interlocks.two_hand_start"),
-            guard_stops=values.flag("interlocks.guard_stops"),
-        ),
+        spindle=values.model(SpindleModel, "spindle", _SPINDLE_KEYS, rpm_min=slowest, rpm_max=fastest),
+        timing=values.model(Timing, "machine", _TIMING_KEYS, collet_open=opens, collet_close=closes),
+        interlocks=values.model(Interlocks, "interlocks"),
         max_feed=values.number("limits.max_feed"),
         manual_rapid=values.number("limits.manual_rapid"),
         resolution=values.number("limits.resolution"),
@@ -140,51 +152,15 @@ def _axis(reading: Reading, name: str) -> Axis:
     homed = values.has(f"{path}.home.order")
     whole = _ONE_TURN if name == "C" and reading.kind == "lathe" and not _of_c(reading, "modulo") else _NONE
     travel = values.pair(f"{path}.travel") if values.has(f"{path}.travel") else whole
-    return Axis(
+    return values.model(
+        Axis,
+        path,
+        _AXIS_KEYS,
         name=name,
         travel=travel if math.isfinite(travel[0]) else None,
-        vmax=values.number(f"{path}.vmax"),
-        amax=values.number(f"{path}.amax"),
-        count=values.number(f"{path}.count"),
-        following_window=values.number(f"{path}.fe_window"),
-        following_time=values.number(f"{path}.fe_time_ms"),
-        in_position=values.number(f"{path}.in_pos"),
-        absolute=values.flag(f"{path}.absolute"),
-        home_order=int(values.number(f"{path}.home.order")) if homed else 0,
+        home_order=values.whole(f"{path}.home.order") if homed else 0,
         home_speed=values.number(f"{path}.home.speed") if homed else 0.0,
         rotary=name not in machine_tables.SLIDES[reading.kind],
-        still_window=values.number(f"{path}.still_window"),
-        still_time=values.number(f"{path}.still_ms"),
-    )
-
-
-def _spindle(reading: Reading) -> SpindleModel:
-    values = reading.values
-    low, high = values.pair("spindle.rpm")
-    return SpindleModel(
-        rpm_min=low,
-        rpm_max=high,
-        accel=values.number("spindle.accel_rpm_s"),
-        decel=values.number("spindle.decel_rpm_s"),
-        at_speed=values.number("spindle.at_speed_pct"),
-        at_speed_time=values.number("spindle.at_speed_s"),
-        timeout=values.number("spindle.timeout_s"),
-        stop_below=values.number("spindle.stop_below"),
-        encoder_ppr=int(values.number("spindle.encoder_ppr")),
-        controlled=values.flag("spindle.controlled"),
-    )
-
-
-def _timing(reading: Reading) -> Timing:
-    values = reading.values
-    return Timing(
-        commit=values.number("machine.commit_ms"),
-        lookahead=values.number("machine.lookahead_ms"),
-        low_water=values.number("machine.low_water_ms"),
-        lease=values.number("machine.lease_ms"),
-        setpoint=values.number("machine.setpoint_ms"),
-        collet_open=values.number("collet.open_s"),
-        collet_close=values.number("collet.close_s"),
     )
 
 

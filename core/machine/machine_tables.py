@@ -45,7 +45,7 @@ SLIDE = (
     _STILL,
     Field("absolute", _FLAG, default=False),
 )
-_METHOD = Field("method", _WHOLE, low=-128, high=37, default=0.0)  # of CiA 402; the simulation needs none
+_METHOD = Field("method", _WHOLE, low=-128, high=37, default=0)  # of CiA 402; the simulation needs none
 HOME = (
     Field("order", _WHOLE, low=1, high=9),
     Field("speed", _NUMBER, Unit.FEED, 0.1, 200.0),

@@ -97,12 +97,12 @@ class KinematicsReading:
 
     def _rotary(self, name: str) -> RotaryModel:
         values, path = self._values, f"{TABLE}.{name}"
-        return RotaryModel(
+        return values.model(
+            RotaryModel,
+            path,
             name=name,
             table=values.text(f"{path}.side") == "table",
             direction=_DIRECTIONS[values.text(f"{path}.direction")],
-            point=values.triple(f"{path}.point"),
-            modulo=values.flag(f"{path}.modulo"),
         )
 
     def _broken(self) -> Iterator[Finding]:

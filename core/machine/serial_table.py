@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from core.table_schema import Driver, DriverTable, Field, FileReading, Kind
+from core.table_schema import Driver, DriverTable, Field, Kind
 
 _FIELDS = (
     Field("port", Kind.TEXT),
@@ -38,21 +38,5 @@ class DncModel:
     leader: int = 0  # NULs before and behind what is sent
 
 
-def _table(file: FileReading) -> DncModel:
-    values = file.values
-    return DncModel(
-        port=values.text("dnc.port"),
-        baud=values.whole("dnc.baud"),
-        bits=values.whole("dnc.bits"),
-        parity=values.text("dnc.parity"),
-        stop=values.whole("dnc.stop"),
-        flow=values.text("dnc.flow"),
-        wrap=values.text("dnc.wrap"),
-        eol=values.text("dnc.eol"),
-        dc_codes=values.flag("dnc.dc_codes"),
-        wait=values.flag("dnc.wait"),
-        leader=values.whole("dnc.leader"),
-    )
-
-
-DRIVER = Driver(tables=(DriverTable("dnc", _FIELDS, _table, port="dnc.port"),))
+_TABLE = DriverTable("dnc", _FIELDS, lambda file: file.values.model(DncModel, "dnc"), port="dnc.port")
+DRIVER = Driver(tables=(_TABLE,))

@@ -220,14 +220,7 @@ def _objects(file: FileReading, node: str) -> tuple[SdoValue, ...]:
 def _bus_table(file: FileReading) -> CanopenTable:
     values = file.values
     return CanopenTable(
-        bus=BusConfig(
-            interface=values.text("canopen.interface"),
-            channel=values.text("canopen.channel"),
-            bitrate=values.whole("canopen.bitrate"),
-            host_id=values.whole("canopen.host_id"),
-            sync=values.number("canopen.sync_ms"),
-            heartbeat=values.number("canopen.heartbeat_ms"),
-        ),
+        bus=values.model(BusConfig, "canopen", {"sync": "sync_ms", "heartbeat": "heartbeat_ms"}),
         mode=values.text("canopen.mode"),
         record=values.number("canopen.record_ms"),
         nodes=tuple(_node(file, name) for name in file.names(_NODES)),
@@ -235,17 +228,8 @@ def _bus_table(file: FileReading) -> CanopenTable:
 
 
 def _node(file: FileReading, name: str) -> CanNode:
-    values, path = file.values, f"{_NODES}.{name}"
-    profile = values.whole(f"{path}.profile")
-    shared = _objects(file, "all") if profile == _DRIVE else ()
-    return CanNode(
-        name=name,
-        id=values.whole(f"{path}.id"),
-        profile=profile,
-        eds=values.text(f"{path}.eds"),
-        counts_per_rev=values.whole(f"{path}.counts_per_rev"),
-        sdo=(*shared, *_objects(file, name)),
-    )
+    shared = _objects(file, "all") if _profile(file, name) == _DRIVE else ()
+    return file.values.model(CanNode, f"{_NODES}.{name}", name=name, sdo=(*shared, *_objects(file, name)))
 
 
 def _encoder_table(file: FileReading) -> EncoderTable:

@@ -56,13 +56,7 @@ def _settings(file: FileReading) -> dict[int, float | str]:
 
 
 def _table(file: FileReading) -> GrblhalTable:
-    values = file.values
-    return GrblhalTable(
-        port=values.text("grblhal.port"),
-        baud=values.whole("grblhal.baud"),
-        x_mode=values.text("grblhal.x_mode"),
-        settings=_settings(file),
-    )
+    return file.values.model(GrblhalTable, "grblhal", settings=_settings(file))
 
 
 def _rules(file: FileReading) -> Iterator[Finding]:

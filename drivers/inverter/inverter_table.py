@@ -50,20 +50,13 @@ def _table(file: FileReading) -> InverterTable:
     from drivers.serial_line import LineSettings  # noqa: PLC0415  few machines have one
 
     values = file.values
-    line = LineSettings(
-        port=values.text(f"{_PATH}.port"),
-        baud=values.whole(f"{_PATH}.baud"),
-        parity=values.text(f"{_PATH}.parity"),
-        stop=values.whole(f"{_PATH}.stop"),
-    )
-    config = InverterConfig(
-        family=values.text(f"{_PATH}.family"),
-        unit=values.whole(f"{_PATH}.id"),
-        hz_per_rpm=values.number(f"{_PATH}.hz_per_rpm"),
+    line = values.model(LineSettings, _PATH, bits=8, flow="none")
+    config = values.model(
+        InverterConfig,
+        _PATH,
+        {"unit": "id", "comm_loss": "comm_loss_s", "disagree": "disagree_pct"},
         rpm_max=values.pair("spindle.rpm")[1],
-        comm_loss=values.number(f"{_PATH}.comm_loss_s"),
         character=line.character,
-        disagree=values.number(f"{_PATH}.disagree_pct"),
     )
     return InverterTable(config, line)
 

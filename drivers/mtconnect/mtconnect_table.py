@@ -27,14 +27,7 @@ class MtconnectTable:
 
 
 def _table(file: FileReading) -> MtconnectTable:
-    values = file.values
-    return MtconnectTable(
-        bind=values.text("mtconnect.bind"),
-        port=values.whole("mtconnect.port"),
-        heartbeat=values.number("mtconnect.heartbeat_ms"),
-        enabled=values.flag("mtconnect.enabled"),
-        device=values.text("mtconnect.device"),
-    )
+    return file.values.model(MtconnectTable, "mtconnect", {"heartbeat": "heartbeat_ms"})
 
 
 DRIVER = Driver(tables=(DriverTable("mtconnect", _FIELDS, _table),))

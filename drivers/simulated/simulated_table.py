@@ -14,7 +14,6 @@ from core.table_schema import (
     Finding,
     Kind,
     Unit,
-    Values,
     read_table,
     written,
 )
@@ -89,25 +88,14 @@ def _rules(file: FileReading) -> Iterator[Finding]:
 
 
 def _table(file: FileReading) -> SimulatedTable:
-    values = file.values
-    return SimulatedTable(
-        seed=values.whole("sim.seed"),
-        realtime=values.flag("sim.realtime"),
-        faults=tuple(_fault(values, path) for path in _paths(file)),
-    )
+    return file.values.model(SimulatedTable, "sim", faults=tuple(_faults(file)))
 
 
-def _fault(values: Values, path: str) -> PlannedFault:
+def _faults(file: FileReading) -> Iterator[PlannedFault]:
     from drivers.lookalikes.plant_config import PlannedFault  # noqa: PLC0415  few files plan any
 
-    return PlannedFault(
-        at=values.number(f"{path}.at"),
-        what=values.text(f"{path}.what"),
-        axis=values.text(f"{path}.axis"),
-        value=values.number(f"{path}.value"),
-        seconds=values.number(f"{path}.seconds"),
-        text=values.text(f"{path}.text"),
-    )
+    for path in _paths(file):
+        yield file.values.model(PlannedFault, path)
 
 
 DRIVER = Driver(
