@@ -58,6 +58,22 @@ def pieces_of(segments: Segments, axes: int) -> list[Piece]:
     return [Piece(*row) for row in rows]
 
 
+@dataclass(frozen=True, slots=True)
+class AxisFigures:
+    """What a driver of setpoints knows of one axis; mm and seconds, or degrees."""
+
+    name: str
+    vmax: float
+    amax: float  # also what its drive brakes with on its own
+    count: float  # mm or degrees of one count of the drive
+    following_window: float
+    following_time: float
+    travel: tuple[float, float] | None = None
+    absolute: bool = True
+    home_speed: float = 10.0
+    corner: float = 4.0  # velocity that a corner may jump: amax times the setpoint interval
+
+
 _SLOT = 1e-6  # s; clock rounding between the end of one piece and the start of the next
 _REST = 0.01  # mm/s or degrees/s; what rounding may leave of a velocity
 _TRIM = 64  # pieces; forgetting the past one by one would cost more than keeping it
@@ -72,6 +88,11 @@ class Tolerance:
 
     position: tuple[float, ...]
     velocity: tuple[float, ...]
+
+    @classmethod
+    def of(cls, axes: Sequence[AxisFigures]) -> Tolerance:
+        """A micrometre, and the corners of these axes."""
+        return cls((0.001,) * len(axes), tuple(1.01 * axis.corner + 1e-3 for axis in axes))
 
 
 class SetpointQueue:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 from app.compose.machine_files import BACKENDS
 from app.desk.station_hands import StationPanel
-from core.machine.machine_model import Machine
+from core.machine.machine_model import Axis, Machine
 from core.ports import Clock, DriverError, MachinePorts
 from drivers.feeder.feeder_server import Driven
+from drivers.setpoint_queue import AxisFigures
 
 STATION = ("start", "hold")  # a machine whose file has neither has no operator station of its own
 Play = Callable[
@@ -63,6 +65,12 @@ def _backend(word: str) -> Backend:
 def playable() -> list[str]:
     """Backends whose other end can be played alone."""
     return [word for word in BACKENDS if _backend(word).play is not None]
+
+
+def axis_figures(axis: Axis, machine: Machine) -> dict[str, Any]:
+    """What every driver of setpoints has to know of an axis: ``AxisFigures`` by the names of its fields."""
+    figures = {each.name: getattr(axis, each.name, None) for each in fields(AxisFigures)}
+    return figures | {"corner": axis.amax * machine.timing.setpoint}
 
 
 def has_station(machine: Machine) -> bool:

@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.compose.backend_entry import Backend, has_station
+from app.compose.backend_entry import Backend, axis_figures, has_station
+from core.machine.hardware_model import HomeModel
 from core.machine.machine_model import Axis, Machine
 from core.ports import Clock, DriverError
 from drivers.canopen.canopen_config import (
     AxisConfig,
     CanopenConfig,
     EncoderConfig,
-    ModuleConfig,
-    Objects,
     OutputConfig,
     PotConfig,
     SpindleConfig,
-    Terminal,
 )
-from drivers.canopen.canopen_table import PLAIN_MODULE, CanNode, CanopenTable, EncoderTable, can_terminal
+from drivers.canopen.canopen_table import (
+    PLAIN_MODULE,
+    CanNode,
+    CanopenTable,
+    CanTerminal,
+    EncoderTable,
+    Objects,
+    can_terminal,
+)
 from drivers.feeder.feeder_server import Driven
 from drivers.operator_station import PanelStation
 
@@ -74,23 +80,23 @@ def canopen_config(machine: Machine) -> CanopenConfig:
     can = machine.hardware.table(CanopenTable)
     if can is None:
         raise DriverError(f"{machine.source}: there is no [canopen] table")
-    nodes = {node.name: node for node in can.nodes}
-    modules = [node for node in can.nodes if node.profile == 401]
+    folder = Path(machine.source).parent  # of EDS files, unless their path says otherwise
+    found = [replace(node, eds=str(folder / node.eds) if node.eds else "") for node in can.nodes]
+    nodes = {node.name: node for node in found}
+    modules = tuple(node for node in found if node.profile == 401)
     first = modules[0].name if modules else ""
     return CanopenConfig(
         bus=can.bus,
-        axes=tuple(_axis(axis, machine, nodes) for axis in machine.axes),
+        axes=tuple(_axis(axis, machine, nodes.get(axis.name)) for axis in machine.axes),
         spindle=_spindle(machine, nodes),
         encoder=_encoder(machine, nodes),
-        modules=tuple(
-            ModuleConfig(node.name, node.id, _eds(node, machine), _objects(node)) for node in modules
-        ),
+        modules=modules,
         outputs={
             name: OutputConfig(_terminal(output.terminal, first), output.safe)
             for name, output in machine.outputs.items()
         },
         inputs={
-            name: _terminal(wired.terminal, first, active_low=wired.active_low)
+            name: replace(_terminal(wired.terminal, first), active_low=wired.active_low)
             for name, wired in machine.inputs.items()
         },
         pots={
@@ -103,27 +109,15 @@ def canopen_config(machine: Machine) -> CanopenConfig:
     )
 
 
-def _axis(axis: Axis, machine: Machine, nodes: dict[str, CanNode]) -> AxisConfig:
-    node = nodes.get(axis.name)
-    home = machine.hardware.homes.get(axis.name)
+def _axis(axis: Axis, machine: Machine, node: CanNode | None) -> AxisConfig:
+    home = machine.hardware.homes.get(axis.name) or HomeModel()
     return AxisConfig(
-        name=axis.name,
-        node=node.id if node else 0,
-        count=axis.count,
-        vmax=axis.vmax,
-        amax=axis.amax,
-        following_window=axis.following_window,
-        following_time=axis.following_time,
-        corner=axis.amax * machine.timing.setpoint,
-        travel=axis.travel,
-        absolute=axis.absolute,
-        home_method=home.method if home else 0,
-        home_speed=axis.home_speed,
-        home_latch=home.latch if home else 0.0,
-        home_offset=home.offset if home else 0.0,
-        counts_per_rev=node.counts_per_rev if node else 0,
-        eds=_eds(node, machine) if node else "",
-        objects=_objects(node) if node else (),
+        **axis_figures(axis, machine),
+        node=node,
+        counts_per_rev=node.counts_per_rev if node is not None else 0,
+        home_method=home.method,
+        home_latch=home.latch,
+        home_offset=home.offset,
     )
 
 
@@ -131,17 +125,8 @@ def _spindle(machine: Machine, nodes: dict[str, CanNode]) -> SpindleConfig | Non
     node = nodes.get("spindle")
     if node is None or machine.hardware.spindle_driver != "cia402":
         return None
-    model = machine.spindle
-    return SpindleConfig(
-        node=node.id,
-        rpm_max=model.rpm_max,
-        accel=model.accel,
-        decel=model.decel,
-        counts_per_rev=node.counts_per_rev,
-        eds=_eds(node, machine),
-        objects=_objects(node),
-        is_c=machine.c_enabled and machine.spindle_is_c and "C" not in nodes,
-    )
+    model, is_c = machine.spindle, machine.c_enabled and machine.spindle_is_c and "C" not in nodes
+    return SpindleConfig(node, model.rpm_max, model.accel, model.decel, is_c)
 
 
 def _encoder(machine: Machine, nodes: dict[str, CanNode]) -> EncoderConfig | None:
@@ -149,35 +134,16 @@ def _encoder(machine: Machine, nodes: dict[str, CanNode]) -> EncoderConfig | Non
     model = machine.hardware.table(EncoderTable)
     if model is None:
         return None
-    node = nodes[model.node]
-    own = node.profile != 402
-    return EncoderConfig(
-        name=node.name,
-        node=node.id if own else 0,
-        index=model.index,
-        sub=model.sub,
-        counts_per_rev=model.counts_per_rev,
-        rpm_max=machine.spindle.rpm_max,
-        eds=_eds(node, machine) if own else "",
-        objects=_objects(node) if own else (),
-    )
+    own = nodes[model.node] if nodes[model.node].profile != 402 else None
+    counts, rpm_max = model.counts_per_rev, machine.spindle.rpm_max
+    return EncoderConfig(model.node, own, model.index, model.sub, counts, rpm_max)
 
 
-def _objects(node: CanNode) -> tuple[tuple[int, int, int], ...]:
-    return tuple((entry.index, entry.sub, entry.value) for entry in node.sdo)
-
-
-def _eds(node: CanNode, machine: Machine) -> str:
-    """An EDS file lies beside the machine file unless its path says otherwise."""
-    return str(Path(machine.source).parent / node.eds) if node.eds else ""
-
-
-def _terminal(text: str, first: str, *, active_low: bool = False) -> Terminal:
+def _terminal(text: str, first: str) -> CanTerminal:
     found = can_terminal(text)
     if found is None:
         raise DriverError(f"terminal {text!r} is no address on the bus")
-    node = first if found.node == PLAIN_MODULE else found.node
-    return Terminal(node, found.index, found.sub, found.bit, active_low)
+    return replace(found, node=first) if found.node == PLAIN_MODULE else found
 
 
 def _played(machine: Machine) -> bool:
@@ -201,7 +167,7 @@ def can_driven(machine: Machine, clock: Clock) -> Driven:
     if not has_station(machine):
         wired = ports.station if "handwheel" in machine.hardware.analog else None
         panel = PanelStation(clock, ports.io.inputs, wired)
-        hands, ports = hands or panel, dataclasses.replace(ports, station=panel)
+        hands, ports = hands or panel, replace(ports, station=panel)
     if peers is None:
         return Driven(ports, owned.tick, owned.close, hands)
 
@@ -241,7 +207,10 @@ def written_at_start(machine: Machine) -> dict[str, Objects]:
     except ImportError as error:
         raise DriverError(lacking(error)) from error
     config = canopen_config(machine)
-    told = {axis.name: (*standing(axis, config.bus), *axis.objects) for axis in config.axes if axis.node}
+    told: dict[str, Objects] = {}
+    for axis in config.axes:
+        if axis.node is not None:
+            told[axis.name] = (*standing(axis, config.bus), *axis.node.sdo)
     if config.spindle is not None:
-        told["spindle"] = (*stopping(config.bus), *config.spindle.objects)
-    return told | {module.name: (*watching(config.bus), *module.objects) for module in config.modules}
+        told["spindle"] = (*stopping(config.bus), *config.spindle.node.sdo)
+    return told | {module.name: (*watching(config.bus), *module.sdo) for module in config.modules}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.compose.backend_entry import Backend, Connected
+from app.compose.backend_entry import Backend, Connected, axis_figures
 from app.compose.inverter_backend import has_inverter, with_inverter
 from core.machine.machine_model import Axis, Machine
 from core.ports import Clock
@@ -38,19 +38,9 @@ def sim_config(machine: Machine) -> SimConfig:
 
 
 def _axis(axis: Axis, machine: Machine) -> SimAxis:
-    return SimAxis(
-        name=axis.name,
-        vmax=axis.vmax,
-        amax=axis.amax,
-        count=axis.count,
-        following_window=axis.following_window,
-        following_time=axis.following_time,
-        travel=axis.travel,
-        absolute=axis.absolute,
-        home_speed=axis.home_speed or 10.0,
-        corner=axis.amax * machine.timing.setpoint,
-        own_drive=not machine.spindle_is_c,
-    )
+    figures = axis_figures(axis, machine)
+    home_speed = axis.home_speed or 10.0
+    return SimAxis(**figures | {"home_speed": home_speed}, own_drive=not machine.spindle_is_c)
 
 
 def _driven(machine: Machine, clock: Clock) -> Driven:

@@ -47,10 +47,7 @@ class CanopenAxes:
         self.axes = tuple(axis.name for axis in config.axes)
         self.commit = config.commit
         self.drives = DriveSet(config.axes, bus, MODES[config.mode])
-        tolerance = Tolerance(
-            position=(0.001,) * len(self.axes),
-            velocity=tuple(1.01 * axis.corner + 1e-3 for axis in config.axes),
-        )
+        tolerance = Tolerance.of(config.axes)
         self.queue = SetpointQueue(self.axes, (0.0,) * len(self.axes), config.commit, tolerance)
         self.follower = follower_of(config, self.drives, self.queue)
         self.homing: Homing | None = None

@@ -9,7 +9,7 @@ from canopen.emcy import EmcyError
 
 from core.ports import DriverError, Fault
 from drivers.canopen import canopen_objects as od
-from drivers.canopen.canopen_bus import Bus, Node
+from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import EncoderConfig
 from drivers.canopen.canopen_setup import Setup, watching
 from drivers.canopen.cia402_drives import SYNCS, Drive402
@@ -27,12 +27,8 @@ class CanEncoder:
         self._config = config
         self._bus = bus
         self._drive = drive
-        if drive is None:
-            self.node = Node(config.node, od.dictionary(config.name, config.eds, od.encoder_objects))
-            bus.add_node(self.node)
-            self._setup = Setup(bus, self.node, config.name)
-        else:
-            self.node, self._setup = drive.node, drive.setup
+        self._setup = drive.setup if drive is not None else _setup_of(config, bus)
+        self.node = self._setup.node
         self.trouble: Fault | str = ""
         self.missing = 0
         self._range = _WORD  # counts after which it goes round
@@ -44,10 +40,10 @@ class CanEncoder:
     def connect(self) -> None:
         """Check and map it. Raises DriverError with what does not fit."""
         setup, config = self._setup, self._config
-        if self._drive is None:
+        if config.node is not None:
             setup.pre_operational()
             setup.demand_profile(406)
-            setup.write_all((*watching(self._bus.config), *config.objects))
+            setup.write_all((*watching(self._bus.config), *config.node.sdo))
             self._check_counts()
             self.node.nmt.add_heartbeat_callback(self._heartbeat)
             self.node.emcy.add_callback(self._emergency)
@@ -154,6 +150,12 @@ class CanEncoder:
         self.trouble = self.trouble or Fault(
             f"spindle encoder {self._config.name}: {what}", "spindle-encoder"
         )
+
+
+def _setup_of(config: EncoderConfig, bus: Bus) -> Setup:
+    assert config.node is not None  # else it is the second input of a drive
+    objects = od.dictionary(config.name, config.node.eds, od.encoder_objects)
+    return Setup(bus, config.name, config.node.id, objects)
 
 
 class MeasuredSpindle:

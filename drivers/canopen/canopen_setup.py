@@ -12,9 +12,9 @@ from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
 from core.ports import DriverError, Segments
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus, Node
-from drivers.canopen.canopen_config import AxisConfig, Objects
+from drivers.canopen.canopen_config import AxisConfig
 from drivers.canopen.canopen_objects import MODE_BITS
-from drivers.canopen.canopen_table import BusConfig
+from drivers.canopen.canopen_table import BusConfig, Objects
 
 _Answer = TypeVar("_Answer")
 
@@ -29,27 +29,28 @@ _NAMES = {1: "profile position", 3: "profile velocity", 6: "homing", 7: "interpo
 class Setup:
     """SDO work on one node; each failure names node, object and what was answered."""
 
-    def __init__(self, bus: Bus, node: Node, name: str) -> None:
+    def __init__(self, bus: Bus, name: str, number: int, objects: canopen.ObjectDictionary) -> None:
         self._bus = bus
-        self._node = node
         self._name = name
+        self.node = Node(number, objects)
+        bus.add_node(self.node)
         self.told: tuple[str, ...] = ()
 
     def pre_operational(self) -> None:
         """PDO mapping may only change there."""
-        self._node.nmt.state = "PRE-OPERATIONAL"
+        self.node.nmt.state = "PRE-OPERATIONAL"
 
     def read(self, index: int, sub: int = 0) -> int:
         """One object as a number; signed where the dictionary says so."""
-        data = self._sdo(index, sub, lambda: self._node.sdo.upload(index, sub))
+        data = self._sdo(index, sub, lambda: self.node.sdo.upload(index, sub))
         return self._number(index, sub, data)
 
     def write(self, index: int, sub: int, value: int) -> None:
         """Write one object and read it back. Raises DriverError when the node keeps something else."""
-        size = len(self._sdo(index, sub, lambda: self._node.sdo.upload(index, sub)))
+        size = len(self._sdo(index, sub, lambda: self.node.sdo.upload(index, sub)))
         data = (value % (1 << 8 * size)).to_bytes(size, "little")
-        self._sdo(index, sub, lambda: self._node.sdo.download(index, sub, data))
-        kept = self._sdo(index, sub, lambda: self._node.sdo.upload(index, sub))
+        self._sdo(index, sub, lambda: self.node.sdo.download(index, sub, data))
+        kept = self._sdo(index, sub, lambda: self.node.sdo.upload(index, sub))
         if kept != data:
             shown = int.from_bytes(kept, "little")
             raise DriverError(
@@ -71,7 +72,7 @@ class Setup:
         found = self.read(od.DEVICE_TYPE) & _PROFILE
         if found != profile:
             raise DriverError(
-                f"{self._name}: node {self._node.id} is a device of profile {found}, expected {profile};"
+                f"{self._name}: node {self.node.id} is a device of profile {found}, expected {profile};"
                 " check the node numbers in [canopen.nodes]",
                 "drive-setup",
             )
@@ -102,11 +103,11 @@ class Setup:
 
     def receive(self, number: int, *entries: tuple[int, int], at_once: bool = False) -> None:
         """Map what the node receives in PDO ``number``: (object, bits)."""
-        self._map(self._pdo(self._node.rpdo, number), entries, _AT_ONCE if at_once else _ON_SYNC)
+        self._map(self._pdo(self.node.rpdo, number), entries, _AT_ONCE if at_once else _ON_SYNC)
 
     def transmit(self, number: int, heard: Callable[[PdoMap], None], *entries: tuple[int, int]) -> None:
         """Map what the node sends in PDO ``number`` at each SYNC: (object + sub · 65536, bits)."""
-        pdo = self._pdo(self._node.tpdo, number)
+        pdo = self._pdo(self.node.tpdo, number)
         self._map(pdo, entries, _ON_SYNC)
         pdo.callbacks[:] = [heard]
 
@@ -148,16 +149,16 @@ class Setup:
 
     def _put(self, index: int, sub: int, value: int, size: int) -> None:
         data = value.to_bytes(size, "little")
-        self._sdo(index, sub, lambda: self._node.sdo.download(index, sub, data))
+        self._sdo(index, sub, lambda: self.node.sdo.download(index, sub, data))
 
     def _number(self, index: int, sub: int, data: bytes) -> int:
-        variable = self._node.object_dictionary.get_variable(index, sub)
+        variable = self.node.object_dictionary.get_variable(index, sub)
         signed = variable is not None and variable.data_type in canopen.objectdictionary.SIGNED_TYPES
         return int.from_bytes(data, "little", signed=signed)
 
     def _sdo(self, index: int, sub: int, do: Callable[[], _Answer]) -> _Answer:
         """Do something with one object; what can go wrong becomes one sentence."""
-        where = f"{self._name}: node {self._node.id}, object {index:04X}:{sub}"
+        where = f"{self._name}: node {self.node.id}, object {index:04X}:{sub}"
         try:
             return do()
         except SdoAbortedError as error:

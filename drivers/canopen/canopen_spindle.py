@@ -26,7 +26,7 @@ class CanopenSpindle:
         self.lent = False  # to C: it does not turn as the spindle
         self.kept = False  # and shall stay so
         self.blind = False  # its counter leaps by homing: that is no turning
-        self.drive = Drive402(bus, "spindle", config.node, config.eds, od.TARGET_SPEED, od.VELOCITY)
+        self.drive = Drive402(bus, config.node, od.TARGET_SPEED, od.VELOCITY)
 
     def connect(self) -> None:
         """Configure it. Raises DriverError."""
@@ -39,10 +39,10 @@ class CanopenSpindle:
         )
         if config.is_c:
             modes = MODE_BITS[PV] | MODE_BITS[HM] | MODE_BITS[IP]
-            objects = (*standing, (od.IP_SUBMODE, 0, -1), *config.objects)
+            objects = (*standing, (od.IP_SUBMODE, 0, -1), *config.node.sdo)
             self.drive.connect((od.PVT_RECORD,), modes, objects)
         else:
-            self.drive.connect((), MODE_BITS[PV], (*standing, *config.objects))
+            self.drive.connect((), MODE_BITS[PV], (*standing, *config.node.sdo))
         self.drive.mode, self.drive.target = PV, 0
 
     def tick(self) -> None:
@@ -96,7 +96,7 @@ class CanopenSpindle:
     @property
     def counts_per_rev(self) -> int:
         """Of its encoder; 0: not known."""
-        return self._config.counts_per_rev
+        return self._config.node.counts_per_rev
 
     @property
     def wanted(self) -> bool:
@@ -122,14 +122,14 @@ class CanopenSpindle:
 
     def angle(self) -> tuple[float, float] | None:
         """(time, turns) by the drive's encoder, of the last answer; None without counts a turn."""
-        if not self._config.counts_per_rev:
+        if not self.counts_per_rev:
             return None
         now = self.drive.position
         if self.blind:
-            return self.drive.answered, self._counts / self._config.counts_per_rev
+            return self.drive.answered, self._counts / self.counts_per_rev
         self._counts += (now - self._last + 2**31) % 2**32 - 2**31  # its counter goes round every few hours
         self._last = now
-        return self.drive.answered, self._counts / self._config.counts_per_rev
+        return self.drive.answered, self._counts / self.counts_per_rev
 
     def leapt(self) -> None:
         """Its counter stands elsewhere now: it goes on from there."""

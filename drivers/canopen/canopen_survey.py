@@ -7,10 +7,11 @@ from typing import NamedTuple
 
 from core.ports import Clock, DriverError
 from drivers.canopen import canopen_objects as od
-from drivers.canopen.canopen_bus import Bus, Node
+from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_objects import MODE_BITS
 from drivers.canopen.canopen_setup import Setup
+from drivers.canopen.canopen_table import CanNode
 
 _PATIENCE = 0.4  # s for an answer; nodes of a bus that works need milliseconds
 _IDENTITY = (("vendor", 1), ("product", 2), ("revision", 3), ("serial", 4))
@@ -40,27 +41,25 @@ def survey(config: CanopenConfig, clock: Clock, idle: Callable[[], None] | None 
     """
     bus = _Quiet(config.bus, clock, idle)
     try:
-        return [_asked(bus, *wanted) for wanted in _wanted(config)]
+        return [_asked(bus, wanted) for wanted in _wanted(config)]
     finally:
         bus.close()
 
 
-def _wanted(config: CanopenConfig) -> Iterator[tuple[str, int, int]]:
-    """(name, node, profile)."""
-    yield from ((axis.name, axis.node, 402) for axis in config.axes if axis.node)
+def _wanted(config: CanopenConfig) -> Iterator[CanNode]:
+    yield from (axis.node for axis in config.axes if axis.node is not None)
     if config.spindle is not None:
-        yield "spindle", config.spindle.node, 402
-    if config.encoder is not None and config.encoder.node:
-        yield config.encoder.name, config.encoder.node, 406
-    yield from ((module.name, module.node, 401) for module in config.modules)
+        yield config.spindle.node
+    if config.encoder is not None and config.encoder.node is not None:
+        yield config.encoder.node
+    yield from config.modules
 
 
-def _asked(bus: Bus, name: str, number: int, profile: int) -> Answer:
+def _asked(bus: Bus, config: CanNode) -> Answer:
+    name, number, profile = config.name, config.id, config.profile
     objects = {402: od.drive_objects, 406: od.encoder_objects}.get(profile, od.module_objects)
-    node = Node(number, objects())
-    bus.add_node(node)
-    node.sdo.RESPONSE_TIMEOUT = _PATIENCE
-    setup = Setup(bus, node, name)
+    setup = Setup(bus, name, number, objects())
+    setup.node.sdo.RESPONSE_TIMEOUT = _PATIENCE
     try:
         setup.demand_profile(profile)
     except DriverError as error:

@@ -61,6 +61,8 @@ _SPINDLE_ENCODER = (
     Field("counts_per_rev", Kind.WHOLE, low=-100_000_000, high=100_000_000),
 )
 
+Objects = tuple[tuple[int, int, int], ...]  # index, sub-index, value: written at every start and read back
+
 
 @dataclass(frozen=True, slots=True)
 class BusConfig:
@@ -80,29 +82,15 @@ class BusConfig:
 
 
 @dataclass(frozen=True, slots=True)
-class SdoValue:
-    """One object that is written at every start and read back."""
-
-    index: int
-    sub: int
-    value: int
-
-    @property
-    def address(self) -> str:
-        """As the machine file writes it."""
-        return f"{self.index:04X}:{self.sub}"
-
-
-@dataclass(frozen=True, slots=True)
 class CanNode:
     """One node of the bus: ``name`` is an axis, ``spindle`` or the name of an I/O module."""
 
     name: str
     id: int
     profile: int  # 402, 401 or 406
-    eds: str = ""  # file of the object dictionary; empty: the standard objects
+    eds: str = ""  # file of the object dictionary, beside the machine file; empty: the standard objects
     counts_per_rev: int = 0  # the drive counts velocities in rpm of this many counts; 0: in counts/s
-    sdo: tuple[SdoValue, ...] = ()  # those for all nodes of its profile, then its own
+    sdo: Objects = ()  # those for all nodes of its profile, then its own
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,12 +115,13 @@ class EncoderTable:
 
 @dataclass(frozen=True, slots=True)
 class CanTerminal:
-    """One bit (``bit`` from 0) or one whole number (``bit`` -1) of an object."""
+    """One bit (``bit`` from 0) or one whole number (``bit`` -1) of an object of a module or an axis."""
 
     node: str
     index: int
     sub: int
-    bit: int
+    bit: int = -1
+    active_low: bool = False
 
 
 # --- addresses -------------------------------------------------------------------------------------------
@@ -206,15 +195,20 @@ def _whole(value: object) -> TypeGuard[int]:
     return isinstance(value, int) and not isinstance(value, bool)
 
 
-def _objects(file: FileReading, node: str) -> tuple[SdoValue, ...]:
+def _objects(file: FileReading, node: str) -> Objects:
     """The good entries of one node's objects, or of ``all``."""
     entries = file.raw(f"{_SDO}.{node}")
     found = entries.items() if isinstance(entries, dict) else ()
     return tuple(
-        SdoValue(*address, value)
+        (*address, value)
         for key, value in found
         if (address := sdo_address(key)) and _whole(value) and not _wrong_object(key, value)
     )
+
+
+def _place(node: str, index: int, sub: int) -> str:
+    """The path of an object of a node, as the machine file writes it."""
+    return f'{_SDO}.{node}."{index:04X}:{sub}"'
 
 
 def _bus_table(file: FileReading) -> CanopenTable:
@@ -307,16 +301,16 @@ def _heartbeat(file: FileReading) -> Iterator[Finding]:
         return
     host, beat = values.whole("canopen.host_id"), values.number("canopen.heartbeat_ms")
     for node in file.names(_SDO):
-        for entry in _objects(file, node):
-            if entry.index != _WATCH or entry.sub == 0:
+        for index, sub, value in _objects(file, node):
+            if index != _WATCH or sub == 0:
                 continue
-            watched, patience = entry.value >> 16 & 0x7F, (entry.value & 0xFFFF) / 1000.0
+            watched, patience = value >> 16 & 0x7F, (value & 0xFFFF) / 1000.0
             if watched != host or patience < 2 * beat:
                 best = host << 16 | round(3000 * beat)
                 expected = (
                     f"watches node {watched} for {1000 * patience:g} ms; expected {best}: the host, 3 beats"
                 )
-                yield Finding(f'{_SDO}.{node}."{entry.address}"', str(entry.value), expected)
+                yield Finding(_place(node, index, sub), str(value), expected)
 
 
 _C_WITHOUT = (
@@ -362,14 +356,14 @@ def _outside(file: FileReading) -> Iterator[Finding]:
         if max(map(abs, ends)) / count > _MOST:
             yield Finding(path, "", f"is more than a drive can count: {_MOST} counts of {count:g}")
         for node in ("all", axis):
-            for entry in _objects(file, node):
-                if entry.index != _LIMITS or entry.sub not in {1, 2}:
+            for index, sub, value in _objects(file, node):
+                if index != _LIMITS or sub not in {1, 2}:
                     continue
-                value = entry.value - 2**32 if entry.value > _MOST else entry.value
-                needed = round(ends[entry.sub - 1] / count)
-                if value > needed if entry.sub == 1 else value < needed:
-                    place = f'{_SDO}.{node}."{entry.address}"'
-                    yield Finding(place, str(entry.value), f"cuts {path}, which needs {needed} counts")
+                signed = value - 2**32 if value > _MOST else value
+                needed = round(ends[sub - 1] / count)
+                if signed > needed if sub == 1 else signed < needed:
+                    why = f"cuts {path}, which needs {needed} counts"
+                    yield Finding(_place(node, index, sub), str(value), why)
 
 
 # --- terminals: bits and words that the modules can have ---------------------------------------------------

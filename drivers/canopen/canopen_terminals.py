@@ -8,9 +8,10 @@ import canopen
 
 from core.ports import DriverError, Fault, StationState
 from drivers.canopen import canopen_objects as od
-from drivers.canopen.canopen_bus import Bus, Node
-from drivers.canopen.canopen_config import CanopenConfig, ModuleConfig, Terminal
+from drivers.canopen.canopen_bus import Bus
+from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_setup import Setup, watching
+from drivers.canopen.canopen_table import CanNode, CanTerminal
 from drivers.canopen.cia402_drives import Drive402
 
 # --- A CiA 401 module: inputs, outputs with a safe state of their own, analog words.
@@ -27,12 +28,12 @@ _KINDS = ((od.DIGITAL_IN, "bytes of inputs"), (od.DIGITAL_OUT, "bytes of outputs
 class Module401:
     """One module, of the size that it says it has: at most what its first PDOs carry."""
 
-    def __init__(self, config: ModuleConfig, bus: Bus) -> None:
+    def __init__(self, config: CanNode, bus: Bus) -> None:
         self.config = config
         self._bus = bus
-        self.node = Node(config.node, od.dictionary(config.name, config.eds, od.module_objects))
-        bus.add_node(self.node)
-        self.setup = Setup(bus, self.node, config.name)
+        objects = od.dictionary(config.name, config.eds, od.module_objects)
+        self.setup = Setup(bus, config.name, config.id, objects)
+        self.node = self.setup.node
         self.inputs = bytearray(BYTES)
         self.outputs = bytearray(BYTES)
         self.analog = [0] * _WORDS
@@ -43,7 +44,7 @@ class Module401:
         self.trouble: Fault | str = ""
         self._sent = (-1e9, b"")
 
-    def measure(self, needed: Iterable[Terminal]) -> None:
+    def measure(self, needed: Iterable[CanTerminal]) -> None:
         """Ask how much there is of it. Raises DriverError for a terminal that it does not have."""
         self.setup.pre_operational()
         self.setup.demand_profile(401)
@@ -67,7 +68,7 @@ class Module401:
             self.setup.write(od.ANALOG_EVENTS, 0, 1)
         for i in range(words):
             self.setup.write(od.ANALOG_DELTA, i + 1, 1 if i + 1 in self.counting else _DELTA)
-        self.setup.write_all((*watching(self._bus.config), *self.config.objects))
+        self.setup.write_all((*watching(self._bus.config), *self.config.sdo))
         if outputs:
             self.setup.receive(1, *_entries(od.DIGITAL_OUT, outputs, 8), at_once=True)
         if inputs:
@@ -88,7 +89,7 @@ class Module401:
         when, what = self._sent
         outputs = bytes(self.outputs[: self.sizes[od.DIGITAL_OUT]])
         if outputs and (outputs != what or now - when >= _AGAIN):
-            self._bus.send_message(0x200 + self.config.node, outputs)
+            self._bus.send_message(0x200 + self.config.id, outputs)
             self._sent = (now, outputs)
 
     def look(self, patience: float) -> None:
@@ -155,7 +156,7 @@ class CanopenIO:
         for name, output in self._config.outputs.items():
             self._written[name] = self._bit(self._module(output.terminal).outputs, output.terminal)
 
-    def _needed(self) -> Iterator[Terminal]:
+    def _needed(self) -> Iterator[CanTerminal]:
         """All terminals of the machine file, those of drives too."""
         config = self._config
         yield from config.inputs.values()
@@ -200,7 +201,7 @@ class CanopenIO:
             raise DriverError(f"output {name} stays off: {self._bus.trouble or module.trouble}", "output")
         self._switch(name, output.terminal, on)
 
-    def _switch(self, name: str, where: Terminal, on: bool) -> None:
+    def _switch(self, name: str, where: CanTerminal, on: bool) -> None:
         module = self._module(where)
         raw = on is not where.active_low
         byte = module.outputs[where.sub - 1] & ~(1 << where.bit)
@@ -254,16 +255,16 @@ class CanopenIO:
         raw = self._module(pot.terminal).analog[pot.terminal.sub - 1]
         return pot.low + (pot.high - pot.low) * min(max(raw / _FULL, 0.0), 1.0)
 
-    def _read(self, where: Terminal) -> bool:
+    def _read(self, where: CanTerminal) -> bool:
         if where.node in self.modules:
             raw = self._bit(self.modules[where.node].inputs, where)
         else:
             raw = bool(self._drives[where.node].inputs >> where.bit & 1)
         return raw is not where.active_low
 
-    def _module(self, where: Terminal) -> Module401:
+    def _module(self, where: CanTerminal) -> Module401:
         return self.modules[where.node]
 
     @staticmethod
-    def _bit(data: bytearray, where: Terminal) -> bool:
+    def _bit(data: bytearray, where: CanTerminal) -> bool:
         return bool(data[where.sub - 1] >> where.bit & 1)

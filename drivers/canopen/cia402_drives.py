@@ -10,8 +10,8 @@ from canopen.emcy import EmcyError
 
 from core.ports import DriverError, Fault, FaultCode
 from drivers.canopen import canopen_objects as od
-from drivers.canopen.canopen_bus import Bus, Node
-from drivers.canopen.canopen_config import AxisConfig, Objects
+from drivers.canopen.canopen_bus import Bus
+from drivers.canopen.canopen_config import AxisConfig
 from drivers.canopen.canopen_objects import (
     HM,
     IP,
@@ -23,6 +23,7 @@ from drivers.canopen.canopen_objects import (
     towards_enabled,
 )
 from drivers.canopen.canopen_setup import Setup, standing
+from drivers.canopen.canopen_table import CanNode, Objects
 
 _FOLLOWING = 0x8611  # EMCY
 SYNCS = 3  # answers that may be missing before a drive counts as silent
@@ -37,13 +38,12 @@ class Drive402:
     ``target`` is the object that the command carries: a position, or a speed for a spindle.
     """
 
-    def __init__(self, bus: Bus, name: str, node: int, eds: str, target: int, more: int) -> None:
+    def __init__(self, bus: Bus, config: CanNode, target: int, more: int) -> None:
         self.bus = bus
-        self.name = name
-        self.id = node
-        self.node = Node(node, od.dictionary(name, eds, od.drive_objects))
-        bus.add_node(self.node)
-        self.setup = Setup(bus, self.node, name)
+        self.name = config.name
+        self.id = config.id
+        self.setup = Setup(bus, self.name, self.id, od.dictionary(self.name, config.eds, od.drive_objects))
+        self.node = self.setup.node
         self._target_object, self._more_object = target, more
         self.goal = DriveState.OFF
         self.extra = 0  # bits 4, 5, 6, 8 of the control word, while enabled
@@ -197,11 +197,11 @@ class DriveSet:
     def __init__(self, axes: tuple[AxisConfig, ...], bus: Bus, mode: int) -> None:
         self._bus = bus
         self._mode = mode
-        self.indices = [i for i, axis in enumerate(axes) if axis.node]
+        self.indices = [i for i, axis in enumerate(axes) if axis.node is not None]
         self.axes = [
-            DrivenAxis(axis, Drive402(bus, axis.name, axis.node, axis.eds, od.TARGET, od.FOLLOWING))
+            DrivenAxis(axis, Drive402(bus, axis.node, od.TARGET, od.FOLLOWING))
             for axis in axes
-            if axis.node
+            if axis.node is not None
         ]
         self.seen = self._sent = bus.clock.now()  # the SYNC of the last answers, of the last exchange
 
@@ -319,7 +319,8 @@ class DriveSet:
         needed = MODE_BITS[self._mode] | (0 if config.absolute else MODE_BITS[HM])
         queued = self._mode == IP
         cubic: Objects = ((od.IP_SUBMODE, 0, _CUBIC),) if queued else ()
-        values = (*standing(config, self._bus.config), *cubic, *config.objects)
+        own = config.node.sdo if config.node is not None else ()
+        values = (*standing(config, self._bus.config), *cubic, *own)
         axis.drive.connect((od.PVT_RECORD,) if queued else (), needed, values)
         axis.homed, axis.last = config.absolute, axis.drive.position
         axis.drive.mode = self._mode

@@ -121,25 +121,25 @@ class CanopenDevices:
     def _build(self) -> None:
         config, plant = self.config, self.plant
         for axis in config.axes:
-            if axis.node:
+            if axis.node is not None:
                 servo = plant.servos[plant.names.index(axis.name)]
                 drive = AxisDrive(servo, partial(self._emergency, axis.name))
                 plant.drives[axis.name] = drive
-                self._add(axis.name, axis.node, drive)
+                self._add(axis.name, axis.node.id, drive)
         if config.spindle is not None:
-            counts = config.spindle.counts_per_rev
+            counts = config.spindle.node.counts_per_rev
             as_c = plant.config.axes[plant.names.index("C")] if config.spindle.is_c else None
             spindle = SpindleDrive(plant.spindle, counts, partial(self._emergency, "spindle"), as_c)
             plant.spindle_drive = spindle
-            self._add("spindle", config.spindle.node, spindle)
+            self._add("spindle", config.spindle.node.id, spindle)
         if config.encoder is not None:
             self.encoder = encoder = EncoderDevice(plant, config.encoder.counts_per_rev)
-            if config.encoder.node:
-                self._add(config.encoder.name, config.encoder.node, encoder)
+            if config.encoder.node is not None:
+                self._add(config.encoder.name, config.encoder.node.id, encoder)
             else:
                 plant.drives[config.encoder.name].second = lambda: encoder.position
         for module in config.modules:
-            self._add(module.name, module.node, TerminalBoard(module.name, config, plant), module=True)
+            self._add(module.name, module.id, TerminalBoard(module.name, config, plant), module=True)
 
     def _add(self, name: str, number: int, device: Device, *, module: bool = False) -> None:
         objects = od.module_objects() if module else od.drive_objects()

@@ -76,16 +76,12 @@ class Plant:
         self.spindle = SpindleMotor(config.spindle)
         self.terminals = Terminals(config.outputs, config.inputs, config.collet, config.seed)
         self.panel = Panel(config.palms, config.start_pulse, config.seed)
-        tolerance = Tolerance(
-            position=(0.001,) * len(self.names),
-            velocity=tuple(1.01 * axis.corner + 1e-3 for axis in config.axes),
-        )
         slides = Slides(
             self.names,
             tuple(axis.vmax for axis in config.axes),
             tuple(axis.amax for axis in config.axes),
             config.commit,
-            tolerance,
+            Tolerance.of(config.axes),
         )
         self.queue = GearedQueue(slides, self._readings())
         self.enabled = False

@@ -5,21 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from drivers.setpoint_queue import AxisFigures
+
 
 @dataclass(frozen=True, slots=True)
-class SimAxis:
-    """One servo axis; mm and seconds, or degrees for C. ``amax`` is what the drive brakes with on its own."""
+class SimAxis(AxisFigures):
+    """One servo axis."""
 
-    name: str
-    vmax: float
-    amax: float
-    count: float
-    following_window: float
-    following_time: float
-    travel: tuple[float, float] | None = None
-    absolute: bool = True
-    home_speed: float = 10.0
-    corner: float = 4.0  # velocity that a corner may jump: amax times the setpoint interval
     power_up: float = 0.0  # where the slide stands from home when power comes on
     bandwidth: float = 40.0  # Hz, of the position loop
     feed_forward: float = 0.9  # of the velocity: what is missing shows as following error

@@ -10,7 +10,7 @@ import resources
 from app.compose.machine_files import load_machine, parse_machine
 from core.machine.serial_table import DncModel
 from core.table_schema import Finding, MachineFileError
-from drivers.canopen.canopen_table import CanopenTable, CanTerminal, SdoValue, can_terminal
+from drivers.canopen.canopen_table import CanopenTable, CanTerminal, can_terminal
 from drivers.grblhal.grblhal_table import GrblhalTable
 from drivers.inverter.inverter_table import InverterTable
 from drivers.lookalikes.plant_config import PlannedFault
@@ -52,7 +52,7 @@ def test_shipped_bus_in_model_units() -> None:
         ("spindle", 3, 402),
         ("io", 10, 401),
     ]
-    assert SdoValue(0x6007, 0, 3) in table.nodes[0].sdo
+    assert (0x6007, 0, 3) in table.nodes[0].sdo
     assert table.nodes[3].sdo == ()  # "all" means the drives
     assert machine.hardware.spindle_driver == "cia402"
     assert machine.hardware.homes["X"].method == 1

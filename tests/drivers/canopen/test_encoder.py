@@ -138,7 +138,7 @@ def test_a_node_that_is_no_encoder_is_refused() -> None:
     stand = EncoderBench(can_machine(*OWN))
     module = stand.machine.io.modules["io"]
     assert stand.machine.config.encoder is not None
-    other = dataclasses.replace(stand.machine.config.encoder, node=module.config.node)
+    other = dataclasses.replace(stand.machine.config.encoder, node=module.config)
     wrong = CanEncoder(other, stand.machine.bus, None)
     with pytest.raises(DriverError, match="is a device of profile 401, expected 406"):
         wrong.connect()

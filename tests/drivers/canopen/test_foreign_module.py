@@ -9,8 +9,9 @@ import pytest
 
 from core.ports import DriverError
 from drivers.canopen.canopen_bus import Bus
-from drivers.canopen.canopen_config import CanopenConfig, ModuleConfig, OutputConfig, PotConfig, Terminal
-from drivers.canopen.canopen_table import BusConfig
+from drivers.canopen.canopen_config import CanopenConfig, OutputConfig, PotConfig
+from drivers.canopen.canopen_table import BusConfig, CanNode
+from drivers.canopen.canopen_table import CanTerminal as Terminal
 from drivers.canopen.canopen_terminals import CanopenIO
 from drivers.clocks import StepClock
 from tests.drivers.canopen.foreign import NODE, ForeignModule
@@ -33,7 +34,7 @@ class Bench:
             CanopenConfig(
                 bus=bus,
                 axes=(),
-                modules=(ModuleConfig("io", NODE),),
+                modules=(CanNode("io", NODE, 401),),
                 inputs={"guard": GUARD, "estop": ESTOP} if inputs else {},
                 outputs={"coolant": OutputConfig(COOLANT), "collet": OutputConfig(COLLET, None)}
                 if outputs
