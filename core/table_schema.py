@@ -316,6 +316,13 @@ def _expected(field: Field, inch: bool | None) -> str:
     return f"{field.kind.value}, {low}…{shown(field.high, field.unit, inch)}"
 
 
+def raw_at(data: object, path: str) -> object:
+    """What stands in a parsed file at a path; None: nothing."""
+    for key in path.split("."):
+        data = data.get(key) if isinstance(data, dict) else None
+    return data
+
+
 # --- tables that drivers add ------------------------------------------------------------------------------
 
 
@@ -331,10 +338,7 @@ class FileReading:
 
     def raw(self, path: str) -> object:
         """What stands in the file at a path, read or not; None: nothing."""
-        found: object = self.data
-        for key in path.split("."):
-            found = found.get(key) if isinstance(found, dict) else None
-        return found
+        return raw_at(self.data, path)
 
     def names(self, path: str) -> list[str]:
         """The keys of a table whose names are of the owner's choice."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Protocol
 
 from app.desk.machine_file_changes import FileChanges
+from app.desk.persistence import Persistence
 from core.executor.commands import Command, EnableDrives
 from core.machine.machine_changes import ABSENT, Change, changes
 from core.machine.machine_model import Machine
@@ -20,12 +21,6 @@ class Kept(Protocol):
     """Settings of the store."""
 
     def setting(self, key: str) -> object: ...
-
-
-class Keeps(Kept, Protocol):
-    """Settings that can be written."""
-
-    def save_setting(self, key: str, value: object) -> None: ...
 
 
 def key_of(machine: Machine) -> str:
@@ -55,7 +50,7 @@ def differences(machine: Machine, kept: Kept) -> tuple[Change, ...] | None:
     )
 
 
-def file_changes(machine: Machine, kept: Keeps, tell: Callable[[str], None]) -> FileChanges:
+def file_changes(machine: Machine, kept: Persistence, tell: Callable[[str], None]) -> FileChanges:
     """For the screen. A file that is new here is accepted by being chosen; ``tell`` is for the log."""
     told = differences(machine, kept)
 

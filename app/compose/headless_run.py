@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
-from types import TracebackType
 from typing import TextIO
 
 from app.cli.command_errors import CommandError
@@ -35,24 +34,19 @@ class EventLog:
         self._file = file
 
     @classmethod
-    def new(cls, program: str) -> EventLog:
+    @contextmanager
+    def new(cls, program: str) -> Iterator[EventLog]:
         """A log in the product's folder, named after the time and the program."""
         folder = data_folder() / "logs"
         stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%f")
         path = folder / f"{stamp}-{Path(program).stem}.jsonl"
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            return cls(path, path.open("x", encoding="utf-8"))
+            file = path.open("x", encoding="utf-8")
         except OSError as error:
             raise CommandError(f"{path}: the event log cannot be written: {error.strerror}") from error
-
-    def __enter__(self) -> EventLog:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._file.close()
+        with file:
+            yield cls(path, file)
 
     def add(self, event: Event) -> None:
         """One more line."""

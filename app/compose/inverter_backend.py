@@ -11,7 +11,7 @@ from core.machine.machine_model import Machine
 from core.ports import AxisSink, Clock, DriverError, MachinePorts
 from drivers.clocks import StepClock
 from drivers.inverter.inverter_attendant import Keeper
-from drivers.inverter.inverter_spindle import Encoder, InverterSpindle, attendant, well
+from drivers.inverter.inverter_spindle import Encoder, InverterSpindle, attendant
 from drivers.inverter.inverter_table import InverterTable
 
 BY_FREQUENCY = (
@@ -77,7 +77,7 @@ def _attended(
         encoder=encoder,
         alive=lambda: keeper.alive,
         estop=lambda: ports.station.snapshot().estop,
-        lost=ports.spindle.fault if machine.backend == "canopen" else well,
+        lost=ports.spindle.fault if machine.backend == "canopen" else str,
     )
     said = (*attended.warnings, *(() if encoder else (BY_FREQUENCY,)))
     joined = dataclasses.replace(

@@ -5,31 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from core.executor.commands import (
-    Command,
-    ConfirmStart,
-    CycleStart,
-    EnableDrives,
-    FeedHold,
-    FeedOverride,
-    ForceOutput,
-    GiveProof,
-    Home,
-    Jog,
-    JogStep,
-    JogStop,
-    LoadJob,
-    PartsMade,
-    Prepare,
-    Renew,
-    Reset,
-    SetSwitch,
-    SpindleLimit,
-    SpindleStop,
-    UseOffsets,
-    Wheel,
-    WheelOff,
-)
+from core.executor import commands
 from core.executor.control_status import modal_with_offsets
 from core.executor.jogging import at_the_end
 from core.executor.machine_context import MachineContext
@@ -49,32 +25,32 @@ class CommandHandler:
         self._context = context
         self._control = control
         self._station = station
-        self._methods: dict[type[Command], Callable[[Any], None]] = {
-            CycleStart: self._start,
-            FeedHold: lambda command: control.feed_hold("", command.by),
-            Reset: lambda _: control.reset(),
-            EnableDrives: self._enable,
-            SetSwitch: self._switch,
-            FeedOverride: self._override,
-            SpindleLimit: self._limit,
-            LoadJob: self._load,
-            GiveProof: self._prove,
-            Renew: self._renew,
-            Prepare: self._prepare,
-            ConfirmStart: self._confirm,
-            PartsMade: self._count,
-            Jog: self._jog,
-            JogStep: self._step,
-            JogStop: lambda _: control.jogger.stop(),
-            Wheel: lambda command: control.wheel.select(command, control.state),
-            WheelOff: lambda _: control.wheel.off(control.state),
-            Home: self._home,
-            UseOffsets: self._offsets,
-            SpindleStop: self._stop_spindle,
-            ForceOutput: self._force,
+        self._methods: dict[type[commands.Command], Callable[[Any], None]] = {
+            commands.CycleStart: self._start,
+            commands.FeedHold: lambda command: control.feed_hold("", command.by),
+            commands.Reset: lambda _: control.reset(),
+            commands.EnableDrives: self._enable,
+            commands.SetSwitch: self._switch,
+            commands.FeedOverride: self._override,
+            commands.SpindleLimit: self._limit,
+            commands.LoadJob: self._load,
+            commands.GiveProof: self._prove,
+            commands.Renew: self._renew,
+            commands.Prepare: self._prepare,
+            commands.ConfirmStart: self._confirm,
+            commands.PartsMade: self._count,
+            commands.Jog: self._jog,
+            commands.JogStep: self._step,
+            commands.JogStop: lambda _: control.jogger.stop(),
+            commands.Wheel: lambda command: control.wheel.select(command, control.state),
+            commands.WheelOff: lambda _: control.wheel.off(control.state),
+            commands.Home: self._home,
+            commands.UseOffsets: self._offsets,
+            commands.SpindleStop: self._stop_spindle,
+            commands.ForceOutput: self._force,
         }
 
-    def obey(self, command: Command) -> None:
+    def obey(self, command: commands.Command) -> None:
         """Carry a command out, or log why not. Raises DriverError."""
         self._methods[type(command)](command)
 
@@ -83,7 +59,7 @@ class CommandHandler:
 
     # --- start, drives, switches --------------------------------------------------------------------------
 
-    def _start(self, _: CycleStart) -> None:
+    def _start(self, _: commands.CycleStart) -> None:
         """A start without the palms: where a real machine asks for two hands, this is not one."""
         machine = self._context.machine
         if machine.interlocks.two_hand_start and machine.backend != "sim":
@@ -91,7 +67,7 @@ class CommandHandler:
         elif self._station.may_start(self._context.now):
             self._control.start()
 
-    def _enable(self, _: EnableDrives) -> None:
+    def _enable(self, _: commands.EnableDrives) -> None:
         control = self._control
         if control.state is not State.DISABLED:
             self._refuse(f"drives cannot be switched on in state {control.state.value}")
@@ -102,7 +78,7 @@ class CommandHandler:
             self._context.sample = self._context.ports.axes.sample()
             control.enter(State.IDLE)
 
-    def _switch(self, command: SetSwitch) -> None:
+    def _switch(self, command: commands.SetSwitch) -> None:
         name, on = command.name, command.on
         if name not in _SWITCHES:
             self._refuse(f"there is no switch {name!r}")
@@ -110,13 +86,13 @@ class CommandHandler:
         setattr(self._context.switches, name, on)
         self._context.log("switch", f"{name.replace('_', ' ')} {'on' if on else 'off'}")
 
-    def _override(self, command: FeedOverride) -> None:
+    def _override(self, command: commands.FeedOverride) -> None:
         if not 0.0 <= command.fraction <= 1.5:
             self._refuse(f"feed override {command.fraction} is not between 0 and 1.5")
             return
         self._context.soft_override = command.fraction
 
-    def _limit(self, command: SpindleLimit) -> None:
+    def _limit(self, command: commands.SpindleLimit) -> None:
         rpm, highest = command.rpm, self._context.machine.spindle.rpm_max
         if rpm is not None and not 0.0 < rpm <= highest:
             self._refuse(f"spindle limit {rpm:g} is not between 0 and {highest:g} rpm")
@@ -130,7 +106,7 @@ class CommandHandler:
 
     # --- what Cycle Start will begin ----------------------------------------------------------------------
 
-    def _load(self, command: LoadJob) -> None:
+    def _load(self, command: commands.LoadJob) -> None:
         """A restart belonged to the program before; an open SEARCHTO or MDI stays open."""
         if self._control.state in CYCLE:
             self._refuse(_UNDER_WAY)
@@ -140,13 +116,13 @@ class CommandHandler:
         status.job, status.proof, status.start_refused = command.job, command.proof, ""
         self._control.program_run.changed_offsets.forget()
         if status.starts is Starts.RESTART:
-            self._prepare(Prepare(Starts.RESTART))
+            self._prepare(commands.Prepare(Starts.RESTART))
         self._context.log("load", command.job.source.name)
 
-    def _prove(self, command: GiveProof) -> None:
+    def _prove(self, command: commands.GiveProof) -> None:
         self._control.status.proof = command.proof
 
-    def _renew(self, command: Renew) -> None:
+    def _renew(self, command: commands.Renew) -> None:
         """Under a running program it waits for the end of the part; else it counts at once."""
         changed_offsets, status = self._control.program_run.changed_offsets, self._control.status
         why = changed_offsets.ask(command, status.job)
@@ -155,7 +131,7 @@ class CommandHandler:
         elif self._control.state not in CYCLE:
             changed_offsets.take_up(status)
 
-    def _prepare(self, command: Prepare) -> None:
+    def _prepare(self, command: commands.Prepare) -> None:
         if self._control.state in CYCLE:
             self._refuse(_UNDER_WAY)
             return
@@ -166,7 +142,7 @@ class CommandHandler:
         if command.job is not None and command.starts is Starts.RESTART:
             self._control.meant_at = self._context.now
 
-    def _confirm(self, command: ConfirmStart) -> None:
+    def _confirm(self, command: commands.ConfirmStart) -> None:
         why = self._control.program_run.interruption.answer(command.at)
         self._control.status.start_refused = ""
         if why:
@@ -175,12 +151,12 @@ class CommandHandler:
             self._control.meant_at = self._context.now
             self._context.log("confirmed", "a start at the first line is meant")
 
-    def _count(self, command: PartsMade) -> None:
+    def _count(self, command: commands.PartsMade) -> None:
         self._control.counters.made = max(0, command.parts)
 
     # --- jog, homing --------------------------------------------------------------------------------------
 
-    def _jog(self, command: Jog) -> None:
+    def _jog(self, command: commands.Jog) -> None:
         control, jogger = self._control, self._control.jogger
         if self._may_not_jog():
             return
@@ -194,7 +170,7 @@ class CommandHandler:
         elif control.state is State.IDLE:
             self._refuse(f"jog: {at_the_end(command.axis, command.velocity)}")
 
-    def _step(self, command: JogStep) -> None:
+    def _step(self, command: commands.JogStep) -> None:
         control, jogger = self._control, self._control.jogger
         if self._may_not_jog():
             return
@@ -217,7 +193,7 @@ class CommandHandler:
             return True
         return False
 
-    def _home(self, command: Home) -> None:
+    def _home(self, command: commands.Home) -> None:
         control = self._control
         idle = control.state is State.IDLE
         why = control.homing.begin(command.axis) if idle else f"state {control.state.value}"
@@ -228,7 +204,7 @@ class CommandHandler:
 
     # --- by hand between two programs ---------------------------------------------------------------------
 
-    def _offsets(self, command: UseOffsets) -> None:
+    def _offsets(self, command: commands.UseOffsets) -> None:
         if self._control.state in CYCLE:
             self._refuse("a program is under way: it keeps the offsets that it was proved with")
             return
@@ -236,14 +212,14 @@ class CommandHandler:
         status.modal = modal_with_offsets(status.modal, command.tools, command.secondary)
         self._context.log("offsets", "the offsets of the tables are in force")
 
-    def _stop_spindle(self, _: SpindleStop) -> None:
+    def _stop_spindle(self, _: commands.SpindleStop) -> None:
         if self._control.state in CYCLE:
             self._refuse("a program is under way: its spindle is stopped by feed hold and reset")
             return
         self._context.spindle.stop()
         self._context.log_stop("by-hand", "the spindle was stopped by hand")
 
-    def _force(self, command: ForceOutput) -> None:
+    def _force(self, command: commands.ForceOutput) -> None:
         why = self._output_refusal(command.name, command.on)
         if why:
             self._refuse(why)

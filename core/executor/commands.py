@@ -10,8 +10,14 @@ from core.executor.snapshot import Starts
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 
 
+class Command:
+    """Whatever may be posted; all of them are below."""
+
+    __slots__ = ()
+
+
 @dataclass(frozen=True, slots=True)
-class LoadJob:
+class LoadJob(Command):
     """Make this the program that Cycle Start runs; without a proof of this very job start is refused."""
 
     job: Job
@@ -19,14 +25,14 @@ class LoadJob:
 
 
 @dataclass(frozen=True, slots=True)
-class GiveProof:
+class GiveProof(Command):
     """The proof of the loaded job, when proving took longer than loading."""
 
     proof: Proof
 
 
 @dataclass(frozen=True, slots=True)
-class Renew:
+class Renew(Command):
     """The offsets of the loaded program have changed: from the next part on it is this job.
 
     It may come while the program is under way, which keeps its offsets to the end of the part. Without a
@@ -39,29 +45,29 @@ class Renew:
 
 
 @dataclass(frozen=True, slots=True)
-class CycleStart:
+class CycleStart(Command):
     """Start, or go on after hold, single block, M00, M01. The station's two-hand relay means the same."""
 
 
 @dataclass(frozen=True, slots=True)
-class FeedHold:
+class FeedHold(Command):
     """Come to rest on the path within commit + v/a. ``by`` tells the log who or what asked for it."""
 
     by: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True, slots=True)
-class Reset:
+class Reset(Command):
     """Stop, give the program up, back to its first line; also acknowledges an alarm."""
 
 
 @dataclass(frozen=True, slots=True)
-class EnableDrives:
+class EnableDrives(Command):
     """After E-stop or power-up: switch the drives on."""
 
 
 @dataclass(frozen=True, slots=True)
-class SetSwitch:
+class SetSwitch(Command):
     """``single_block``, ``optional_stop``, ``cycle_repeat``, ``no_count``: lit words that act at once."""
 
     name: str
@@ -69,14 +75,14 @@ class SetSwitch:
 
 
 @dataclass(frozen=True, slots=True)
-class FeedOverride:
+class FeedOverride(Command):
     """Fraction 0…1.5 of the programmed feed."""
 
     fraction: float
 
 
 @dataclass(frozen=True, slots=True)
-class Jog:
+class Jog(Command):
     """Move one axis while the lease lasts; mm/s or degrees/s, signed. Renewed before it ends, or it ends."""
 
     axis: str
@@ -85,7 +91,7 @@ class Jog:
 
 
 @dataclass(frozen=True, slots=True)
-class JogStep:
+class JogStep(Command):
     """Move one axis by exactly ``distance``, mm or degrees, at ``speed``, mm/s or degrees/s, and rest there.
 
     Refused while anything moves, and where the whole of it would leave the travel.
@@ -97,12 +103,12 @@ class JogStep:
 
 
 @dataclass(frozen=True, slots=True)
-class JogStop:
+class JogStop(Command):
     """Give the jog lease back at once; a step that is under way ends short."""
 
 
 @dataclass(frozen=True, slots=True)
-class Wheel:
+class Wheel(Command):
     """The handwheel moves ``axis`` by ``step`` a click, mm or degrees, while the lease lasts. Renewed.
 
     What the wheel has counted before moves nothing, nor what it counts faster than the axis goes. An end that
@@ -115,26 +121,26 @@ class Wheel:
 
 
 @dataclass(frozen=True, slots=True)
-class WheelOff:
+class WheelOff(Command):
     """The handwheel moves nothing any more; what it moves stops."""
 
 
 @dataclass(frozen=True, slots=True)
-class SpindleLimit:
+class SpindleLimit(Command):
     """F10: maximum spindle speed until restart, rpm; None: the machine's own."""
 
     rpm: float | None
 
 
 @dataclass(frozen=True, slots=True)
-class Home:
+class Home(Command):
     """Look for the home of one axis, or of all that do not know their position when ``axis`` is empty."""
 
     axis: str = ""
 
 
 @dataclass(frozen=True, slots=True)
-class UseOffsets:
+class UseOffsets(Command):
     """The tables of offsets have changed: position display and MDI go by them from now on.
 
     Refused while a program is under way, which keeps the offsets that it was proved with.
@@ -145,12 +151,12 @@ class UseOffsets:
 
 
 @dataclass(frozen=True, slots=True)
-class SpindleStop:
+class SpindleStop(Command):
     """Stop the spindle that MDI or an M02 has left turning; refused while a program is under way."""
 
 
 @dataclass(frozen=True, slots=True)
-class ForceOutput:
+class ForceOutput(Command):
     """Switch one output by hand, for the test page; only while nothing is under way."""
 
     name: str
@@ -158,7 +164,7 @@ class ForceOutput:
 
 
 @dataclass(frozen=True, slots=True)
-class ConfirmStart:
+class ConfirmStart(Command):
     """The operator has read which job was interrupted (its ``at``), and means to start at the first line.
 
     It counts for the next start, for a minute, and until the machine does anything else; an empty ``at``
@@ -169,14 +175,14 @@ class ConfirmStart:
 
 
 @dataclass(frozen=True, slots=True)
-class PartsMade:
+class PartsMade(Command):
     """So many parts of the loaded program are made; for the number of the part that is under way."""
 
     parts: int
 
 
 @dataclass(frozen=True, slots=True)
-class Prepare:
+class Prepare(Command):
     """What the next Cycle Start begins: the program, a restart in it, or a line of MDI with its proof.
 
     ``Starts.LINE`` without a job: MDI is open and no line is ready, so that nothing starts. Refused while
@@ -186,29 +192,3 @@ class Prepare:
     starts: Starts = Starts.PROGRAM
     job: Job | None = None
     proof: Proof | None = None
-
-
-Command = (
-    LoadJob
-    | GiveProof
-    | Renew
-    | CycleStart
-    | FeedHold
-    | Reset
-    | EnableDrives
-    | SetSwitch
-    | FeedOverride
-    | Jog
-    | JogStep
-    | JogStop
-    | Wheel
-    | WheelOff
-    | SpindleLimit
-    | Home
-    | UseOffsets
-    | SpindleStop
-    | ForceOutput
-    | ConfirmStart
-    | PartsMade
-    | Prepare
-)

@@ -11,7 +11,7 @@ from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.path_sections import SectionEnds
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
-from core.machine.machine_model import Axis, Machine
+from core.machine.machine_model import Machine
 
 
 class ProgramPass(NamedTuple):
@@ -125,9 +125,6 @@ def nominal_seconds(block: Block) -> float:
 # --- checked again before it moves ----------------------------------------------------------------------
 
 
-_TRAVEL_ROUNDING = 1e-6  # mm
-
-
 def check_block(block: Block, machine: Machine) -> None:
     """Raises AlarmError for a move out of the travel, one fed by the turns of a spindle that stands, and
     one of C while the spindle that is C turns.
@@ -139,15 +136,10 @@ def check_block(block: Block, machine: Machine) -> None:
     if block.c != block.c0 and block.modal.spindle and machine.spindle_is_c:
         raise AlarmError("c-is-spindle", f"line {block.line} moves C while the spindle turns", block.line)
     for axis, (low, high) in zip(machine.axes, block.machine_reach(), strict=True):
-        _check(block, axis, low, high)
-
-
-def _check(block: Block, axis: Axis, low: float, high: float) -> None:
-    if axis.travel is None:
-        return
-    if low < axis.travel[0] - _TRAVEL_ROUNDING or high > axis.travel[1] + _TRAVEL_ROUNDING:
-        unit = "degrees" if axis.rotary else "mm"
-        far = low if low < axis.travel[0] else high
-        raise AlarmError(
-            "travel", f"line {block.line} moves {axis.name} to {far:.3f} {unit} from home", block.line
-        )
+        least, most = axis.reach
+        if low < least or high > most:
+            unit = "degrees" if axis.rotary else "mm"
+            far = low if low < least else high
+            raise AlarmError(
+                "travel", f"line {block.line} moves {axis.name} to {far:.3f} {unit} from home", block.line
+            )

@@ -14,6 +14,7 @@ from core.table_schema import (
     Kind,
     Unit,
     Values,
+    raw_at,
     read_named,
     read_table,
     unknown_keys,
@@ -71,14 +72,9 @@ class DriverReading:
 
 def tables_there(data: Mapping[str, object], drivers: Sequence[Driver]) -> tuple[str, ...]:
     """Paths of the drivers' tables that a file has, or that count as there without being written."""
-
-    def there(table: DriverTable) -> bool:
-        found: object = data
-        for key in table.path.split("."):
-            found = found.get(key) if isinstance(found, dict) else None
-        return found is not None or table.always
-
-    return tuple(table.path for table in tables_of(drivers) if there(table))
+    return tuple(
+        table.path for table in tables_of(drivers) if table.always or raw_at(data, table.path) is not None
+    )
 
 
 def _read_analog(file: FileReading) -> Iterator[Finding]:

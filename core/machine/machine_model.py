@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import inf
 
 from core.machine.hardware_model import Hardware
 from core.machine.mill_kinematics import KinematicsModel
+
+_ROUNDING = 1e-6  # mm, degrees: the step of the control is coarser
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +30,12 @@ class Axis:
     rotary: bool = False
     still_window: float = 0.2  # how far it may be off where it rests
     still_time: float = 0.2  # s from the end of a motion until that counts, and for which it must be off
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """The travel and a rounding more: a word on the limit itself must not fail by an inch in binary."""
+        low, high = self.travel or (-inf, inf)
+        return low - _ROUNDING, high + _ROUNDING
 
     def following_limit(self, speed: float) -> float:
         """How far it may be off its setpoint at a commanded speed: as at rest, and what a drive trails."""

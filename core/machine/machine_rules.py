@@ -117,37 +117,25 @@ def _slide(axis: str) -> tuple[Rule, ...]:
         _below("limits.manual_rapid", f"{path}.vmax", "no slide goes faster than its vmax", Unit.FEED),
         _below(f"{path}.home.speed", f"{path}.vmax", "no slide goes faster than its vmax", Unit.FEED),
         _below(f"{path}.count", "limits.resolution", "a step must be a count at least", Unit.LENGTH),
-        _below(f"{path}.count", f"{path}.in_pos", "in position must be a count at least", Unit.LENGTH),
-        _below(
-            f"{path}.in_pos", f"{path}.fe_window", "in position lies inside the fault window", Unit.LENGTH
-        ),
-        _below(
-            f"{path}.in_pos",
-            f"{path}.still_window",
-            "in position lies inside what it may be off",
-            Unit.LENGTH,
-        ),
-        _below(f"{path}.still_window", f"{path}.fe_window", "at rest it trails behind nothing", Unit.LENGTH),
+        *_windows(axis, Unit.LENGTH),
+    )
+
+
+def _windows(axis: str, unit: Unit) -> tuple[Rule, ...]:
+    """Each holds the next: a count, in position, what the axis may be off at rest and in motion."""
+    count, arrived, still, window = (
+        f"axis.{axis}.{key}" for key in ("count", "in_pos", "still_window", "fe_window")
+    )
+    return (
+        _below(count, arrived, "in position must be a count at least", unit),
+        _below(arrived, window, "in position lies inside the fault window", unit),
+        _below(arrived, still, "in position lies inside what it may be off", unit),
+        _below(still, window, "at rest it trails behind nothing", unit),
     )
 
 
 def _rotary(axis: str) -> tuple[Rule, ...]:
-    path = f"axis.{axis}"
-    return (
-        _home_inside(axis),
-        _homing(axis),
-        _below(f"{path}.count", f"{path}.in_pos", "in position must be a count at least", Unit.DEGREES),
-        _below(
-            f"{path}.in_pos", f"{path}.fe_window", "in position lies inside the fault window", Unit.DEGREES
-        ),
-        _below(
-            f"{path}.in_pos",
-            f"{path}.still_window",
-            "in position lies inside what it may be off",
-            Unit.DEGREES,
-        ),
-        _below(f"{path}.still_window", f"{path}.fe_window", "at rest it trails behind nothing", Unit.DEGREES),
-    )
+    return _home_inside(axis), _homing(axis), *_windows(axis, Unit.DEGREES)
 
 
 _QUEUE = "the queue would run dry"

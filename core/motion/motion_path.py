@@ -188,14 +188,6 @@ class PathBuilder:
         )
 
 
-def build_path(blocks: Iterable[MotionBlock], limits: MotionLimits, *, rpm_max: float = np.inf) -> Path:
-    """The path of ``blocks``; see ``PathBuilder``. Raises MotionError when a block cannot be moved."""
-    builder = PathBuilder(limits, rpm_max=rpm_max)
-    builder.add(blocks)
-    builder.close()
-    return builder.path()
-
-
 def _pieces(table: BlockTable, limits: MotionLimits) -> tuple[Pieces, IntArray]:
     """Pieces of the blocks and how many (m,) each block has."""
     whole = make_pieces(table, constant_rates(table))

@@ -11,13 +11,10 @@ from core.machine.machine_model import Axis, Machine
 
 MM_PER_INCH = 25.4
 
-# The step of the control: a word on the limit itself must not fail by the noise of an inch in binary.
-TOLERANCE = 1e-6
-
 
 def travel_findings(blocks: Sequence[Block], machine: Machine) -> list[Diagnostic]:
     """An error for each block whose machine positions leave the travel; curved ways all along."""
-    limits = [(axis, *_reachable(axis)) for axis in machine.axes]
+    limits = [(axis, *axis.reach) for axis in machine.axes]
     return [
         _beyond(machine, block, axis, low, high)
         for block in _outside(blocks, limits)
@@ -45,14 +42,8 @@ def _outside(blocks: Sequence[Block], limits: Sequence[tuple[Axis, float, float]
             yield block
 
 
-def _reachable(axis: Axis) -> tuple[float, float]:
-    if axis.travel is None:
-        return float("-inf"), float("inf")
-    return axis.travel[0] - TOLERANCE, axis.travel[1] + TOLERANCE
-
-
 def _beyond(machine: Machine, block: Block, axis: Axis, low: float, high: float) -> Diagnostic:
-    least, greatest = _reachable(axis)
+    least, greatest = axis.reach
     at = low if low < least else high
     limit = least if low < least else greatest
     scale, unit, places = (1.0, "mm", 3) if block.modal.metric else (1 / MM_PER_INCH, "in", 4)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
 
 import numpy as np
 
@@ -14,41 +13,46 @@ from drivers.canopen.cia402_drives import DrivenAxis
 from drivers.setpoint_queue import SetpointQueue
 
 
-class Follower(Protocol):
-    """Keeps the drives on the queue. ``trouble`` says why it cannot, ``warning`` what was not exact."""
+class Follower:
+    """Keeps the drives on the queue; the drives begin where they stand."""
 
-    mode: int
-    trouble: str
-    urgent: bool  # the commands must go out in this tick
-    off_path: float  # counts, the worst deviation that could not be avoided
+    mode: int  # of CiA 402
+
+    def __init__(self, axes: Sequence[DrivenAxis], indices: Sequence[int], queue: SetpointQueue) -> None:
+        """``indices`` are those of the axes in the queue."""
+        self._axes = axes
+        self._indices = indices
+        self._queue = queue
+        self.trouble: Fault | str = ""  # why it cannot keep them on it
+        self.urgent = False  # the commands must go out in this tick
+        self.off_path = 0.0  # counts, the worst deviation that could not be avoided
 
     @property
     def playing(self) -> bool:
         """The drives still have something of it to do."""
-        ...
+        return False
 
     def check(self, segments: Segments) -> None:
-        """Refuse, by DriverError, what these drives cannot follow."""
-        ...
+        """Refuse, by DriverError, what these drives cannot follow; most follow any path."""
 
     def braked(self, at: float) -> None:
-        """The queue brakes from ``at`` on, without anything spliced."""
-        ...
+        """The queue brakes from ``at`` on, without anything spliced: most take that up by the next feed."""
 
     def feed(self, now: float) -> None:
         """Once a tick, before the commands go out."""
-        ...
+        raise NotImplementedError
 
     def prepare(self) -> None:
         """Before the drives get power."""
-        ...
+        for axis in self._axes:
+            axis.drive.target = axis.drive.position
 
     def abort(self) -> None:
         """The drives stop by themselves: nothing is fed any more."""
-        ...
+        self.trouble = ""
 
 
-class CspFollower:
+class CspFollower(Follower):
     """One setpoint a SYNC, straight from this process: experimental, good for a bench."""
 
     mode = CSP
@@ -56,33 +60,8 @@ class CspFollower:
     def __init__(
         self, axes: Sequence[DrivenAxis], indices: Sequence[int], queue: SetpointQueue, period: float
     ) -> None:
-        self._axes = axes
-        self._indices = indices
-        self._queue = queue
+        super().__init__(axes, indices, queue)
         self._period = period
-        self.trouble = ""
-        self.urgent = False
-        self.off_path = 0.0
-
-    @property
-    def playing(self) -> bool:
-        """Each setpoint is alone."""
-        return False
-
-    def check(self, segments: Segments) -> None:
-        """Any path will do."""
-
-    def braked(self, at: float) -> None:
-        """Taken up by the next feed."""
-
-    def prepare(self) -> None:
-        """The drives begin where they stand."""
-        for axis in self._axes:
-            axis.drive.target = axis.drive.position
-
-    def abort(self) -> None:
-        """Stay where the drives are."""
-        self.trouble = ""
 
     def feed(self, now: float) -> None:
         """What shall be reached at the SYNC after the next."""
@@ -97,7 +76,7 @@ class CspFollower:
 _ANSWER = 0.2  # s in which a drive must have taken a target
 
 
-class ProfiledFollower:
+class ProfiledFollower(Follower):
     """Gives each drive the end of the queue as its target, with the speeds of the path there.
 
     Only straight moves: each drive plans for itself, and on a line all of them keep in step.
@@ -106,14 +85,9 @@ class ProfiledFollower:
     mode = PP
 
     def __init__(self, axes: Sequence[DrivenAxis], indices: Sequence[int], queue: SetpointQueue) -> None:
-        self._axes = axes
-        self._indices = indices
-        self._queue = queue
+        super().__init__(axes, indices, queue)
         self._pending: tuple[float, Segments | None] | None = None
         self._told = -1.0
-        self.trouble: Fault | str = ""
-        self.urgent = False
-        self.off_path = 0.0
 
     @property
     def playing(self) -> bool:
@@ -142,10 +116,9 @@ class ProfiledFollower:
         self._pending = (at, None)
 
     def prepare(self) -> None:
-        """The drives begin where they stand."""
+        """No target is waiting."""
         self._pending = None
-        for axis in self._axes:
-            axis.drive.target = axis.drive.position
+        super().prepare()
 
     def abort(self) -> None:
         """No target is waiting any more."""

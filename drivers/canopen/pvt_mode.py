@@ -9,9 +9,10 @@ from collections.abc import Callable, Sequence
 from enum import Enum
 from typing import NamedTuple
 
-from core.ports import Fault, Segments, at_rest
+from core.ports import Fault, at_rest
 from drivers.canopen.canopen_objects import BIT_12, IP, NEW
 from drivers.canopen.cia402_drives import DrivenAxis
+from drivers.canopen.position_modes import Follower
 from drivers.setpoint_queue import SetpointQueue
 
 # --- From setpoints to PVT records: points of the path in counts, times in whole milliseconds.
@@ -100,7 +101,7 @@ class _Phase(Enum):
     ENDING = "the last point is in them"
 
 
-class PvtFollower:
+class PvtFollower(Follower):
     """Records of whole milliseconds, all axes at the same points, a fixed time ahead and never empty."""
 
     mode = IP
@@ -113,30 +114,19 @@ class PvtFollower:
         ahead: float,
         record: float,
     ) -> None:
-        self._axes = axes
-        self._indices = indices  # of these axes in the queue
-        self._queue = queue
+        super().__init__(axes, indices, queue)
         self._ahead = ahead - RESTART
         self._longest = round(1000 * record)
         self._phase = _Phase.REST
         self.front = 0.0  # time of the next point
         self._begun = 0.0
         self._sent: deque[float] = deque()  # when each record that was sent is over
-        self.trouble: Fault | str = ""
-        self.urgent = False
-        self.off_path = 0.0
         self.lowest = float("inf")  # s, the least that was ever queued in the drives
 
     @property
     def playing(self) -> bool:
         """The drives' queues are running."""
         return self._phase is not _Phase.REST
-
-    def check(self, segments: Segments) -> None:
-        """Any path will do."""
-
-    def braked(self, at: float) -> None:
-        """Taken up by the next feed."""
 
     def prepare(self) -> None:
         """Empty queues, so that nothing old is played."""

@@ -7,9 +7,8 @@ from core.ports import FaultCode
 # The range from 0x80 on: its older twins ? ~ ! are plain text inside comments and $ lines.
 STATUS, START, HOLD, JOG_CANCEL, FULL = 0x80, 0x81, 0x82, 0x85, 0x87
 RESET, STOP = 0x18, 0x19
-FEED_100, FEED_UP_10, FEED_DOWN_10, FEED_UP_1, FEED_DOWN_1 = range(0x90, 0x95)
-RAPID_100, RAPID_50, RAPID_25 = 0x95, 0x96, 0x97
-SPINDLE_100, SPINDLE_UP_10, SPINDLE_DOWN_10, SPINDLE_UP_1, SPINDLE_DOWN_1 = range(0x99, 0x9E)
+FEED, SPINDLE = tuple(range(0x90, 0x95)), tuple(range(0x99, 0x9E))  # to 100 %, up and down by 10, by 1
+RAPIDS = {100: 0x95, 50: 0x96, 25: 0x97}
 SPINDLE_PAUSE = 0x9E  # in a feed hold only: stops the spindle, and starts it when it comes again
 
 OFF = ("M5", "M9")  # spindle and coolant

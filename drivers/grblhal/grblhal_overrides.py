@@ -10,26 +10,10 @@ from drivers.grblhal import grblhal_codes
 _APART = 0.1  # s between two corrections
 _AGAIN = 2.5  # s without a word of the overrides, which every twentieth plain report carries at least
 _PATIENCE = 7.0  # s: then it does not take them
-Steps = tuple[int, int, int, int, int]
-_FEED: Steps = (
-    grblhal_codes.FEED_100,
-    grblhal_codes.FEED_UP_10,
-    grblhal_codes.FEED_DOWN_10,
-    grblhal_codes.FEED_UP_1,
-    grblhal_codes.FEED_DOWN_1,
-)
-_SPINDLE: Steps = (
-    grblhal_codes.SPINDLE_100,
-    grblhal_codes.SPINDLE_UP_10,
-    grblhal_codes.SPINDLE_DOWN_10,
-    grblhal_codes.SPINDLE_UP_1,
-    grblhal_codes.SPINDLE_DOWN_1,
-)
-_RAPIDS = {100: grblhal_codes.RAPID_100, 50: grblhal_codes.RAPID_50, 25: grblhal_codes.RAPID_25}
 LEAST, MOST = 10, 200  # per cent that the controller knows
 
 
-def steps_to(percent: int, told: int, steps: Steps = _FEED) -> bytes:
+def steps_to(percent: int, told: int, steps: tuple[int, ...] = grblhal_codes.FEED) -> bytes:
     """From the ``told`` per cent to ``percent``.
 
     By way of 100 % only where that lies in between: the reset acts at once, and slides that creep would leap.
@@ -115,5 +99,5 @@ class Overrides:
     def _steps(self, reported: tuple[int, ...]) -> bytes:
         feed, rapid, spindle = self.wanted
         data = steps_to(feed, reported[0])
-        data += bytes([_RAPIDS[rapid]]) if reported[1] != rapid else b""
-        return data + (steps_to(spindle, reported[2], _SPINDLE) if len(reported) > 2 else b"")
+        data += bytes([grblhal_codes.RAPIDS[rapid]]) if reported[1] != rapid else b""
+        return data + (steps_to(spindle, reported[2], grblhal_codes.SPINDLE) if len(reported) > 2 else b"")

@@ -31,21 +31,6 @@ class Encoder(Protocol):
         ...
 
 
-def nobody_presses() -> bool:
-    """A machine whose E-stop is not seen here."""
-    return False
-
-
-def well() -> str:
-    """An encoder of which nothing bad is known."""
-    return ""
-
-
-def always() -> bool:
-    """Somebody else calls the attendant's rounds."""
-    return True
-
-
 class InverterSpindle:
     """``core.ports.Spindle``. Without an encoder its speed is what the inverter gives, and it has no angle.
 
@@ -60,9 +45,9 @@ class InverterSpindle:
         clock: Clock,
         *,
         encoder: Encoder | None = None,
-        alive: Callable[[], bool] = always,
-        estop: Callable[[], bool] = nobody_presses,
-        lost: Callable[[], str] = well,
+        alive: Callable[[], bool] = lambda: True,
+        estop: Callable[[], bool] = lambda: False,
+        lost: Callable[[], str] = str,
     ) -> None:
         self._config, self._attendant, self._clock = config, attendant, clock
         self._encoder, self._alive, self._estop, self._lost = encoder, alive, estop, lost

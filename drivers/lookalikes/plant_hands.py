@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 from core.ports import DriverError
 from drivers.lookalikes.plant import Plant
@@ -163,33 +164,24 @@ class Schedule:
 
 def _acts(machine: PlantHands, fault: PlannedFault) -> tuple[Callable[[], None], Callable[[], None] | None]:
     """How it breaks, and how it is mended; a drive's fault stays until somebody clears it."""
+    if fault.what == "estop":
+        return machine.press_estop, machine.release_estop
     axis, value, text = fault.axis, fault.value, fault.text
-    known: dict[str, tuple[Callable[[], None], Callable[[], None] | None]] = {
-        "jam": (lambda: machine.jam(axis), lambda: machine.jam(axis, on=False)),
-        "encoder_stuck": (
-            lambda: machine.encoder_stuck(axis),
-            lambda: machine.encoder_stuck(axis, on=False),
-        ),
-        "runaway": (lambda: machine.runaway(axis, value), lambda: machine.runaway(axis, 0.0)),
-        "drive_fault": (lambda: machine.drive_fault(axis, text or "drive fault"), None),
-        "spindle_bog": (lambda: machine.spindle_bog(value), lambda: machine.spindle_bog(1.0)),
-        "spindle_wander": (lambda: machine.spindle_wander(value), lambda: machine.spindle_wander(0.0)),
-        "spindle_ignores_stop": (
-            machine.spindle_ignores_stop,
-            lambda: machine.spindle_ignores_stop(on=False),
-        ),
-        "spindle_fault": (
-            lambda: machine.spindle_fault(text or "spindle drive fault"),
-            lambda: machine.spindle_fault(""),
-        ),
-        "collet_sensor_stuck": (
-            machine.collet_sensor_stuck,
-            lambda: machine.collet_sensor_stuck(on=False),
-        ),
-        "station_silent": (machine.station_silent, lambda: machine.station_silent(on=False)),
-        "pot_noise": (lambda: machine.pot_noise(value), lambda: machine.pot_noise(0.0)),
-        "estop": (machine.press_estop, machine.release_estop),
+    # What the method of this name is given to break it, and to mend it.
+    known: dict[str, tuple[tuple[object, ...], tuple[object, ...] | None]] = {
+        "jam": ((axis,), (axis, False)),
+        "encoder_stuck": ((axis,), (axis, False)),
+        "runaway": ((axis, value), (axis, 0.0)),
+        "drive_fault": ((axis, text or "drive fault"), None),
+        "spindle_bog": ((value,), (1.0,)),
+        "spindle_wander": ((value,), (0.0,)),
+        "spindle_ignores_stop": ((), (False,)),
+        "spindle_fault": ((text or "spindle drive fault",), ("",)),
+        "collet_sensor_stuck": ((), (False,)),
+        "station_silent": ((), (False,)),
+        "pot_noise": ((value,), (0.0,)),
     }
     if fault.what not in known:
         raise DriverError(f"the simulation cannot break {fault.what!r}")
-    return known[fault.what]
+    act, (breaks, mends) = getattr(machine, fault.what), known[fault.what]
+    return partial(act, *breaks), None if mends is None else partial(act, *mends)

@@ -15,10 +15,10 @@ from collections.abc import Callable
 
 from core.interpreter.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
-from core.motion.motion_path import build_path
 from core.motion.motion_plan import plan
 from core.motion.window_planner import ChunkPlanner
 from tests.motion.moves import chords, rounded_chords
+from tests.motion.paths import build_path
 
 RADIUS, CHORD, FEED, PAIRS = 50.0, 0.02, 100.0, 7
 LIMITS = MotionLimits()

@@ -11,9 +11,9 @@ from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
 from core.language.source import Source
 from core.motion.axis_limits import MotionLimits
-from core.motion.motion_path import build_path
 from core.motion.motion_plan import plan
 from tests.executor.rig import INCH, CreepingClock, Rig
+from tests.motion.paths import build_path
 
 LINE = "G90G94F300\nG01F60Z-1\nX1\nM30\n"
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from core.motion.axis_limits import MotionError
-from core.motion.motion_path import build_path
 from core.motion.motion_plan import plan
 from tests.motion.moves import LIMITS, A, V, arc
+from tests.motion.paths import build_path
 
 
 def test_clockwise_from_above_is_the_convex_corner_of_a_shaft() -> None:

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from core.motion.motion_path import build_path
 from core.motion.motion_plan import plan
 from tests.motion.moves import LIMITS, A, T, arc, chords, line, polyline, rounded_chords
+from tests.motion.paths import build_path
 
 
 def corner_speed(points: list[tuple[float, float]], feed: float = 100.0) -> float:

@@ -15,11 +15,12 @@ from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
 from core.motion.axis_limits import FloatArray, MotionError, MotionLimits
 from core.motion.curved_axes import CHORD_ERROR, chords
-from core.motion.motion_path import Path, build_path
+from core.motion.motion_path import Path
 from core.motion.motion_plan import plan
 from core.motion.motion_profile import Profile
 from core.motion.window_planner import sample_positions
 from tests.motion.moves import line
+from tests.motion.paths import build_path
 
 # The shipped lathe: C at 200 rpm and 600 rpm/s at most.
 LIMITS = MotionLimits(vmax=(127.0, 127.0, 1200.0), amax=(3048.0, 3048.0, 3600.0), interval=0.001)

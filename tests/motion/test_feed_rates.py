@@ -14,9 +14,9 @@ from core.interpreter.modal_state import Modal
 from core.motion.axis_limits import MotionError
 from core.motion.block_table import read_blocks
 from core.motion.feed_rates import surface_rpms
-from core.motion.motion_path import build_path
 from core.motion.motion_plan import plan
 from tests.motion.moves import LIMITS, A, Point, arc, line
+from tests.motion.paths import build_path
 
 SURFACE = 2000.0  # mm/s
 

@@ -10,9 +10,9 @@ import pytest
 
 from core.interpreter.elementary_blocks import Kind
 from core.motion.axis_limits import MotionError, MotionLimits
-from core.motion.motion_path import build_path
 from core.motion.motion_plan import plan
 from tests.motion.moves import LIMITS, A, V, line, polyline
+from tests.motion.paths import build_path
 
 
 def test_a_long_line_is_a_trapezoid() -> None:

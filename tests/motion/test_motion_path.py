@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from core.motion.axis_limits import MotionError
-from core.motion.motion_path import PathBuilder, build_path
+from core.motion.motion_path import PathBuilder
 from core.motion.motion_plan import plan
 from tests.motion.moves import LIMITS, arc, line, polyline
+from tests.motion.paths import build_path
 
 
 def test_a_block_without_length_is_done_when_its_turn_comes() -> None:

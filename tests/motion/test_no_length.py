@@ -17,11 +17,12 @@ from hypothesis import strategies as st
 
 from core.interpreter.elementary_blocks import Block, Kind
 from core.motion.axis_limits import FloatArray, MotionLimits
-from core.motion.motion_path import Path, PathBuilder, build_path
+from core.motion.motion_path import Path, PathBuilder
 from core.motion.motion_plan import plan
 from core.motion.motion_profile import Profile
 from core.motion.window_planner import ChunkPlanner
 from tests.motion.moves import LIMITS, arc, line, polyline
+from tests.motion.paths import build_path
 
 pytestmark = pytest.mark.long
 

@@ -11,10 +11,11 @@ from hypothesis import strategies as st
 
 from core.interpreter.elementary_blocks import Block, Kind
 from core.motion.axis_limits import FloatArray
-from core.motion.motion_path import Path, build_path
+from core.motion.motion_path import Path
 from core.motion.motion_plan import plan, reachable_backward, reachable_forward
 from core.motion.motion_profile import Profile
 from tests.motion.moves import LIMITS, A, T, V, backwards, programs
+from tests.motion.paths import build_path
 
 pytestmark = pytest.mark.long
 

@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 
 from core.interpreter.elementary_blocks import Block, Kind
 from core.motion.axis_limits import MotionError
-from core.motion.motion_path import PathBuilder, build_path
+from core.motion.motion_path import PathBuilder
 from core.motion.motion_plan import plan
 from tests.motion.moves import LIMITS, A, T, arc, line, polyline, programs, rounded_chords
+from tests.motion.paths import build_path
 
 pytestmark = pytest.mark.long
 

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 
 from core.interpreter.elementary_blocks import Block
 from core.motion.axis_limits import FloatArray, MotionLimits
-from core.motion.motion_path import build_path
 from core.motion.motion_plan import plan
 from core.motion.motion_profile import SegmentArrays
 from core.ports import Segments
 from tests.motion.moves import LIMITS, A, T, arc, line, polyline, programs
+from tests.motion.paths import build_path
 
 pytestmark = pytest.mark.long
 

@@ -9,9 +9,9 @@ import pytest
 
 from core.interpreter.elementary_blocks import Block, Kind
 from core.motion.axis_limits import MotionError
-from core.motion.motion_path import build_path
 from core.motion.motion_plan import plan
 from tests.motion.moves import LIMITS, Point, line
+from tests.motion.paths import build_path
 
 
 def thread(end: Point, rpm: float = 600.0) -> Block:

@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 
 from core.interpreter.elementary_blocks import Block
 from core.motion.axis_limits import MotionError, MotionLimits
-from core.motion.motion_path import build_path
 from core.motion.motion_plan import plan
 from core.motion.window_planner import Chunk, ChunkPlanner, sample_positions
 from tests.motion.moves import LIMITS, A, chords, line, polyline, programs, rounded_chords
+from tests.motion.paths import build_path
 
 pytestmark = pytest.mark.long
 

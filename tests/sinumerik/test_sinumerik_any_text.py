@@ -10,7 +10,7 @@ import pytest
 from core.language.sinumerik.sinumerik_colours import spans
 from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionLimits
-from core.motion.motion_path import build_path
+from tests.motion.paths import build_path
 from tests.sinumerik.lathe import LINEAR, MODULO, run, setup
 
 WORDS = (
