@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from app.cli.figures import Json, degrees, length_of, per_minute, seconds
+from app.cli.stock_figures import stock_json
 from core.language.source import Dialect
 
 if TYPE_CHECKING:
     from core.language.diagnostics import Diagnostic
+    from core.proving.part_proof import PartReport
     from core.proving.proof_report import Report
 
 # Checks that interpreting makes by itself, by the code of their findings.
@@ -35,8 +37,10 @@ def stops_of(report: Report, *, optional_stop: bool) -> int:
     return report.stops + (report.optional_stops if optional_stop else 0)
 
 
-def report_json(file: str, report: Report, *, optional_stop: bool = False) -> Json:
-    """A proof with the keys and units of interfaces.md; ``stock`` is null until removal is computed.
+def report_json(
+    file: str, report: Report, part: PartReport | None = None, *, optional_stop: bool = False
+) -> Json:
+    """A proof with the keys and units of interfaces.md; ``stock`` is null on a mill.
 
     Lengths are inches for OmniTurn programs, mm for the others.
     """
@@ -75,7 +79,7 @@ def report_json(file: str, report: Report, *, optional_stop: bool = False) -> Js
             "left": report.ways.unproved,
             "cycle_time_s": [seconds(t) for t in report.ways.cycle],
         },
-        "stock": None,
+        "stock": stock_json(part, report.dialect) if part is not None else None,
         "final": {
             "x": length(report.final[0]),
             "z": length(report.final[1]),

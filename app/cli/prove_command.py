@@ -18,9 +18,11 @@ from app.cli.program_options import (
     read_source,
 )
 from app.cli.progress_bar import Progress
+from core.part.stock_forms import FORMS
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
+    from core.proving.part_proof import PartReport
     from core.proving.proof_report import Report
 
 
@@ -30,6 +32,7 @@ def add_parser(subparsers: SubParsers) -> None:
     parser.add_argument("files", nargs="+", metavar="FILE")
     add_program_options(parser)
     add_ideal_option(parser)
+    parser.add_argument("--stock", metavar="SPEC", help=f"what the part is made of: {FORMS}")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -48,16 +51,21 @@ def _status(path: Path, around: Circumstances, args: argparse.Namespace) -> int:
 
 
 def _prove(path: Path, around: Circumstances, args: argparse.Namespace) -> Report:
+    from app.cli.part_options import part_setting
     from app.cli.proof_json import report_json, stops_of
-    from core.proving.prove_program import prove
+    from core.proving.part_proof import prove_with_part
 
     source = read_source(path, args)
+    setting = part_setting(args, around)
     with Progress(f"proving {path.name}") as progress:
-        report = prove(source, around.setup, around.machine, progress.reach, ideal=args.ideal)
+        report, part = prove_with_part(
+            source, around.setup, around.machine, setting, progress.reach, ideal=args.ideal
+        )
     if args.json:
-        sys.stdout.write(json.dumps(report_json(str(path), report, optional_stop=args.optional_stop)) + "\n")
+        found = report_json(str(path), report, part, optional_stop=args.optional_stop)
+        sys.stdout.write(json.dumps(found) + "\n")
     else:
-        sys.stdout.write(_sheet(path, report))
+        sys.stdout.write(_sheet(path, report, part))
         stops = stops_of(report, optional_stop=args.optional_stop)
         sys.stdout.write(f"  stops {stops} times for the operator\n" if stops else "")
     return report
@@ -83,9 +91,10 @@ def _ways(report: Report) -> str:
     return f"  {ways.proved} ways proved{left}: cycle {low:.2f} … {high:.2f} s by inputs and block delete\n"
 
 
-def _sheet(path: Path, report: Report) -> str:
+def _sheet(path: Path, report: Report, part: PartReport | None) -> str:
     """The proof as a person reads it."""
     from app.cli.figures import MM_PER_INCH, inches, millimetres, per_minute
+    from app.cli.stock_figures import stock_lines
     from core.language.source import Dialect
 
     inch = report.dialect is Dialect.OMNITURN
@@ -107,4 +116,5 @@ def _sheet(path: Path, report: Report) -> str:
         f"{_reached(report, length, unit)}"
         f"  spindle {reach.rpm[0]:.0f} … {reach.rpm[1]:.0f} rpm"
         f"   feed {slow:.3f} … {fast:.3f} {unit}/min\n"
+        f"{stock_lines(part, report.dialect) if part is not None else ''}"
     )

@@ -63,6 +63,7 @@ COVERED = {
        for option in ("--machine", "--offsets", "--inputs", "--block-delete", "--strict", "--dialect",
                       "--optional-stop", "--json")},
     ("prove", "--ideal"): "test_the_options_of_a_program_act",
+    ("prove", "--stock"): "test_the_promised_keys_in_cubic_inches",
     ("expand", "--ideal"): "test_the_options_of_a_program_act",
     ("trace", "--dt"): "tests/cli/test_trace.py",
     ("trace", "--out"): "tests/cli/test_trace.py",

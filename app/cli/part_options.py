@@ -1,0 +1,65 @@
+"""What the options say about the part of a proof: its stock, and the shapes of the tools."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.command_errors import CommandError
+from app.cli.program_options import read_source
+
+if TYPE_CHECKING:
+    from app.cli.program_options import Circumstances
+    from core.part.stock import Stock
+    from core.part.stock_spec import StockSpec
+    from core.proving.part_proof import PartSetting
+
+
+def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting:
+    """Stock and tools as the options have them. Raises CommandError with what is wrong in them."""
+    from core.part.stock_spec import StockError
+    from core.proving.part_proof import PartSetting
+
+    setting = PartSetting(nose_radii={n: tool.nose_radius for n, tool in around.setup.tools.items()})
+    if args.stock is None:
+        return setting
+    try:
+        return replace(setting, stock=_stock(args, around, setting))
+    except StockError as error:
+        raise CommandError(f"--stock {error}") from error
+
+
+def _stock(args: argparse.Namespace, around: Circumstances, setting: PartSetting) -> Stock | StockSpec:
+    from core.part.stock_spec import profile_stock, stock_spec
+
+    spec = stock_spec(args.stock)
+    if spec.after:
+        return _left_by(Path(spec.after), args, around, setting, spec)
+    if spec.profile:
+        path = Path(spec.profile)
+        try:
+            text = path.read_text(encoding="utf-8")
+        except OSError as error:
+            raise CommandError(f"{path} cannot be read ({error.strerror}); check name and rights") from error
+        except UnicodeDecodeError as error:
+            raise CommandError(f"{path} is no text; a profile is a CSV file of z, r") from error
+        return profile_stock(spec.given, text, 25.4, spec.allowance)
+    return spec
+
+
+def _left_by(
+    path: Path, args: argparse.Namespace, around: Circumstances, setting: PartSetting, spec: StockSpec
+) -> Stock:
+    """What the program before leaves: its last part."""
+    from core.part.stock import Stock
+    from core.proving.part_proof import prove_with_part
+
+    report, part = prove_with_part(read_source(path, args), around.setup, around.machine, setting)
+    if report.errors or part is None or part.last is None:
+        first = f": {report.errors[0].text}" if report.errors else ""
+        raise CommandError(f"--stock {spec.given}: {path} leaves no part{first}")
+    outside = tuple((z + spec.allowance, r) for z, r in reversed(part.last.outside))
+    bore = tuple((z + spec.allowance, r) for z, r in reversed(part.last.bore or ()))
+    return Stock(spec.given, outside, bore)

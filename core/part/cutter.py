@@ -1,0 +1,117 @@
+"""A tool at work on a turned part: what its cutting edges take off along a move, and what its body meets.
+
+An outside tool takes off all that lies further out than its edge: what stands above the edge is a chip, or
+its holder would have met it. A tool in a bore takes off all that is nearer to the axis. A tool that works in
+the face takes off what its outline covers, and nothing beside it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from core.part.swept_edge import Edge, FloatArray, Point, sweep, towards_axis
+from core.part.turned_part import NOTHING, Cut, TurnedPart
+
+_OVERLAP = 0.02  # mm; a body that comes no further into metal touches it
+_PHASE = 1e-6  # turns
+
+
+class Side(StrEnum):
+    """From where a tool comes to the part."""
+
+    OUTSIDE = "outside"
+    BORE = "bore"
+    FACE = "face"
+
+
+@dataclass(frozen=True, slots=True)
+class _Sides:
+    """Both sides of one convex outline; ``far`` is that away from the axis, mirrored."""
+
+    near: Edge
+    far: Edge
+
+
+class Cutter:
+    """A tool's outlines (k, 2) of Z and r about its control point, made ready to be swept.
+
+    ``rear``: it works at X negative; its outlines are those that it has there.
+    """
+
+    def __init__(
+        self, cutting: Iterable[FloatArray], body: Iterable[FloatArray], side: Side, *, rear: bool = False
+    ) -> None:
+        self.side = side
+        self._across = -1.0 if rear else 1.0
+        turned = np.array([1.0, self._across])
+        self._cutting = [_sides(outline * turned) for outline in cutting]
+        self._body = [_sides(outline * turned) for outline in body]
+
+    def cut(self, part: TurnedPart, start: Point, end: Point) -> Cut:
+        """Take off what the edges sweep from one place of the control point to the next."""
+        return self._swept(part, start, end, cut=True)
+
+    def meets(self, part: TurnedPart, start: Point, end: Point) -> Cut:
+        """What the edges would take off, left where it is."""
+        return self._swept(part, start, end, cut=False)
+
+    def strikes(self, part: TurnedPart, start: Point, end: Point) -> Cut:
+        """What holder and shank run into; it is taken off, so that one collision is told once."""
+        met = NOTHING
+        start, end = self._front(start), self._front(end)
+        for outline in self._body:
+            met = met.joined(self._take(part, outline, start, end, cut=True))
+            if self.side is Side.BORE:
+                met = met.joined(_opposite(part, outline, start, end))
+        return met if met.depth > _OVERLAP and met.width > _OVERLAP else NOTHING
+
+    def thread(self, part: TurnedPart, start: Point, end: Point, lead: float, turns: float) -> Cut:
+        """The form of a thread in the section: the edge stands once a turn on its way.
+
+        ``turns`` is how far the spindle has turned since the pass began in step.
+        """
+        count = abs(end[0] - start[0]) / lead
+        met, at = NOTHING, np.ceil(turns - _PHASE) - turns
+        while at <= count + _PHASE:
+            share = min(at / count, 1.0) if count else 0.0
+            place = start[0] + (end[0] - start[0]) * share, start[1] + (end[1] - start[1]) * share
+            met = met.joined(self.cut(part, place, place))
+            at += 1.0
+        return met
+
+    def _front(self, place: Point) -> Point:
+        return place[0], place[1] * self._across
+
+    def _swept(self, part: TurnedPart, start: Point, end: Point, *, cut: bool) -> Cut:
+        met = NOTHING
+        start, end = self._front(start), self._front(end)
+        for outline in self._cutting:
+            met = met.joined(self._take(part, outline, start, end, cut=cut))
+        return met
+
+    def _take(self, part: TurnedPart, outline: _Sides, start: Point, end: Point, *, cut: bool) -> Cut:
+        if self.side is Side.OUTSIDE:
+            return part.outwards(*sweep(outline.near, start, end, part.columns), cut=cut)
+        first, far = sweep(outline.far, _mirrored(start), _mirrored(end), part.columns)
+        if self.side is Side.BORE:
+            return part.inwards(first, -far, cut=cut)
+        _, near = sweep(outline.near, start, end, part.columns)
+        return part.between(first, near, -far, cut=cut)
+
+
+def _opposite(part: TurnedPart, outline: _Sides, start: Point, end: Point) -> Cut:
+    """The wall of a bore on the other side of the axis, which a bar that is too thick meets."""
+    first, near = sweep(outline.near, start, end, part.columns)
+    return part.inwards(first, -near)
+
+
+def _sides(outline: FloatArray) -> _Sides:
+    return _Sides(towards_axis(outline), towards_axis(outline * np.array([1.0, -1.0])))
+
+
+def _mirrored(point: Point) -> Point:
+    return point[0], -point[1]

@@ -1,0 +1,134 @@
+"""What a user says about the stock: ``bar:1.0+.02``, ``tube:25mm:10mm``, ``profile:FILE.csv``, and so on.
+
+Lengths are inches; with ``mm`` behind them millimetres. The face stands at Z0, plus the allowance behind
+``+``.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from dataclasses import dataclass
+from itertools import pairwise
+
+from core.part.stock import Point, Stock
+from core.part.stock_forms import FORMS
+
+_INCH = 25.4
+_LENGTH = re.compile(r"(\d+\.?\d*|\.\d+)(mm|in)?", re.IGNORECASE)
+_LARGEST = 1000.0  # mm
+_BEHIND = 10.0  # mm of stock behind the last cut where no length is said
+
+
+class StockError(ValueError):
+    """The words say no stock; the message is a sentence."""
+
+
+@dataclass(frozen=True, slots=True)
+class StockSpec:
+    """Stock as it was said, mm. ``length`` 0: as long as the program needs.
+
+    ``file`` is that of a profile or of the program before; of a bar or tube it is empty.
+    """
+
+    given: str
+    diameter: float = 0.0
+    bore: float = 0.0
+    length: float = 0.0
+    allowance: float = 0.0
+    profile: str = ""
+    after: str = ""
+
+    def stock(self, back: float) -> Stock:
+        """The bar or tube; ``back`` is the least Z that is cut, mm."""
+        front = self.allowance
+        ends = front - self.length if self.length else min(back, front) - _BEHIND, front
+        hole = tuple((z, self.bore / 2) for z in ends) if self.bore else ()
+        return Stock(self.given, tuple((z, self.diameter / 2) for z in ends), hole)
+
+
+def stock_spec(text: str) -> StockSpec:
+    """What the words mean. Raises StockError with what is wrong and what could be said."""
+    kind, _, rest = text.strip().partition(":")
+    if kind in {"profile", "after"}:
+        if not rest:
+            raise StockError(f"{text!r} names no file; say {kind}:FILE")
+        name, allowance = _file_and_allowance(rest)
+        return StockSpec(text, allowance=allowance, **{kind: name})  # type: ignore[arg-type]
+    if kind not in {"bar", "tube"}:
+        raise StockError(f"{text!r} is no stock; say one of {FORMS}")
+    sizes, plus, extra = rest.partition("+")
+    allowance = _length(extra, text) if plus else 0.0
+    lengths = [_length(each, text) for each in sizes.split(":")]
+    return _round_stock(text, kind, lengths, allowance)
+
+
+def _round_stock(text: str, kind: str, lengths: list[float], allowance: float) -> StockSpec:
+    diameters = 1 if kind == "bar" else 2
+    if not diameters <= len(lengths) <= diameters + 1:
+        raise StockError(f"{text!r} has {len(lengths)} sizes; say one of {FORMS}")
+    diameter, bore = lengths[0], lengths[1] if kind == "tube" else 0.0
+    if not 0.0 < diameter <= _LARGEST:
+        raise StockError(f"{text!r}: a diameter is more than 0 and up to {_LARGEST / _INCH:.0f} in")
+    if kind == "tube" and not 0.0 < bore < diameter:
+        raise StockError(f"{text!r}: the bore of a tube is more than 0 and less than its diameter")
+    length = lengths[diameters] if len(lengths) > diameters else 0.0
+    if len(lengths) > diameters and not 0.0 < length <= 10.0 * _LARGEST:
+        raise StockError(f"{text!r}: a length is more than 0")
+    return StockSpec(text, diameter, bore, length, allowance)
+
+
+def _file_and_allowance(rest: str) -> tuple[str, float]:
+    """A file's name may hold a plus sign of its own: only one before a length at the end is the allowance."""
+    name, plus, extra = rest.rpartition("+")
+    if plus and _LENGTH.fullmatch(extra.strip()):
+        return name, _length(extra, rest)
+    return rest, 0.0
+
+
+def _length(text: str, whole: str) -> float:
+    """mm."""
+    found = _LENGTH.fullmatch(text.strip())
+    if found is None:
+        raise StockError(f"{whole!r}: {text!r} is no length; say 1.25 (inches) or 30mm")
+    return float(found[1]) * (1.0 if (found[2] or "").lower() == "mm" else _INCH)
+
+
+def profile_stock(given: str, text: str, scale: float, allowance: float) -> Stock:
+    """A blank by the points of a CSV text: Z, r (, bore r) in units of ``scale`` mm. Raises StockError."""
+    rows = _rows(text)
+    if len(rows) < 2:
+        raise StockError("a profile needs two points at least: z, r in each row")
+    if len({len(row) for row in rows}) > 1:
+        raise StockError("a profile has z, r, or z, r, bore in every row alike")
+    if rows[0][0] > rows[-1][0]:
+        rows.reverse()
+    if any(a[0] > b[0] for a, b in pairwise(rows)):
+        raise StockError("the points of a profile go one way along Z")
+    if any(row[1] < 0.0 for row in rows) or any(len(row) > 2 and not 0.0 <= row[2] <= row[1] for row in rows):
+        raise StockError("radii of a profile are not negative, and a bore is within its outside")
+    outside: tuple[Point, ...] = tuple((row[0] * scale + allowance, row[1] * scale) for row in rows)
+    bore: tuple[Point, ...] = tuple(
+        (row[0] * scale + allowance, row[2] * scale) for row in rows if len(row) > 2
+    )
+    return Stock(given, outside, bore)
+
+
+def _rows(text: str) -> list[list[float]]:
+    """The numbers; a head and lines that begin with # are left out."""
+    return [
+        _numbers(row, number)
+        for number, row in enumerate(csv.reader(io.StringIO(text)), start=1)
+        if row and not row[0].lstrip().startswith("#") and (number > 1 or _LENGTH.search(row[0]))
+    ]
+
+
+def _numbers(row: list[str], number: int) -> list[float]:
+    try:
+        values = [float(each) for each in row]
+    except ValueError as error:
+        raise StockError(f"row {number} of the profile is no numbers: {','.join(row)}") from error
+    if not 2 <= len(values) <= 3:
+        raise StockError(f"row {number} of the profile has {len(values)} numbers; it has z, r (, bore)")
+    return values

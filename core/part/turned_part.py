@@ -1,0 +1,256 @@
+"""The metal of a turned part: in columns along Z the radii between which there is some, and what is cut off.
+
+A column has one interval of r as a rule, more where a face groove or a ring is; they lie in layers from the
+axis outwards. Radii are exact in the middle of a column, so a cylinder, a cone and an arc are as exact as
+the outline that cuts them, and a shoulder stands within half a column of its place.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from core.part.polyline_fit import simplified
+from core.part.stock import Stock
+from core.part.swept_edge import Columns, FloatArray
+
+STEP = 0.008
+"""Width of a column, mm, up to ``_FINE`` of them: a shoulder is off by .004 mm (.00016 in) at most."""
+
+_FINE = 40_000  # columns: 320 mm
+_TOUCH = 1e-6  # mm; less is no metal
+_FIT = 0.004  # mm by which a profile that is told may be off
+_STEEP = 8.0  # a rise of so many steps from one column to the next is a shoulder
+
+Profile = list[tuple[float, float]]
+"""Z and r, mm, Z falling: from the face towards the chuck."""
+
+
+class Cut(NamedTuple):
+    """What one move meets. Lengths mm, area (mm²) that of the half section, volume mm³.
+
+    ``depth`` is the greatest thickness along r, ``width`` how much of Z it meets, from ``back`` to ``front``.
+    """
+
+    area: float = 0.0
+    volume: float = 0.0
+    depth: float = 0.0
+    width: float = 0.0
+    back: float = 0.0
+    front: float = 0.0
+    parts: bool = False  # a column has no metal any more that had some
+
+    def __bool__(self) -> bool:
+        return self.area > 0.0
+
+    def joined(self, other: Cut) -> Cut:
+        """Both together."""
+        if not self or not other:
+            return self or other
+        return Cut(
+            self.area + other.area,
+            self.volume + other.volume,
+            self.depth + other.depth,
+            max(self.width, other.width),
+            min(self.back, other.back),
+            max(self.front, other.front),
+            self.parts or other.parts,
+        )
+
+
+NOTHING = Cut()
+
+
+class Piece(NamedTuple):
+    """What was parted off: its volume, mm³, its outside, and its bore (None where it is solid throughout)."""
+
+    volume: float
+    outside: Profile
+    bore: Profile | None
+    min_wall: float | None
+
+
+class TurnedPart:
+    """A part in the lathe: metal from ``low`` to ``high`` (layers, columns), radii in mm."""
+
+    def __init__(self, stock: Stock, step: float = STEP) -> None:
+        length = stock.front - stock.back
+        count = max(math.ceil(length / step - 1e-9), 1)
+        step = length / count if count <= _FINE else length / _FINE
+        count = min(count, _FINE)
+        self.columns = Columns(stock.back + step / 2, step, count)
+        middles = self.columns.middles
+        self.high = stock.outside_at(middles)[np.newaxis, :].copy()
+        self.low = np.minimum(stock.bore_at(middles), self.high[0])[np.newaxis, :].copy()
+        self.pieces: list[Piece] = []
+        self.removed = 0.0  # mm³, by cuts alone
+
+    # --- what is there
+
+    @property
+    def volume(self) -> float:
+        """mm³ of all metal that the chuck holds."""
+        return self._volume(slice(None))
+
+    @property
+    def outermost(self) -> FloatArray:
+        """The greatest radius of each column (columns,), 0 where there is no metal."""
+        there = self.high > self.low
+        radii: FloatArray = np.max(np.where(there, self.high, 0.0), axis=0)
+        return radii
+
+    @property
+    def innermost(self) -> FloatArray:
+        """The least radius of each column (columns,) at which there is metal, 0 where there is none."""
+        there = self.high > self.low
+        inner = np.min(np.where(there, self.low, np.inf), axis=0)
+        return np.where(np.isfinite(inner), inner, 0.0)
+
+    def _volume(self, there: slice) -> float:
+        low, high = self.low[:, there], self.high[:, there]
+        return math.pi * self.columns.step * float(np.sum(high * high - low * low))
+
+    # --- what a cut meets and takes off
+
+    def outwards(self, first: int, reach: FloatArray, *, cut: bool = True) -> Cut:
+        """All metal further out than ``reach`` (m,) from column ``first`` on; left there without ``cut``."""
+        there = slice(first, first + len(reach))
+        met = NOTHING
+        for low, high in zip(self.low[:, there], self.high[:, there], strict=True):
+            left = np.minimum(np.maximum(reach, low), high)
+            met = met.joined(self._met(first, low, high, left, high))
+            if cut:
+                high[:] = left
+        return self._taken(met, cut=cut)
+
+    def inwards(self, first: int, reach: FloatArray, *, cut: bool = True) -> Cut:
+        """All metal nearer to the axis than ``reach`` (m,); as ``outwards``."""
+        there = slice(first, first + len(reach))
+        met = NOTHING
+        for low, high in zip(self.low[:, there], self.high[:, there], strict=True):
+            left = np.maximum(np.minimum(reach, high), low)
+            met = met.joined(self._met(first, low, high, low, left))
+            if cut:
+                low[:] = left
+        return self._taken(met, cut=cut)
+
+    def between(self, first: int, near: FloatArray, far: FloatArray, *, cut: bool = True) -> Cut:
+        """All metal between the radii ``near`` and ``far`` (m,); as ``outwards``."""
+        there = slice(first, first + len(near))
+        met = NOTHING
+        for layer in range(len(self.low)):
+            low, high = self.low[layer, there], self.high[layer, there]
+            start, end = np.clip(near, low, high), np.clip(far, low, high)
+            end = np.maximum(start, end)
+            met = met.joined(self._met(first, low, high, start, end))
+            if cut:
+                self._split(layer, there, start, end)
+        return self._taken(met, cut=cut)
+
+    def _split(self, layer: int, there: slice, start: FloatArray, end: FloatArray) -> None:
+        """Take out [start, end] of one layer: what is left further out goes into a layer of its own."""
+        low, high = self.low[layer, there].copy(), self.high[layer, there].copy()
+        taken = end > start
+        outer = taken & (high > end)
+        inner = taken & (start > low)
+        both = outer & inner
+        self.high[layer, there] = np.where(inner, start, np.where(taken & ~outer, low, high))
+        self.low[layer, there] = np.where(outer & ~inner, end, low)
+        if both.any():
+            self._layer_for(there, np.where(both, end, 0.0), np.where(both, high, 0.0), both)
+
+    def _layer_for(
+        self, there: slice, low: FloatArray, high: FloatArray, wanted: npt.NDArray[np.bool_]
+    ) -> None:
+        for layer in range(len(self.low)):
+            free = self.high[layer, there] <= self.low[layer, there]
+            if free[wanted].all():
+                self.low[layer, there] = np.where(wanted, low, self.low[layer, there])
+                self.high[layer, there] = np.where(wanted, high, self.high[layer, there])
+                return
+        empty = np.zeros((1, self.columns.number))
+        self.low, self.high = np.vstack((self.low, empty)), np.vstack((self.high, empty))
+        self._layer_for(there, low, high, wanted)
+
+    def _met(self, first: int, low: FloatArray, high: FloatArray, start: FloatArray, end: FloatArray) -> Cut:
+        """What lies between ``start`` and ``end`` of a layer, both within its metal."""
+        thick = end - start
+        touched = thick > _TOUCH
+        count = int(np.count_nonzero(touched))
+        if not count:
+            return NOTHING
+        step = self.columns.step
+        index = np.flatnonzero(touched)
+        back = self.columns.first + step * (first + int(index[0]) - 0.5)
+        front = self.columns.first + step * (first + int(index[-1]) + 0.5)
+        return Cut(
+            area=step * float(thick.sum()),
+            volume=math.pi * step * float(np.sum((end + start) * thick)),
+            depth=float(thick.max()),
+            width=step * count,
+            back=back,
+            front=front,
+            parts=bool(np.any(touched & (start <= low + _TOUCH) & (end >= high - _TOUCH))),
+        )
+
+    def _taken(self, met: Cut, *, cut: bool) -> Cut:
+        if cut and met:
+            self.removed += met.volume
+            if met.parts:
+                self._part_off()
+        return met
+
+    # --- parting off
+
+    def _part_off(self) -> None:
+        """What no metal joins to the end in the chuck any more falls off; chips are no pieces."""
+        metal = np.any(self.high > self.low + _TOUCH, axis=0)
+        there = np.flatnonzero(metal)
+        if not len(there):
+            return
+        gaps = np.flatnonzero(np.diff(there) > 1)
+        if not len(gaps):
+            return
+        starts, ends = there[gaps + 1], np.append(there[gaps[1:]], there[-1]) + 1
+        for start, end in zip(starts.tolist(), ends.tolist(), strict=True):
+            self._fall(slice(start, end))
+
+    def _fall(self, there: slice) -> None:
+        volume = self._volume(there)
+        if volume > 0.01:  # mm³
+            self.pieces.append(self._piece(there, volume))
+        self.low[:, there] = self.high[:, there] = 0.0
+
+    def rest(self) -> Piece:
+        """What the chuck holds, as a piece."""
+        return self._piece(slice(None), self.volume)
+
+    def _piece(self, there: slice, volume: float) -> Piece:
+        z = self.columns.middles[there]
+        high, low = self.outermost[there], self.innermost[there]
+        metal = high > low + _TOUCH
+        if not metal.any():
+            return Piece(0.0, [], None, None)
+        z, high, low = z[metal], high[metal], low[metal]
+        bored = low > _TOUCH
+        wall = float(np.min(high[bored] - low[bored])) if bored.any() else None
+        bore = self._profile(z, low) if bored.any() else None
+        return Piece(volume, self._profile(z, high), bore, wall)
+
+    def _profile(self, z: FloatArray, r: FloatArray) -> Profile:
+        """Points from the face towards the chuck; shoulders stand upright between two columns."""
+        half = self.columns.step / 2
+        rise = np.abs(np.diff(r))
+        beside = np.maximum(np.append(rise[1:], 0.0), np.insert(rise[:-1], 0, 0.0))
+        steps = np.flatnonzero(rise > _STEEP * np.maximum(self.columns.step, beside))
+        points = np.column_stack((z, r))
+        upright = np.column_stack(
+            (np.repeat(z[steps] + half, 2), np.column_stack((r[steps], r[steps + 1])).ravel())
+        )
+        points = np.insert(points, np.repeat(steps + 1, 2), upright, axis=0)
+        ends = np.array([[z[0] - half, r[0]]]), np.array([[z[-1] + half, r[-1]]])
+        fitted = simplified(np.vstack((ends[0], points, ends[1]))[::-1], _FIT)
+        return [(float(a), float(b)) for a, b in fitted]

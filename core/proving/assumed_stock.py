@@ -1,0 +1,80 @@
+"""The stock of a program of which nobody has said it: a bar just larger than what is cut."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+from core.interpreter.elementary_blocks import Kind
+from core.part.stock import Stock
+from core.proving.tip_moves import TipMove
+
+_MORE = 0.25  # mm of radius that a bar is larger
+_BEHIND = 10.0  # mm of bar behind the last cut
+_SAME = 0.01
+_NEAR_FACE, _CENTRE = 1.0, 1.0  # mm; a cut from outside to the axis here is the face
+_LEAST = 0.5  # mm of radius
+_WALL = 2.0  # mm around a bore
+
+
+def assumed_stock(
+    outside: Sequence[TipMove], bore: Sequence[TipMove], face: float | None, drill: float
+) -> Stock | None:
+    """The bar for the moves of outside tools; a tube where tools of a bore begin without a drill before them.
+
+    ``face``: Z at which a bar stop has held it, mm; None: Z0. ``drill``: diameter of the largest, 0: none.
+    None where nothing is cut behind the face.
+    """
+    cuts = [move for move in (*outside, *bore) if not move.quick]
+    front = 0.0 if face is None else face
+    back = min((z for move in cuts for z, _ in move.points), default=front)
+    if back > front:
+        return None
+    radius = max(_bar_radius(outside, bore, front), drill)
+    hole = 0.0 if drill else min(_bore_radius(bore, front), radius - _SAME)
+    ends = back - _BEHIND, front
+    inner = tuple((z, hole) for z in ends) if hole > 0.0 else ()
+    return Stock("", tuple((z, radius) for z in ends), inner)
+
+
+def _bar_radius(outside: Sequence[TipMove], bore: Sequence[TipMove], front: float) -> float:
+    """The largest cylinder that is cut, and a little more, but not so much that a rapid meets it.
+
+    Where grooves or faces alone are cut, the bar is a little smaller than where the largest of them begins.
+    """
+    feeds = [move for move in outside if not move.quick]
+    behind = [move for move in feeds if min(z for z, _ in move.points) < front - _SAME]
+    widest = max((abs(r) for move in bore if not move.quick for _, r in move.points), default=0.0)
+    along = [_cylinder(m) for m in behind if abs(m.points[0][0] - m.points[-1][0]) > _SAME]
+    begins = [max(abs(r) for _, r in move.points) - 2.0 * _MORE for move in behind or feeds]
+    faced = _faced(feeds, front)
+    cut = max([*along, widest] if along or widest else begins, default=_LEAST)
+    if faced < math.inf:
+        cut = min(max(cut, faced - 3.0 * _MORE), faced)
+    passed = [abs(r) for m in outside if m.quick for z, r in m.points if z < front - _SAME]
+    beside = [r for r in passed if r >= cut - _SAME]
+    return max(min([cut + _MORE, *beside]), widest + _WALL if widest else 0.0, _LEAST)
+
+
+def _faced(feeds: Iterable[TipMove], front: float) -> float:
+    """Where the first cut begins if it is that of the face: no bar is larger. Infinite if it is another."""
+    for move in feeds:
+        (z0, r0), (z1, r1) = move.points[0], move.points[-1]
+        if abs(abs(r1) - abs(r0)) > _CENTRE:
+            faces = abs(z1 - z0) <= _SAME and z1 > front - _NEAR_FACE and abs(r1) < _CENTRE < abs(r0)
+            return abs(r0) if faces else math.inf
+        if z1 < front - _NEAR_FACE:
+            return math.inf
+    return math.inf
+
+
+def _cylinder(move: TipMove) -> float:
+    """The radius of the bar that a move along Z needs: an arc bulges, a line outwards leaves the part."""
+    radii = [abs(r) for _, r in move.points]
+    return max(radii) if move.kind is Kind.ARC else min(radii)
+
+
+def _bore_radius(bore: Iterable[TipMove], front: float) -> float:
+    """Just under the smallest cylinder that is cut in the bore, 0 where none is."""
+    behind = [m for m in bore if not m.quick and min(z for z, _ in m.points) < front - _SAME]
+    return max(min((max(abs(r) for _, r in m.points) for m in behind), default=0.0) - _MORE, 0.0)

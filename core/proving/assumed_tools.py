@@ -1,0 +1,189 @@
+"""Tools that nobody has described: what a comment and the moves say about them, so that the part can be seen.
+
+A comment beside T counts first, in the words that shops use; without one the moves decide. What is assumed is
+told with the proof, and no holder is assumed: what cannot be known is not checked.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+
+from core.interpreter.elementary_blocks import Kind
+from core.part.tool_shape import ToolKind, ToolShape
+from core.proving.tip_moves import TipMove
+
+_ON_AXIS = 0.05  # mm; a tool that feeds along Z no further off it is a drill
+_SQUARE = 0.02  # mm of Z, in a plunge
+_GROOVE = 2.0  # mm; width of a grooving or parting tool that nobody has given
+_USUAL, _SMALLEST, _ALLOWANCE = 6.35, 1.0, 0.5  # mm; diameter of a drill that nobody has given
+_SLIM = "VNMG160404"  # reaches into contours that a stouter insert would not: a doubt speaks for the program
+_WIDE = 1.6  # widths; what feeds further along Z than that turns
+
+# Words of shop comments, the more telling first.
+_WORDS = (
+    (re.compile(r"\b(WORK|BAR)? ?STOP(PER)?\b|\bGRIPPER\b|\bPULLER\b"), None),
+    (re.compile(r"\bCENT(ER|RE)[ -]?DRILL|\bSPOT"), ToolKind.CENTRE_DRILL),
+    (re.compile(r"\bREAM"), ToolKind.REAMER),
+    (re.compile(r"\bTAP(PING)?\b"), ToolKind.TAP),
+    (re.compile(r"\bTHREAD"), ToolKind.THREADING),
+    (re.compile(r"\bPART(ING|[ -]?OFF)?\b|\bCUT[ -]?OFF\b"), ToolKind.PARTING),
+    (re.compile(r"\bGROOV"), ToolKind.GROOVING),
+    (re.compile(r"\bBOR(E|ING)\b"), ToolKind.BORING),
+    (re.compile(r"\bDRILL"), ToolKind.DRILL),
+    (re.compile(r"\bEND ?MILL|\bMILL"), ToolKind.END_MILL),
+    (re.compile(r"\bTURN|\bFAC(E|ING)\b"), ToolKind.TURNING),
+)
+_SIZE = re.compile(r"(?:(\d+)/(\d+)|(\d*\.\d+))\s*(?:IN(?:CH)?\b|\")?(?=[^/]*\bDRILL|\s*DIA)")
+_MILLIMETRES = re.compile(r"(\d+(?:\.\d+)?)\s*MM\b")
+
+
+@dataclass(slots=True)
+class ToolUse:
+    """What a program does with one tool: its comments, its moves, and whether the collet was open in them."""
+
+    number: int
+    comments: list[str] = field(default_factory=list)
+    moves: list[TipMove] = field(default_factory=list)
+    pushes_bar: bool = False  # it fed while the collet was open
+    mills: bool = False  # with C held, or in a plane of the virtual mill
+    nose_radius: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Assumed:
+    """``shape`` None: no cutting tool, but a bar stop, or a mill of unknown diameter."""
+
+    shape: ToolShape | None
+    words: str
+
+    def sized(self, bore: Sequence[TipMove]) -> Assumed:
+        """A drill without a diameter gets one: just under what is cut in the ``bore`` behind it."""
+        shape = self.shape
+        if shape is None or not shape.turns_itself or shape.diameter:
+            return self
+        inside = [abs(r) for m in bore if not m.quick for z, r in m.points if z < -_SQUARE]
+        diameter = max(2.0 * min(inside) - _ALLOWANCE, _SMALLEST) if inside else _USUAL
+        words = f"{self.words}, its diameter as {diameter / 25.4:.3f} in"
+        return Assumed(replace(shape, diameter=diameter), words)
+
+
+def assumed_tool(use: ToolUse) -> Assumed:
+    """The shape to be taken for a tool that has none, and a sentence that says so."""
+    kind, why = _kind(use)
+    if kind is None:
+        return Assumed(None, f"T{use.number} is taken for a bar stop")
+    shape = _shape(kind, use)
+    return Assumed(shape, f"T{use.number} is taken for {_names(kind, shape)} ({why})")
+
+
+def _kind(use: ToolUse) -> tuple[ToolKind | None, str]:
+    text = " ".join(use.comments).upper()
+    for words, kind in _WORDS:
+        if words.search(text):
+            return kind, "by its comment"
+    if use.pushes_bar:
+        return None, "by its moves"
+    if use.mills:
+        return ToolKind.END_MILL, "by its moves"
+    return _by_moves(use.moves), "by its moves"
+
+
+def _by_moves(moves: Sequence[TipMove]) -> ToolKind:
+    cuts = [move for move in moves if not move.quick]
+    if any(move.kind is Kind.THREAD for move in cuts):
+        return ToolKind.TAP if _on_axis(cuts) else ToolKind.THREADING
+    if cuts and _on_axis(cuts):
+        return ToolKind.DRILL
+    if _plunges(cuts):
+        back = min(z for move in cuts for z, _ in move.points)
+        return ToolKind.PARTING if _to_centre(cuts) and back < -_GROOVE else ToolKind.GROOVING
+    return ToolKind.BORING if in_bore(moves) else ToolKind.TURNING
+
+
+def _on_axis(cuts: Iterable[TipMove]) -> bool:
+    return all(abs(r) <= _ON_AXIS for move in cuts for _, r in move.points)
+
+
+def _plunges(cuts: Sequence[TipMove]) -> bool:
+    """Square to the axis and behind the face, and along Z at most as far as a groove is cleaned."""
+    if not cuts or any(move.kind is Kind.ARC for move in cuts):
+        return False
+    along = [abs(move.points[-1][0] - move.points[0][0]) for move in cuts]
+    plunged = [move for move, z in zip(cuts, along, strict=True) if z <= _SQUARE]
+    return bool(plunged) and max(along) <= _WIDE * _GROOVE and min(m.points[0][0] for m in plunged) < -_GROOVE
+
+
+def _to_centre(cuts: Iterable[TipMove]) -> bool:
+    return min(r for move in cuts for _, r in move.points) <= 0.25
+
+
+def in_bore(moves: Sequence[TipMove]) -> bool:
+    """Whether a tool leaves what it has cut towards the axis more often than away from it."""
+    votes = 0
+    for before, move in pairwise(moves):
+        inside = move.points[0][0] < 0.0
+        if move.quick and not before.quick and inside:
+            away = abs(move.points[-1][1]) - abs(move.points[0][1])
+            votes += (away < 0.0) - (away > 0.0)
+    feeds = [move for move in moves if not move.quick and move.kind is not Kind.THREAD]
+    return votes > 0 or (votes == 0 and _enters_before_cutting(feeds, moves))
+
+
+def _enters_before_cutting(feeds: Sequence[TipMove], moves: Sequence[TipMove]) -> bool:
+    """Without a retract that tells: a contour whose radii fall from the face to the chuck is a bore's."""
+    behind = [m for m in feeds if m.points[-1][0] < m.points[0][0] - _SQUARE]
+    falls = sum(abs(m.points[-1][1]) - abs(m.points[0][1]) for m in feeds if m.points[-1][0] < -_SQUARE)
+    return len(behind) > 1 and falls < -1.0 and bool(moves) and not _to_centre(feeds)
+
+
+def _shape(kind: ToolKind, use: ToolUse) -> ToolShape | None:
+    nose, rear = use.nose_radius, _rear(use.moves)
+    if kind is ToolKind.TURNING:
+        return ToolShape(kind, tip=2 if rear else 3, nose_radius=nose, insert=_SLIM, rear=rear)
+    if kind is ToolKind.BORING:
+        return ToolShape(kind, tip=3 if rear else 2, nose_radius=nose, insert=_SLIM, rear=rear)
+    if kind in {ToolKind.GROOVING, ToolKind.PARTING}:
+        return ToolShape(kind, tip=_edge(use, rear=rear), width=_GROOVE, rear=rear)
+    if kind is ToolKind.THREADING:
+        return ToolShape(kind, tip=6 if in_bore(use.moves) is not rear else 8, nose_radius=nose, rear=rear)
+    diameter = _diameter(" ".join(use.comments))
+    if kind is ToolKind.END_MILL and not diameter:
+        return None
+    across = use.mills and not _on_axis(use.moves)
+    return ToolShape(kind, tip=8 if across else 0, diameter=diameter, point=118.0)
+
+
+def _rear(moves: Sequence[TipMove]) -> bool:
+    """Whether a tool works at X negative; one that faces a little beyond the axis does not."""
+    cuts = [move for move in moves if not move.quick]
+    behind = [r for move in cuts for z, r in move.points if z < -_SQUARE]
+    radii = behind or [r for move in cuts for _, r in move.points]
+    return bool(radii) and -min(radii) > max(radii)
+
+
+def _edge(use: ToolUse, *, rear: bool) -> int:
+    """The tip quadrant of the corner that is set: the left one unless a comment says the other."""
+    text = " ".join(use.comments).upper()
+    if "RIGHT EDGE" in text or "RIGHT SIDE" in text:
+        return 1 if rear else 4
+    return 2 if rear else 3
+
+
+def _diameter(comment: str) -> float:
+    """mm, as a comment such as 1/4 DRILL or DRILL .250 DIA gives it; 0 where none does."""
+    text = comment.upper()
+    if found := _MILLIMETRES.search(text):
+        return float(found[1])
+    if found := _SIZE.search(text):
+        inches = float(found[3]) if found[3] else int(found[1]) / max(int(found[2]), 1)
+        return inches * 25.4
+    return 0.0
+
+
+def _names(kind: ToolKind, shape: ToolShape | None) -> str:
+    name = {ToolKind.END_MILL: "an end mill"}.get(kind, f"a {kind.replace('-', ' ')} tool")
+    name = name.replace("drill tool", "drill").replace("reamer tool", "reamer").replace("tap tool", "tap")
+    return name if shape is not None else f"{name} of unknown diameter, which cuts nothing here"

@@ -1,0 +1,180 @@
+"""What goes wrong between tool and metal, move by move, as the entries of ``part_checks`` have it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+from core.interpreter.elementary_blocks import Kind
+from core.language.diagnostics import Diagnostic
+from core.part.cutter import Cutter
+from core.part.stock import Stock
+from core.part.swept_edge import Point
+from core.part.tool_shape import ToolKind, ToolShape
+from core.part.turned_part import NOTHING, Cut, Piece, TurnedPart
+from core.proving.part_checks import CHECKS
+from core.proving.tip_moves import TipMove
+
+_MOST = 100
+_RAPID = 0.0254  # mm of metal that a rapid may touch
+_NEAR = 2.0  # mm; further from all metal than that is in the air
+_AIR_TIME, _AIR_WAY = 3.0, 5.0  # s, mm
+_AWAY = 2.54  # mm; a move that leads away from the part
+_PLACES = (0.05, 0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95)
+_COARSE = 0.8  # of the nose radius
+_SLENDER = 5.0
+
+
+@dataclass(slots=True)
+class PartFindings:
+    """Goes with the moves in their order, and lets each take off its metal."""
+
+    shape: Callable[[int], ToolShape | None]
+    stock: Stock | None
+    _found: dict[tuple[str, int], Diagnostic] = field(default_factory=dict)
+    _before: TipMove | None = None
+    _cut_before: bool = False  # the move before has taken metal off
+    _left_part: TipMove | None = None  # a feed that led away from the part, and met nothing
+
+    @property
+    def found(self) -> tuple[Diagnostic, ...]:
+        """The findings, each once a line."""
+        return tuple(self._found.values())
+
+    def look(self, move: TipMove, cutter: Cutter, part: TurnedPart, tool: int) -> None:
+        """Cut, and look at what was met."""
+        if move.quick and self._before is not None and self._before.kind is Kind.THREAD:
+            self._before = move  # out of its groove, wherever round the part that ends
+            return
+        met, struck = _executed(move, cutter, part)
+        if struck:
+            self._add(
+                "holder-into-stock", move, f"The holder of T{tool} runs into metal, {_depth(struck, move)}."
+            )
+        if move.quick:
+            self._rapid(move, met)
+        else:
+            self._feed(move, met, cutter, part)
+            self._tool(move, met, self.shape(tool), tool)
+        self._before, self._cut_before = move, bool(met) and not move.quick
+
+    def _rapid(self, move: TipMove, met: Cut) -> None:
+        self._left_part = None
+        if met.depth <= _RAPID or met.width <= _RAPID:
+            return
+        what = "A rapid" if move.kind is Kind.RAPID else "A feed as fast as a rapid"
+        behind_cut = self._before is not None and not self._before.quick
+        if behind_cut:
+            self._add("through-part", move, f"{what} leaves a cut through the part, {_depth(met, move)}.")
+        else:
+            self._add("rapid-into-stock", move, f"{what} goes into metal, {_depth(met, move)}.")
+
+    def _feed(self, move: TipMove, met: Cut, cutter: Cutter, part: TurnedPart) -> None:
+        gone, self._left_part = self._left_part, None
+        if met or move.kind is Kind.THREAD:
+            return
+        if self._outside_stock(move):
+            self._add("larger-than-stock", move, "This move turns a larger diameter than the stock has.")
+        if gone is not None and not _near(cutter, part, *move.points):
+            self._add(
+                "unmade-cut",
+                gone,
+                "This move leads away from the part and cuts nothing, and so does the next.",
+            )
+            return
+        if move.length < _AWAY or _near(cutter, part, move.points[-1]):
+            return
+        if _near(cutter, part, move.points[0]) and not self._cut_before:  # behind a cut it is a retract
+            self._left_part = move
+        share = _share_in_air(cutter, part, move)
+        if move.seconds * share >= _AIR_TIME and move.length * share >= _AIR_WAY:
+            text = f"This move feeds for {move.seconds * share:.0f} s where there is no metal."
+            self._add("cuts-air", move, text)
+
+    def _outside_stock(self, move: TipMove) -> bool:
+        """Whether it cuts along Z beside the stock, and further out."""
+        stock, zs = self.stock, [z for z, _ in move.points]
+        if stock is None or max(zs) - min(zs) < _AWAY or min(zs) > stock.front - _AWAY:
+            return False
+        return min(abs(r) for _, r in move.points) > stock.radius + _NEAR
+
+    def _tool(self, move: TipMove, met: Cut, shape: ToolShape | None, tool: int) -> None:
+        if shape is None or not met:
+            return
+        nose = shape.nose_radius
+        if move.kind is not Kind.THREAD and nose and move.per_rev > _COARSE * nose and not shape.turns_itself:
+            feed = move.modal.feed_text(move.per_rev, per_rev=True)
+            self._add(
+                "chip-load",
+                move,
+                f"T{tool} feeds {feed} with a nose radius of {move.modal.length_text(nose)}.",
+            )
+        if shape.kind in {ToolKind.DRILL, ToolKind.REAMER} and move.rpm < 0.0 and shape.hand == "right":
+            self._add(
+                "wrong-spindle-direction", move, f"T{tool} cuts while the spindle turns backwards (M04)."
+            )
+        deep = part_depth(move, self.stock)
+        if shape.turns_itself and shape.length and deep > shape.length:
+            length = move.modal.length_text(shape.length)
+            self._add(
+                "drill-too-deep", move, f"T{tool} goes {move.modal.length_text(deep)} deep; it cuts {length}."
+            )
+
+    def parted(self, move: TipMove, piece: Piece) -> None:
+        """A piece has come off."""
+        if not piece.outside:
+            return
+        length = piece.outside[0][0] - piece.outside[-1][0]
+        thick = 2.0 * max(r for _, r in piece.outside)
+        if thick and length > _SLENDER * thick:
+            text = f"What is parted off is {length / thick:.0f} times as long as it is thick."
+            self._add("part-off-unsupported", move, text)
+
+    def _add(self, check: str, move: TipMove, text: str) -> None:
+        if len(self._found) >= _MOST or (check, move.line) in self._found:
+            return
+        entry = CHECKS[check]
+        self._found[check, move.line] = Diagnostic(
+            move.line, 0, entry.severity, check, text, entry.remedy, check=check, n=move.n
+        )
+
+
+def part_depth(move: TipMove, stock: Stock | None) -> float:
+    """How deep a move ends behind the face of the stock, mm."""
+    return (stock.front if stock is not None else 0.0) - min(z for z, _ in move.points)
+
+
+def _executed(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[Cut, Cut]:
+    """What the edges and what the body met on a move; both have been taken off."""
+    met = struck = NOTHING
+    turns = 0.0
+    for start, end in pairwise(move.points):
+        if move.kind is Kind.THREAD and move.per_rev:
+            met = met.joined(cutter.thread(part, start, end, move.per_rev, turns))
+            turns += abs(end[0] - start[0]) / move.per_rev
+        else:
+            met = met.joined(cutter.cut(part, start, end))
+        struck = struck.joined(cutter.strikes(part, start, end))
+    return met, struck
+
+
+def _near(cutter: Cutter, part: TurnedPart, *places: Point) -> bool:
+    """Whether the edge stands near metal at one of these places at least."""
+    around = ((0.0, -_NEAR), (0.0, _NEAR), (-_NEAR, 0.0), (_NEAR, 0.0))
+    return any(cutter.meets(part, p, (p[0] + dz, p[1] + dr)) for p in places for dz, dr in around)
+
+
+def _share_in_air(cutter: Cutter, part: TurnedPart, move: TipMove) -> float:
+    """How much of a way is far from all metal, read at places along it."""
+    places = [
+        (a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share)
+        for a, b in pairwise(move.points)
+        for share in (_PLACES if len(move.points) == 2 else (0.5,))
+    ]
+    return sum(not _near(cutter, part, place) for place in places) / len(places)
+
+
+def _depth(met: Cut, move: TipMove) -> str:
+    deep = move.modal.length_text(met.depth)
+    return f"{deep} deep at Z {move.modal.length_text(met.front)} … {move.modal.length_text(met.back)}"

@@ -1,0 +1,280 @@
+"""The proof of the part: the blocks of a program take metal off the stock, and what goes wrong is found.
+
+All moves are gathered first, because stock and tools that nobody has described follow from them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from core.interpreter.actions import Collet, ToolChange
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.job_setup import Setup
+from core.language.diagnostics import Diagnostic
+from core.language.source import Source
+from core.machine.machine_model import Machine
+from core.part.cutter import Cutter, Side
+from core.part.stock import Stock
+from core.part.stock_spec import StockSpec
+from core.part.tool_outline import outline
+from core.part.tool_shape import ToolKind, ToolShape
+from core.part.turned_part import Piece, TurnedPart
+from core.proving.assumed_stock import assumed_stock
+from core.proving.assumed_tools import Assumed, ToolUse, assumed_tool
+from core.proving.part_findings import PartFindings
+from core.proving.program_timeline import MotionSpan, Part, RestSpan
+from core.proving.proof_report import Report, in_order
+from core.proving.prove_program import Progress, prove
+from core.proving.tip_moves import Step, Steps, TipMove
+
+
+@dataclass(frozen=True, slots=True)
+class PartSetting:
+    """What has been said about stock and tools, by T; nose radii (mm) stand in the offsets."""
+
+    stock: Stock | StockSpec | None = None
+    shapes: Mapping[int, ToolShape] = field(default_factory=dict)
+    nose_radii: Mapping[int, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class PartReport:
+    """What became of the stock: mm and mm³. ``last`` is the last part that came off, or what the chuck holds.
+
+    ``assumed`` are sentences, one for each thing that nobody has said.
+    """
+
+    stock: Stock | None
+    volume: float
+    removed: float
+    left: float
+    last: Piece | None
+    milled: bool
+    pieces: tuple[Piece, ...]
+    assumed: tuple[str, ...]
+    findings: tuple[Diagnostic, ...]
+
+
+def prove_with_part(
+    program: Source | ReadProgram, setup: Setup, machine: Machine, setting: PartSetting,
+    progress: Progress | None = None, *, ideal: bool = False,
+) -> tuple[Report, PartReport | None]:  # fmt: skip
+    """The proof of a program with the findings of its part among the others; no part on a mill."""
+    if machine.kind != "lathe":
+        return prove(program, setup, machine, progress, ideal=ideal), None
+    gathered = PartProof(setting)
+    report = prove(program, setup, machine, progress, ideal=ideal, seen=gathered.see)
+    part = gathered.report()
+    return replace(report, diagnostics=in_order((*report.diagnostics, *part.findings))), part
+
+
+class PartProof:
+    """Gathers the blocks of a pass, and makes the part of them."""
+
+    def __init__(self, setting: PartSetting) -> None:
+        self._setting = setting
+        self._parts: list[Part] = []
+
+    def see(self, span: MotionSpan | RestSpan) -> None:
+        """The next span of the program."""
+        if isinstance(span, MotionSpan):
+            self._parts += span.parts
+        elif span.block is not None:
+            self._parts.append([span.block])
+
+    def report(self) -> PartReport:
+        """The part, when the whole program has been seen."""
+        reading = Steps()
+        steps = [step for part in self._parts for step in reading.of(part)]
+        tools = Tools(steps, self._setting)
+        stock = self._setting.stock or tools.assumed_stock()
+        if isinstance(stock, StockSpec):
+            stock = stock.stock(tools.back)
+        making = Making(tools, stock)
+        for step in steps:
+            making.see(step)
+        return making.report()
+
+
+class Tools:
+    """The tools of a program: described, or assumed by what it does with them."""
+
+    def __init__(self, steps: Sequence[Step], setting: PartSetting) -> None:
+        self.uses: dict[int, ToolUse] = {}
+        self.fed_at: float | None = None  # Z, mm, where a stop has held the bar
+        self.feeds_first = False  # the bar is fed before the first cut
+        self._setting = setting
+        self._gather(steps)
+        self.assumed: dict[int, Assumed] = {
+            n: assumed_tool(use) for n, use in self.uses.items() if n not in setting.shapes and use.moves
+        }
+        self._give_drills_a_size()
+
+    def _gather(self, steps: Sequence[Step]) -> None:
+        use, is_open, cut = self._use(0), False, False
+        place, comment = (0.0, 0.0), ""
+        for step in steps:
+            if isinstance(step, TipMove):
+                place = step.points[-1]
+                use.moves.append(step)
+                use.pushes_bar = use.pushes_bar or (is_open and not step.quick)
+                cut = cut or not (step.quick or is_open or self._stop_to_come(use))
+            elif isinstance(step.action, ToolChange):
+                use = self._use(step.action.tool)
+                use.comments.append(step.modal.comment if step.modal.comment != comment else "")
+            elif step.action is None:
+                use.mills = True
+            elif isinstance(step.action, Collet):
+                is_open = not step.action.closed
+                self.feeds_first = self.feeds_first or (is_open and not cut)
+                if not is_open and use.pushes_bar and self.fed_at is None:
+                    self.fed_at = place[0]
+            comment = step.modal.comment
+
+    def _use(self, number: int) -> ToolUse:
+        nose = self._setting.nose_radii.get(number, 0.0)
+        return self.uses.setdefault(number, ToolUse(number, nose_radius=nose))
+
+    @staticmethod
+    def _stop_to_come(use: ToolUse) -> bool:
+        return use.pushes_bar or any("STOP" in text.upper() for text in use.comments)
+
+    def _give_drills_a_size(self) -> None:
+        """Drills of unknown diameter leave as much as the tools of the bore behind them need to get in."""
+        moves = [m for n, use in self.uses.items() if (s := self.shape(n)) and s.internal for m in use.moves]
+        for number, each in self.assumed.items():
+            self.assumed[number] = each.sized(moves)
+
+    def shape(self, number: int) -> ToolShape | None:
+        """The tool's shape; None for a bar stop, and where nothing is known that would cut."""
+        if number in self._setting.shapes:
+            return self._setting.shapes[number]
+        return self.assumed[number].shape if number in self.assumed else None
+
+    def described(self, number: int) -> bool:
+        """Whether somebody has said what it looks like."""
+        return number in self._setting.shapes
+
+    def cutter(self, number: int) -> Cutter | None:
+        """The tool ready to cut; without a described holder only its edges count."""
+        shape = self.shape(number)
+        if shape is None or (shape.turns_itself and shape.direction[0] == 0):
+            return None  # a live tool across the spindle turns nothing
+        lines = outline(shape)
+        body = lines.body if self.described(number) else ()
+        return Cutter(lines.cutting, body, _side(shape), rear=shape.rear)
+
+    @property
+    def back(self) -> float:
+        """Least Z that a tool cuts at, mm."""
+        moves = (m for use in self.uses.values() for m in use.moves if not (m.quick or use.pushes_bar))
+        return min((z for move in moves for z, _ in move.points), default=0.0)
+
+    def assumed_stock(self) -> Stock | None:
+        """A bar for what the tools cut."""
+        outside: list[TipMove] = []
+        bore: list[TipMove] = []
+        for number, use in self.uses.items():
+            shape = self.shape(number)
+            if shape is not None:
+                (outside if _side(shape) is Side.OUTSIDE else bore).extend(use.moves)
+        drills = [s.diameter for s in map(self.shape, self.uses) if s is not None and s.turns_itself]
+        return assumed_stock(outside, bore, self.fed_at, max(drills, default=0.0))
+
+
+def _side(shape: ToolShape) -> Side:
+    if shape.turns_itself or shape.internal:
+        return Side.BORE
+    if shape.direction == (-1, 0) and shape.kind is not ToolKind.TURNING:
+        return Side.FACE
+    across = shape.direction[1] * (-1 if shape.rear else 1)
+    return Side.BORE if across > 0 else Side.OUTSIDE
+
+
+class Making:
+    """The part while the program makes it."""
+
+    def __init__(self, tools: Tools, stock: Stock | None) -> None:
+        self._tools, self._stock = tools, stock
+        self._cutters: dict[int, Cutter | None] = {}
+        self._tool = 0
+        self._begun = False
+        self._is_open = False
+        self._removed = 0.0
+        self._pieces: list[Piece] = []
+        self._last: Piece | None = None  # the last piece that a collet let go or a parting tool cut off
+        self._milled = False
+        self.findings = PartFindings(tools.shape, stock)
+        self.part = TurnedPart(stock) if stock is not None and not tools.feeds_first else None
+
+    def see(self, step: Step) -> None:
+        """The next block."""
+        if isinstance(step, TipMove):
+            if not self._begun:  # from wherever the slides stand
+                step, self._begun = step._replace(points=step.points[-1:] * 2), True
+            if self.part is not None and not self._is_open:
+                self._move(step, self.part)
+            return
+        match step.action:
+            case ToolChange(tool=tool):
+                self._tool = tool
+            case Collet(closed=closed):
+                self._clamp(closed)
+            case None:
+                self._milled = True
+            case _:
+                pass
+
+    def _clamp(self, closed: bool) -> None:
+        """A collet that opens lets the bar come: behind it stands a new face."""
+        if not closed:
+            self._is_open = True
+            return
+        if self._is_open and self._stock is not None:
+            self._finish()
+            self.part = TurnedPart(self._stock)
+        self._is_open = False
+
+    def _cutter(self) -> Cutter | None:
+        if self._tool not in self._cutters:
+            self._cutters[self._tool] = self._tools.cutter(self._tool)
+        return self._cutters[self._tool]
+
+    def _move(self, move: TipMove, part: TurnedPart) -> None:
+        cutter = self._cutter()
+        if cutter is None:
+            return
+        before = len(part.pieces)
+        self.findings.look(move, cutter, part, self._tool)
+        for piece in part.pieces[before:]:
+            self.findings.parted(move, piece)
+
+    def _finish(self) -> None:
+        part = self.part
+        if part is None:
+            return
+        self._removed += part.removed
+        self._pieces += part.pieces
+        if part.removed:
+            self._last = part.pieces[-1] if part.pieces else part.rest()
+        self.part = None
+
+    def report(self) -> PartReport:
+        """What became of the stock."""
+        left = self.part.volume if self.part is not None else 0.0
+        self._finish()
+        stock = self._stock
+        assumed = [each.words for _, each in sorted(self._tools.assumed.items())]
+        volume = TurnedPart(stock).volume if stock is not None else 0.0
+        return PartReport(
+            stock=stock,
+            volume=volume,
+            removed=self._removed,
+            left=left,
+            last=self._last,
+            milled=self._milled,
+            pieces=tuple(self._pieces),
+            assumed=tuple(assumed),
+            findings=self.findings.found,
+        )

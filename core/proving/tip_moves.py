@@ -1,0 +1,122 @@
+"""The moves of a program as the part sees them: where the tool's control point goes in the part's frame."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+from core.geometry.lines_and_arcs import arc_sweep
+from core.interpreter.actions import Preset, ToolChange
+from core.interpreter.elementary_blocks import Block, Kind, Series
+from core.interpreter.modal_state import Modal
+from core.part.swept_edge import Point
+
+QUICK = 100 * 25.4 / 60
+"""mm/s; what moves by G94 at this or more goes to a place and cuts nothing."""
+
+_CHORD = 0.001  # mm off an arc
+
+_TURNED = frozenset({Kind.RAPID, Kind.FEED, Kind.ARC, Kind.THREAD})
+
+
+class TipMove(NamedTuple):
+    """One elementary block: its points are Z and r, mm, from part zero; ``speed`` is along the path, mm/s.
+
+    ``quick``: a rapid, or a feed per minute as fast as one. ``per_rev`` is the feed of a turn, mm, 0 by time.
+    """
+
+    n: int
+    line: int
+    kind: Kind
+    points: tuple[Point, ...]
+    speed: float
+    quick: bool
+    per_rev: float
+    rpm: float
+    modal: Modal
+
+    @property
+    def length(self) -> float:
+        """mm."""
+        return sum(math.dist(a, b) for a, b in pairwise(self.points))
+
+    @property
+    def seconds(self) -> float:
+        """How long it takes at its speed; 0 where it has none."""
+        return self.length / self.speed if self.speed else 0.0
+
+
+Step = TipMove | Block
+"""What the part sees of a program: a move of X and Z, or a block that does something else."""
+
+
+class Steps:
+    """The steps of a program, from its parts in order.
+
+    A G92 before the first move of a tool says where part zero is; a later one shifts the part, as G10 does.
+    """
+
+    def __init__(self) -> None:
+        self._zero = (0.0, 0.0)  # presets that have only said where zero is: X, Z
+        self._moved = False
+
+    def of(self, blocks: Sequence[Block]) -> Iterator[Step]:
+        """The steps of the next blocks."""
+        if isinstance(blocks, Series):
+            self._moved = True
+            yield from self._of_series(blocks) if not blocks.pattern.modal.c_locked else blocks
+            return
+        for block in blocks:
+            if block.action is not None:
+                self._act(block)
+                yield block
+            elif block.kind in _TURNED and block.travel is None and not block.modal.c_locked:
+                self._moved = True
+                yield _move(block, block.n, block.line, tuple(_points(block, *self._part_zero(block))))
+            else:
+                yield block
+
+    def _act(self, block: Block) -> None:
+        modal = block.modal
+        if isinstance(block.action, ToolChange):
+            self._moved = False
+            self._zero = (0.0, 0.0) if modal.preset_x == modal.preset_z == 0.0 else self._zero
+        elif isinstance(block.action, Preset) and not self._moved:
+            self._zero = modal.preset_x, modal.preset_z
+
+    def _part_zero(self, block: Block) -> tuple[float, float]:
+        """What brings X and Z of a block to its place from part zero: work shift, preset, zero offset."""
+        modal = block.modal
+        return (
+            block.offset_x - modal.tool_x - self._zero[0],
+            block.offset_z - modal.tool_z - self._zero[1],
+        )
+
+    def _of_series(self, series: Series) -> Iterator[TipMove]:
+        like = series.pattern
+        dx, dz = self._part_zero(like)
+        columns = (series.n, series.line, series.x0 + dx, series.z0 + dz, series.x + dx, series.z + dz)
+        for n, line, x0, z0, x, z in zip(*(column.tolist() for column in columns), strict=True):
+            yield _move(like, n, line, ((z0, x0), (z, x)))
+
+
+def _move(block: Block, n: int, line: int, points: tuple[Point, ...]) -> TipMove:
+    per_rev = block.feed if block.per_rev and not block.rapid else 0.0
+    speed = per_rev * abs(block.rpm) / 60.0 if per_rev else block.feed
+    quick = block.rapid or (not per_rev and block.feed >= QUICK and block.kind is not Kind.THREAD)
+    return TipMove(n, line, block.kind, points, speed, quick, per_rev, block.rpm, block.modal)
+
+
+def _points(block: Block, dx: float, dz: float) -> Iterator[Point]:
+    yield block.z0 + dz, block.x0 + dx
+    if block.kind is Kind.ARC:
+        start, sweep = arc_sweep(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
+        radius = math.hypot(block.x0 - block.cx, block.z0 - block.cz)
+        step = 2.0 * math.acos(max(1.0 - _CHORD / radius, 0.0)) if radius > 0.0 else math.pi
+        pieces = max(math.ceil(abs(sweep) / step), 1)
+        for k in range(1, pieces):
+            at = start + sweep * k / pieces
+            yield block.cz + dz + radius * math.cos(at), block.cx + dx + radius * math.sin(at)
+    yield block.z + dz, block.x + dx

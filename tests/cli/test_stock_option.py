@@ -1,0 +1,98 @@
+"""``prove --stock``: what the part is made of, what became of it, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Turndesk
+from tests.cli.test_prove import written
+
+# Tool offset 1 of the fixture; faced at Z0, .8 in diameter turned .5 in long.
+PART = (
+    "G90G94F300\nM03S1500\nT1\nX.6Z.05\nG95F.006Z0\nX-.02\nG94F300Z.05\n"
+    "X.4\nG95F.004Z-.5\nX.55\nG94F300Z1\nM30\n"
+)
+KEYS = {
+    "given", "volume", "removed_volume", "left_volume", "profile", "bore", "min_wall", "milled", "pieces",
+}  # fmt: skip
+
+
+def test_the_promised_keys_in_cubic_inches(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+    path = written(tmp_path, PART)
+    told = turndesk("prove", path, "--offsets", offsets, "--stock", "bar:1.0:2+.02", "--json")
+    assert told.status == 0
+    stock = told.lines[0]["stock"]
+    assert set(stock) >= KEYS
+    assert stock["given"] == "bar:1.0:2+.02"
+    assert stock["volume"] == pytest.approx(math.pi * 0.25 * 2.0, rel=1e-4)
+    removed = math.pi * 0.25 * 0.02 + math.pi * (0.25 - 0.16) * 0.5
+    assert stock["removed_volume"] == pytest.approx(removed, rel=3e-3)  # but for the fillet of the nose
+    assert stock["left_volume"] == pytest.approx(stock["volume"] - stock["removed_volume"], abs=2e-6)
+    assert stock["profile"][0] == [pytest.approx(0.0, abs=4e-4), pytest.approx(0.4, abs=1e-3)]
+    assert (stock["bore"], stock["min_wall"], stock["milled"], stock["pieces"]) == (None, None, False, [])
+
+
+def test_without_a_word_the_bar_is_assumed_and_told(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
+    path = written(tmp_path, PART)
+    stock = turndesk("prove", path, "--offsets", offsets, "--json").lines[0]["stock"]
+    assert stock["given"] is None
+    assert any("T1" in words for words in stock["assumed"])
+    assert "as nobody has said it" in turndesk("prove", path, "--offsets", offsets).out
+
+
+def test_a_finding_of_the_part_refuses_the_program(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+    path = written(tmp_path, PART.replace("G95F.004Z-.5", "G00Z-.5"))
+    told = turndesk("prove", path, "--offsets", offsets, "--json")
+    assert told.status == 1
+    (found,) = [each for each in told.lines[0]["diagnostics"] if each["check"] == "rapid-into-stock"]
+    assert (found["line"], found["severity"], found["n"] > 0) == (9, "error", True)
+
+
+def test_a_second_program_works_on_what_the_first_leaves(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
+    first = written(tmp_path, PART, "first.nc")
+    again = ("prove", first, "--offsets", offsets, "--json", "--stock", f"after:{first}")
+    assert turndesk(*again).lines[0]["stock"]["removed_volume"] == pytest.approx(0.0, abs=1e-5)
+
+
+def test_a_blank_by_its_points(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+    blank = written(tmp_path, "z,r\n-2,.5\n-.5,.5\n-.5,.42\n0,.42\n", "blank.csv")
+    told = turndesk(
+        "prove", written(tmp_path, PART), "--offsets", offsets, "--json", "--stock", f"profile:{blank}"
+    )
+    removed = math.pi * (0.42**2 - 0.16) * 0.5
+    assert told.lines[0]["stock"]["removed_volume"] == pytest.approx(removed, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("spec", "says"),
+    [
+        ("bar", "no length"),
+        ("rod:1", "no stock"),
+        ("tube:1:2", "bore"),
+        ("profile:nowhere.csv", "cannot be read"),
+        ("after:nowhere.nc", "nowhere.nc"),
+    ],
+)
+def test_what_is_no_stock_is_refused_in_one_line(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path, spec: str, says: str
+) -> None:
+    told = turndesk("prove", written(tmp_path, PART), "--offsets", offsets, "--stock", spec)
+    assert told.status == 2
+    assert says in told.err
+    assert told.err.count("\n") == 1
+
+
+def test_a_first_program_with_errors_leaves_nothing(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
+    bad = written(tmp_path, "G90G94F300\nQ3\nM30\n", "bad.nc")
+    told = turndesk("prove", written(tmp_path, PART), "--offsets", offsets, "--stock", f"after:{bad}")
+    assert told.status == 2
+    assert "leaves no part" in told.err

@@ -1,0 +1,191 @@
+"""The proof of the part: each check by a program that triggers it and a near twin that does not.
+
+Programs are written with radii and inches in brackets, and read in all four of inch and metric, radius and
+diameter.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+
+import pytest
+
+from app.compose.machine_files import load_machine
+from app.compose.machine_setup import setup_for
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.language.source import Source
+from core.part.stock import Stock, bar, tube
+from core.part.tool_shape import ToolKind, ToolShape
+from core.proving.part_proof import PartReport, PartSetting, prove_with_part
+from core.proving.proof_report import Report
+from tests.worked import FOLDER, worked
+
+INCH = 25.4
+TURNING = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.4, insert="DCMT11T304")
+BLADE = ToolShape(ToolKind.PARTING, tip=3, width=2.0, stick_out=30.0)
+DRILL = ToolShape(ToolKind.DRILL, diameter=6.0, point=118.0, length=20.0)
+BORER = ToolShape(ToolKind.BORING, tip=2, nose_radius=0.4, insert="DCMT070204", diameter=8.0, stick_out=40.0)
+TOOLS = {1: TURNING, 2: BLADE, 3: DRILL, 4: BORER}
+WAYS = [(metric, diameter) for metric in (False, True) for diameter in (False, True)]
+
+
+def text(lines: str, *, metric: bool = False, diameter: bool = False) -> str:
+    """A program of these lines, in one of the four ways of writing lengths."""
+    unit = INCH if metric else 1.0
+
+    def number(found: re.Match[str]) -> str:
+        scale = unit * (2.0 if diameter and found[1] == "X" else 1.0)
+        return f"{found[1]}{float(found[2]) * scale:.5f}"
+
+    body = re.sub(r"([XZFIK])\[(-?[\d.]+)\]", number, lines)
+    head = "G90G94F" + f"{300 * unit:.0f}" + ("G71" if metric else "") + ("G72" if diameter else "G73")
+    return f"{head}\nM03S1500\n{body}\nM30\n"
+
+
+def proved(
+    program: str, stock: Stock | None = None, shapes: dict[int, ToolShape] | None = None
+) -> tuple[Report, PartReport]:
+    machine = load_machine(None)
+    tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 12)}
+    setup = setup_for(machine, tools=tools, secondary={1: SecondaryOffset(-0.381, -0.381, 0.381)})
+    setting = PartSetting(stock, TOOLS if shapes is None else shapes)
+    report, part = prove_with_part(Source("PART", program), setup, machine, setting)
+    assert part is not None
+    return report, part
+
+
+def checks(part: PartReport) -> list[tuple[str, int]]:
+    return [(each.check, each.line) for each in part.findings]
+
+
+SOUND = """T1
+X[.6]Z[.05]
+G95F[.006]Z[0]
+X[-.02]
+G94F[300]Z[.05]
+X[.4]
+G95F[.004]Z[-.5]
+X[.55]
+G94F[300]X[.6]
+Z[1]"""
+
+BAR = bar(2 * 0.5 * INCH, 0.02 * INCH, -2.0 * INCH)
+
+CASES = {
+    # G00 left on
+    "rapid-into-stock": (SOUND.replace("G95F[.004]Z[-.5]", "G00Z[-.5]"), SOUND, BAR, 9),
+    # the first line's F, a rapid of old programs
+    "rapid-into-stock by F": (SOUND.replace("G95F[.004]Z[-.5]", "Z[-.5]"), SOUND, BAR, 9),
+    # X4 for X.4
+    "larger-than-stock": (SOUND.replace("X[.4]", "X[1.4]"), SOUND, BAR, 9),
+    # Z.5 for Z-.5
+    "unmade-cut": (SOUND.replace("Z[-.5]", "Z[.5]"), SOUND, BAR, 9),
+    # the X0 and then Z0 habit: out of a bore across its wall
+    "through-part": (
+        "T3\nX[0]Z[.1]\nG95F[.004]Z[-.3]\nG94F[300]X[.4]\nZ[1]",
+        "T3\nX[0]Z[.1]\nG95F[.004]Z[-.3]\nG94F[300]Z[.1]\nX[.4]", BAR, 6,
+    ),
+    "drill-too-deep": (
+        "T3\nX[0]Z[.1]\nG95F[.004]Z[-.9]\nG94F[300]Z[.1]",
+        "T3\nX[0]Z[.1]\nG95F[.004]Z[-.7]\nG94F[300]Z[.1]", BAR, 5,
+    ),
+    "wrong-spindle-direction": (
+        "M05\nM04S1500\nT3\nX[0]Z[.1]\nG95F[.004]Z[-.3]\nG94F[300]Z[.1]",
+        "M05\nM03S1500\nT3\nX[0]Z[.1]\nG95F[.004]Z[-.3]\nG94F[300]Z[.1]", BAR, 7,
+    ),
+    "chip-load": (SOUND.replace("F[.004]", "F[.014]"), SOUND.replace("F[.004]", "F[.012]"), BAR, 9),
+    "cuts-air": (
+        SOUND.replace("G94F[300]Z[1]", "").replace("\nG94F[300]X[.6]", "\nG94F[4]X[.9]\nF[300]"),
+        SOUND, BAR, 11,
+    ),
+    "part-off-unsupported": (
+        "T2\nX[.6]Z[.1]\nZ[-1.9]\nG95F[.002]X[-.01]\nG94F[300]X[.6]",
+        "T2\nX[.6]Z[.1]\nZ[-.9]\nG95F[.002]X[-.01]\nG94F[300]X[.6]",
+        bar(8.0, 0.0, -2.5 * INCH), 6,
+    ),
+    # a bar of 8 mm does not go into a bore of 7
+    "holder-into-stock": (
+        "T4\nX[.142]Z[.1]\nG95F[.002]Z[-.4]\nX[.13]\nG94F[300]Z[1]",
+        "T4\nX[.24]Z[.1]\nG95F[.002]Z[-.4]\nX[.22]\nG94F[300]Z[1]",
+        tube(25.4, 7.0, 0.0, -50.0), 5,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("metric", "diameter"), WAYS)
+@pytest.mark.parametrize("name", CASES)
+def test_a_check_finds_what_it_looks_for_and_spares_its_twin(name: str, metric: bool, diameter: bool) -> None:
+    wrong, sound, stock, line = CASES[name]
+    stock_of_twin = tube(25.4, 11.0, 0.0, -50.0) if name == "holder-into-stock" else stock
+    _, part = proved(text(wrong, metric=metric, diameter=diameter), stock)
+    assert (name.split(maxsplit=1)[0], line) in checks(part)
+    report, part = proved(text(sound, metric=metric, diameter=diameter), stock_of_twin)
+    assert checks(part) == []
+    assert report.errors == ()
+
+
+@pytest.mark.parametrize("slip", [("G95F[.004]Z[-.5]", "G00Z[-.5]"), ("X[.4]", "X[4]"), ("Z[-.5]", "Z[.5]")])
+def test_the_three_slips_are_errors_without_a_word_about_stock_and_tools(slip: tuple[str, str]) -> None:
+    _, part = proved(text(SOUND), None, {})
+    assert checks(part) == []
+    assert part.stock is not None
+    assert part.assumed == ("T1 is taken for a turning tool (by its moves)",)
+    _, part = proved(text(SOUND.replace(*slip)), None, {})
+    errors = [each for each in part.findings if each.severity == "error"]
+    assert errors
+    assert errors[0].line == 9
+    assert errors[0].n > 0
+    assert errors[0].hint
+
+
+def test_the_volume_that_a_program_removes() -> None:
+    _, part = proved(text(SOUND), BAR)
+    r, nose = 0.4 * INCH, 0.4
+    face = math.pi * 12.7**2 * 0.508
+    corner = (1.0 - math.pi / 4.0) * nose**2  # of the fillet that the nose leaves
+    turned = math.pi * (12.7**2 - r**2) * 12.7 - math.tau * (r + 0.22 * nose) * corner
+    assert part.removed == pytest.approx(face + turned, rel=1e-3)
+    assert part.left == pytest.approx(part.volume - part.removed, rel=1e-9)
+    assert part.last is not None
+    assert part.last.outside[0] == (pytest.approx(0.0, abs=0.01), pytest.approx(r))
+
+
+def test_parts_of_a_loop_come_off_one_by_one() -> None:
+    loop = "LS3\nT2\nX[.3]Z[.1]\nZ[-.4]\nG95F[.002]X[-.01]\nG94F[300]X[.3]\nG10X0Z[-.4]\nLF"
+    _, part = proved(text(loop), bar(10.0, 0.0, -60.0))
+    each = math.pi * 25.0 * (0.4 * INCH - 2.0)
+    assert [piece.volume for piece in part.pieces] == [pytest.approx(each, rel=2e-3)] * 3
+    assert checks(part) == []
+
+
+def test_a_bar_that_is_fed_begins_anew_at_its_stop() -> None:
+    fed = "T5(BAR STOP)\nX0Z1\nZ[-.4]\nM13\nZ[.02]F[20]\nM12\nG94F[300]Z[1]\n"
+    _, part = proved(text(fed + SOUND), None, {})
+    assert checks(part) == []
+    assert part.stock is not None
+    assert part.stock.front == pytest.approx(0.02 * INCH)
+    assert "T5 is taken for a bar stop" in part.assumed
+
+
+def test_a_comment_says_more_than_the_moves() -> None:
+    drilled = "T7(1/4 DRILL)\nX[0]Z[.1]\nG95F[.004]Z[-.5]\nG94F[300]Z[1]"
+    _, part = proved(text(drilled), bar(20.0, 0.0, -40.0), {})
+    assert part.assumed == ("T7 is taken for a drill (by its comment)",)
+    assert part.last is not None
+    assert part.last.bore is not None
+    assert part.last.bore[0][1] == pytest.approx(3.175, abs=0.001)
+
+
+@pytest.mark.parametrize(
+    "example", [path.stem for path in sorted(FOLDER.glob("*.nc"))] or ["linear-diameter"]
+)
+def test_no_false_alarm_on_a_worked_example(example: str) -> None:
+    machine = load_machine(None)
+    d = (-0.381, -0.381, 0.381)
+    tools = {n: ToolOffset() for n in range(1, 33)}
+    setup = setup_for(machine, tools=tools, secondary={n: SecondaryOffset(*d) for n in (1,)})
+    source = Source(example, worked(example).read_text(encoding="latin-1"))
+    _, part = prove_with_part(source, setup, machine, PartSetting())
+    assert part is not None
+    assert checks(part) == []
