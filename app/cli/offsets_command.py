@@ -1,4 +1,4 @@
-"""``turndesk offsets``: the store's tool and secondary offsets, in inches."""
+"""``turndesk offsets``: the store's tool and secondary offsets and tool shapes, in inches."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.command_errors import EXIT_OK, CommandError
 from app.cli.store_command import opened_store
-from app.cli.toml_files import out_of_range, shown, unknown
+from app.cli.toml_files import ALIASES, TOOL_KEYS, out_of_range, shown, unknown
 from app.desk.arithmetic import EntryError, value_of
 from core.store.offset_fields import FIELDS, Field, Sort
 from core.store.store_rows import (
@@ -21,6 +21,7 @@ from core.store.store_rows import (
     Change,
     Kind,
     Row,
+    ShapeRow,
     ToolRow,
     Value,
     ZeroRow,
@@ -29,16 +30,21 @@ from core.store.store_rows import (
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
+    from core.store.store import Store
 
 
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
-    parser = subparsers.add_parser("offsets", help="show and change tool and secondary offsets")
+    parser = subparsers.add_parser(
+        "offsets", help="show and change tool and secondary offsets and tool shapes"
+    )
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     show = actions.add_parser("show", help="all offsets that are set")
     show.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
     change = actions.add_parser(
-        "set", help="set T3 x=1.25 wear_x=-.0005 quadrant=3, or D4 x=-.0005 (a radius, as stored)"
+        "set",
+        help="set T3 x=1.25 wear_x=-.0005 quadrant=3, T3 kind=turning insert=CNMG432, "
+        "or D4 x=-.0005 (a radius, as stored)",
     )
     change.add_argument("offset", metavar="T3|D4|G54")
     change.add_argument(
@@ -46,17 +52,31 @@ def add_parser(subparsers: SubParsers) -> None:
         metavar="KEY=VALUE",
         nargs="+",
         help="inches, sums such as x=.5-.002 are fine; "
-        "T: x z nose_radius wear_x wear_z quadrant remark master, D: x z r; "
+        "T: x z nose_radius wear_x wear_z quadrant remark master, and its shape: "
+        "kind hand insert holder width diameter point stick_out length pitch flutes entry rear profile "
+        "(kind=none: no shape); D: x z r; "
         "G54 to G59 in mm and degrees: x z c",
     )
     clear = actions.add_parser("clear", help="clear D: all secondary offsets")
     clear.add_argument("table", metavar="D", choices=("D",), type=str.upper)
     history = actions.add_parser("history", help="every change, newest first")
     history.add_argument("--limit", type=int, default=100, metavar="N", help="default: 100")
+    _add_table(history)
     history.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
     undo = actions.add_parser("undo", help="take the last change back; again: the one before")
+    _add_table(undo)
     for action, why in ((change, "entered"), (clear, "cleared"), (undo, "undo")):
         action.add_argument("--why", default=why, help=f"reason, kept in the history (default: {why})")
+
+
+def _add_table(parser: argparse.ArgumentParser) -> None:
+    """Which table's history it is about."""
+    parser.add_argument(
+        "table",
+        nargs="?",
+        choices=[kind.value for kind in Kind],
+        help="only of these; without it tool and secondary offsets together",
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -66,7 +86,8 @@ def run(args: argparse.Namespace) -> int:
 
 _OFFSET = re.compile(r"([TDG])0*(\d{1,4})", re.IGNORECASE)
 _KIND = {"T": Kind.TOOL, "D": Kind.SECONDARY, "G": Kind.ZERO}
-_LETTER = {kind: letter for letter, kind in _KIND.items()}
+_LETTER = {**{kind: letter for letter, kind in _KIND.items()}, Kind.SHAPE: "T"}
+NO_SHAPE = "none"  # kind=none takes the shape of a tool away
 _FLAGS = {"1": True, "yes": True, "true": True, "0": False, "no": False, "false": False}
 
 
@@ -77,7 +98,7 @@ def _show(args: argparse.Namespace) -> int:
         told = {
             kind.value: {n: _in_inches(kind, row) for n, row in table.items()}
             for kind, table in rows.items()
-            if table or kind is not Kind.ZERO
+            if table or kind in {Kind.TOOL, Kind.SECONDARY}
         }
         sys.stdout.write(json.dumps(told) + "\n")
         return EXIT_OK
@@ -95,11 +116,26 @@ def _in_inches(kind: Kind, row: Row) -> dict[str, Value]:
 
 
 def _line(name: str, row: Row) -> str:
+    if isinstance(row, ShapeRow):
+        return f"{name:<3} {_shape(row)}"
     if isinstance(row, ZeroRow):
         return f"{name} X {row.x:+.3f}  Z {row.z:+.3f} mm  C {row.c:+.3f}°"
-    x, z, r = (inches(value) for value in row[:3])
+    r = row.nose_radius if isinstance(row, ToolRow) else row.r
+    x, z, r = inches(row.x), inches(row.z), inches(r)
     line = f"{name:<3} X {x:+.5f}  Z {z:+.5f}  R {r:.5f}"
     return line + _more(row) if isinstance(row, ToolRow) else line
+
+
+def _shape(row: ShapeRow) -> str:
+    """What is stated of a shape, as it would be entered."""
+    told = [f"{row.kind} {row.hand}"]
+    values: list[Value] = list(row)
+    for field, value in zip(FIELDS[Kind.SHAPE].values(), values, strict=True):
+        if value and not field.choices:
+            told.append(
+                f"{field.name}={shown(_typed(field, value)) if not isinstance(value, str) else value}"
+            )
+    return "  ".join(told)
 
 
 def _more(row: ToolRow) -> str:
@@ -114,10 +150,41 @@ def _more(row: ToolRow) -> str:
 def _set(args: argparse.Namespace) -> int:
     kind, number = _named(args.offset)
     values = _values(kind, args.values)
+    shape = {
+        name: value for name, value in values.items() if kind is Kind.TOOL and name in FIELDS[Kind.SHAPE]
+    }
+    offset = {name: value for name, value in values.items() if name not in shape}
+    reason, rows = {"why": args.why, "who": "command line"}, list[Row]()
     with opened_store() as store:
-        new = store.set_offset(kind, number, args.why, values, who="command line").result()
-    sys.stdout.write(_line(f"{_LETTER[kind]}{number}", new) + "\n")
+        gone = shape.get("kind") == NO_SHAPE
+        if shape and not gone:
+            _check_shape(store, number, shape, offset)
+        if offset:
+            rows.append(store.set_offset(kind, number, values=offset, **reason).result())
+        if gone:
+            store.remove_shape(number, **reason).result()
+        elif shape:
+            rows.append(store.set_offset(Kind.SHAPE, number, values=shape, **reason).result())
+    name = f"{_LETTER[kind]}{number}"
+    sys.stdout.write("".join(f"{_line(name, row)}\n" for row in rows) or f"{name} has no shape\n")
     return EXIT_OK
+
+
+def _check_shape(store: Store, number: int, shape: dict[str, Value], offset: dict[str, Value]) -> None:
+    """Raises CommandError where the tool's shape would contradict itself or begin without a kind."""
+    from app.desk.tool_shapes import row_mistakes
+
+    row = store.shapes().get(number, ShapeRow())._replace(**shape)  # type: ignore[arg-type]
+    if not row.kind:
+        kinds = FIELDS[Kind.SHAPE]["kind"].range
+        raise CommandError(f"T{number} has no shape yet; give its kind too: kind= one of {kinds}")
+    tools = store.tools()
+    if offset and number not in tools and not {"x", "z"} <= offset.keys():
+        text = f"T{number} was never set, and {' and '.join(offset)} would stand beside an offset of 0"
+        raise CommandError(f"{text}; give x and z too, or touch it off first")
+    tool = tools.get(number, ToolRow())._replace(**offset)  # type: ignore[arg-type]
+    if mistakes := row_mistakes(row, tool):
+        raise CommandError(f"T{number}: " + "; ".join(f"{wrong.field}: {wrong.text}" for wrong in mistakes))
 
 
 def _named(text: str) -> tuple[Kind, int]:
@@ -139,21 +206,33 @@ def _values(kind: Kind, entries: list[str]) -> dict[str, Value]:
         if not equals:
             such = "z=-120" if kind is Kind.ZERO else "x=1.25"
             raise CommandError(f"{entry} sets nothing; write KEY=VALUE, such as {such}")
-        if key not in FIELDS[kind]:
-            raise CommandError(unknown(key, FIELDS[kind]))
-        if key in values:
+        fields = TOOL_KEYS if kind is Kind.TOOL else FIELDS[kind]
+        field = fields.get(ALIASES.get(key, key) if kind is Kind.TOOL else key)
+        if field is None:
+            raise CommandError(unknown(key, fields))
+        if field.name in values:
             raise CommandError(f"{key} is given twice; give it once")
-        values[key] = _entered(FIELDS[kind][key], text)
+        values[field.name] = _entered(field, text)
     return values
 
 
 def _entered(field: Field, text: str) -> Value:
     value = _value(field, text)
+    if field.choices:
+        return _chosen(field, str(value).lower())
     if field.sort in {Sort.METRIC, Sort.ANGLE}:
         return value  # of a zero offset: the store tells its range
     if mistake := out_of_range(field, value):
         raise CommandError(f"{field.name} = {shown(_typed(field, value))} {mistake}")
     return value
+
+
+def _chosen(field: Field, word: str) -> str:
+    """One of the field's choices. Raises CommandError with the nearest."""
+    known = (*field.choices, NO_SHAPE) if field.name == "kind" else field.choices
+    if word not in known:
+        raise CommandError(f"{field.name}: {unknown(word, known)}")
+    return word
 
 
 def _typed(field: Field, value: Value) -> Value:
@@ -189,7 +268,7 @@ def _history(args: argparse.Namespace) -> int:
     if args.limit < 1:
         raise CommandError(f"--limit {args.limit} shows nothing; give 1 or more")
     with opened_store(read_only=True) as store:
-        changes = store.history(limit=args.limit)
+        changes = store.history(Kind(args.table) if args.table else None, limit=args.limit)
     if args.json:
         sys.stdout.write(json.dumps([_change(change) for change in changes]) + "\n")
     else:
@@ -216,7 +295,8 @@ def _told(change: Change) -> str:
 
 def _undo(args: argparse.Namespace) -> int:
     with opened_store() as store:
-        changes = store.undo_offset(args.why, who="command line").result()
+        kind = Kind(args.table) if args.table else None
+        changes = store.undo_offset(args.why, kind=kind, who="command line").result()
     sys.stdout.write("".join(f"{_told(change)}\n" for change in changes))
     return EXIT_OK
 

@@ -93,15 +93,16 @@ def _export(args: argparse.Namespace) -> int:
 
 
 def _import(args: argparse.Namespace) -> int:
-    from app.cli.toml_files import read_rows
+    from app.cli.toml_files import read_rows, read_shape_rows
     from core.store import store_export
 
     folder = Path(args.path)
     offsets_file = folder / store_export.OFFSETS
     tools, secondary, zero = read_rows(offsets_file) if offsets_file.exists() else ({}, {}, {})
+    shapes = read_shape_rows(offsets_file) if offsets_file.exists() else {}
     with opened_store() as store:
         programs = store_export.program_files(folder)
-        store.import_all(programs, tools, secondary, f"import of {folder.name}", zero).result()
+        store.import_all(programs, tools, secondary, f"import of {folder.name}", zero, shapes).result()
     counts = f"{len(programs)}, tool offsets: {len(tools)}, secondary offsets: {len(secondary)}"
     sys.stdout.write(f"taken from {folder}: programs: {counts}\n")
     return EXIT_OK

@@ -1,11 +1,13 @@
-"""Files that a person writes by hand, in TOML: offsets and input states. Every mistake is named at once."""
+"""Files that a person writes in TOML: offsets, tool shapes, input states. Every mistake is named at once."""
 
 from __future__ import annotations
 
+import re
 import tomllib
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from difflib import get_close_matches
 from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 from app.cli.command_errors import CommandError
 from core.store.offset_fields import FIELDS, Field, Sort
@@ -15,16 +17,26 @@ from core.store.store_rows import (
     ZERO_CODES,
     Kind,
     SecondaryRow,
+    ShapeRow,
     ToolRow,
     Value,
     ZeroRow,
 )
 
+if TYPE_CHECKING:
+    from core.part.tool_shape import ToolShape
+
+
+_POINT_FIRST = re.compile(r"^(\s*[\w.\"-]+\s*=\s*[-+]?)(?=\.\d)", re.MULTILINE)
+
 
 def read_toml(path: Path) -> dict[str, object]:
-    """The parsed file. Raises CommandError when it cannot be read or is no TOML."""
+    """The parsed file. Raises CommandError when it cannot be read or is no TOML.
+
+    ``.25`` is no figure to TOML, and the one that shops write: it is read as 0.25.
+    """
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(_POINT_FIRST.sub(r"\g<1>0", path.read_text(encoding="utf-8")))
     except OSError as error:
         raise CommandError(f"{path} cannot be read ({error.strerror}); check name and rights") from error
     except UnicodeDecodeError as error:
@@ -73,7 +85,9 @@ def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
     return {"TB2-9": table["7"], **table} if also else dict(table)
 
 
-# --- The offsets file: [tool.1], [secondary.1] in inches, [zero.54] in mm and degrees; part of an export ---
+# --- The offsets file: [tool.1], [secondary.1] in inches, [zero.54] in mm and degrees; part of an export. A
+# tools file has the shapes of tools under the same [tool.1], which may stand in the offsets file too: lengths
+# in inches, angles in degrees, outlines (holder, profile) as texts in mm.
 
 
 _KINDS = (Kind.TOOL, Kind.SECONDARY)
@@ -90,16 +104,19 @@ _EXPECTED = {
     Sort.TEXT: "a text",
     Sort.FLAG: "true or false",
 }
+TOOL_KEYS: Mapping[str, Field] = {**FIELDS[Kind.TOOL], **FIELDS[Kind.SHAPE]}
+ALIASES = {"tip": "quadrant"}  # what a tool sheet calls it
 
 
 def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], dict[int, ZeroRow]]:
     """Tool, secondary and zero offsets of the file as the store keeps them; a missing key is 0 or empty.
 
-    Raises CommandError naming every mistake.
+    A tool with a shape, and neither X nor Z, has no offset: nobody has said where its tip is. Raises
+    CommandError naming every mistake.
     """
     data = read_toml(path)
-    mistakes = [unknown(key, _KINDS) for key in data if key not in {*_KINDS, Kind.ZERO}]
-    tools = {n: ToolRow(**values) for n, values in _table(data, Kind.TOOL, mistakes)}  # type: ignore[arg-type]
+    mistakes = _unknown_tables(data)
+    tools = _tools(data, mistakes).placed
     secondary = {
         n: SecondaryRow(**values)  # type: ignore[arg-type]
         for n, values in _table(data, Kind.SECONDARY, mistakes)
@@ -111,6 +128,66 @@ def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], 
     zero = {code: ZeroRow(**values) for code, values in _table(data, Kind.ZERO, mistakes)}  # type: ignore[arg-type]
     refuse(path, mistakes)
     return tools, secondary, zero
+
+
+def read_shape_rows(path: Path) -> dict[int, ShapeRow]:
+    """The tool shapes of the file as the store keeps them. Raises CommandError naming every mistake."""
+    data = read_toml(path)
+    mistakes = _unknown_tables(data)
+    shapes = _tools(data, mistakes).shapes
+    refuse(path, mistakes)
+    return shapes
+
+
+def read_tool_shapes(path: Path) -> dict[int, ToolShape]:
+    """The tools of the file that have a shape, mm, with nose radius and tip of the same table.
+
+    Lengths are inches in the file, as in an offsets file; outlines of holder and profile are texts in mm.
+    Raises CommandError naming every mistake.
+    """
+    from app.desk.tool_shapes import tool_shapes
+
+    data = read_toml(path)
+    mistakes = _unknown_tables(data)
+    found = _tools(data, mistakes)
+    refuse(path, mistakes)
+    return tool_shapes(found.shapes, found.rows)
+
+
+def _unknown_tables(data: dict[str, object]) -> list[str]:
+    return [unknown(key, _KINDS) for key in data if key not in {*_KINDS, Kind.ZERO}]
+
+
+class _Tools(NamedTuple):
+    """The file's tools: whatever stands with offsets, those of which a place is stated, and the shapes."""
+
+    rows: dict[int, ToolRow]
+    placed: dict[int, ToolRow]
+    shapes: dict[int, ShapeRow]
+
+
+def _tools(data: dict[str, object], mistakes: list[str]) -> _Tools:
+    found = _Tools({}, {}, {})
+    for number, values in _table(data, Kind.TOOL, mistakes):
+        shape = {name: value for name, value in values.items() if name in FIELDS[Kind.SHAPE]}
+        offset = {name: value for name, value in values.items() if name not in shape}
+        found.rows[number] = ToolRow(**offset)  # type: ignore[arg-type]
+        if not shape or {"x", "z"} & offset.keys():
+            found.placed[number] = found.rows[number]
+        if shape:
+            found.shapes[number] = ShapeRow(**shape)  # type: ignore[arg-type]
+            mistakes += _shape_mistakes(number, found.shapes[number], found.rows[number])
+    return found
+
+
+def _shape_mistakes(number: int, row: ShapeRow, tool: ToolRow) -> Iterator[str]:
+    from app.desk.tool_shapes import row_mistakes
+
+    if not row.kind:
+        kinds = FIELDS[Kind.SHAPE]["kind"].range
+        yield f"[tool.{number}] has no kind, and a shape is nothing without; it is one of {kinds}"
+        return
+    yield from (f"tool.{number}.{wrong.field}: {wrong.text}" for wrong in row_mistakes(row, tool))
 
 
 def _table(
@@ -130,20 +207,30 @@ def _table(
 
 
 def _values(entry: dict[str, object], kind: Kind, name: str, mistakes: list[str]) -> dict[str, Value]:
-    known, values = FIELDS[kind], {}
+    known = TOOL_KEYS if kind is Kind.TOOL else FIELDS[kind]
+    values: dict[str, Value] = {}
     for key, value in entry.items():
         where = f"{kind}.{name}.{key}"
-        if key not in known:
+        field = known.get(ALIASES.get(key, key) if kind is Kind.TOOL else key)
+        if field is None:
             mistakes.append(f"[{kind}.{name}] {unknown(key, known)}")
-            continue
-        field = known[key]
-        if not _fits(field, value):
-            mistakes.append(f"{where} must be {_EXPECTED[field.sort]}")
-        elif mistake := out_of_range(field, kept := _kept(field, value)):
-            mistakes.append(f"{where} = {shown(value)} {mistake}")
+        elif field.name in values:
+            mistakes.append(f"{where} is given under two names, {' and '.join(*ALIASES.items())}; give one")
+        elif mistake := _mistake(field, value):
+            mistakes.append(f"{where} {mistake}")
         else:
-            values[key] = kept
+            values[field.name] = _kept(field, value)
     return values
+
+
+def _mistake(field: Field, value: object) -> str:
+    """What is wrong with a value of the file, or nothing."""
+    if not _fits(field, value):
+        return f"must be {_EXPECTED[field.sort]}"
+    if field.choices and isinstance(value, str) and value not in field.choices:
+        return "= " + unknown(value or '""', field.choices)
+    mistake = out_of_range(field, _kept(field, value))
+    return mistake and f"= {shown(value)} {mistake}"
 
 
 def _fits(field: Field, value: object) -> bool:

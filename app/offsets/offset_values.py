@@ -12,7 +12,7 @@ from app.desk.arithmetic import EntryError, value_of
 from app.desk.formats import MINUS, MM_PER_INCH
 from app.desk.translation import tr
 from core.store.offset_fields import FIELDS, Field, Sort
-from core.store.store_rows import Kind, Row, SecondaryRow, ToolRow, Value
+from core.store.store_rows import Kind, Row, SecondaryRow, ShapeRow, ToolRow, Value
 
 TOOL_FIELDS = FIELDS[Kind.TOOL]
 ZERO_PLACES = 3
@@ -82,6 +82,8 @@ def in_words(offset: Row | None, mode: Mode) -> str:
     if isinstance(offset, SecondaryRow):
         x, z, r = offset
         return f"X {signed(x, mode.metric)}  Z {signed(z, mode.metric)}  R {formats.length(r, mode.metric)}"
+    if isinstance(offset, ShapeRow):
+        return " ".join(filter(None, (offset.kind, offset.insert)))
     return "  ".join(f"{name} {signed_zero_offset(value)}" for name, value in zip("XZC", offset, strict=True))
 
 

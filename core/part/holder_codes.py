@@ -45,8 +45,8 @@ class Holder:
 def holder_of(text: str) -> Holder | None:
     """The holder that a text describes; None where it is but a name, or empty."""
     words = text.strip()
-    if re.fullmatch(r"[-+.\d]+,[-+.\d]+(?:\s+[-+.\d]+,[-+.\d]+){2,}", words):
-        return _outline(words)
+    if points := outline_points(words):
+        return Holder(outline=points)
     return _size(words.lower()) or _coded(words.upper())
 
 
@@ -55,12 +55,17 @@ def shank(width: float) -> Holder:
     return Holder(width=width, reach=_reach(width))
 
 
-def _outline(words: str) -> Holder | None:
+_PAIR = r"[-+.\d]+,[-+.\d]+"
+
+
+def outline_points(text: str) -> tuple[tuple[float, float], ...] | None:
+    """Three points or more, ``z,x z,x z,x``; None for any other text."""
+    if not re.fullmatch(rf"\s*{_PAIR}(?:\s+{_PAIR}){{2,}}\s*", text):
+        return None
     try:
-        points = tuple((float(z), float(r)) for z, r in (pair.split(",") for pair in words.split()))
+        return tuple((float(z), float(r)) for z, r in (pair.split(",") for pair in text.split()))
     except ValueError:
         return None
-    return Holder(outline=points)
 
 
 _NUMBER = r"(\d+\s*/\s*\d+|\d*\.?\d+)"

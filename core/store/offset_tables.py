@@ -1,6 +1,6 @@
-"""Tool, secondary and zero offsets: what is valid now, and every change that made it so.
+"""Tool, secondary and zero offsets and tool shapes: what is valid now, and every change that made it so.
 
-One model for the three tables: each keeps rows under numbers, and a history of steps. A step is what one
+One model for the four tables: each keeps rows under numbers, and a history of steps. A step is what one
 entry has changed; taking it back is a step of the history itself.
 """
 
@@ -20,6 +20,7 @@ from core.store.store_rows import (
     Kind,
     Row,
     SecondaryRow,
+    ShapeRow,
     ToolRow,
     Value,
     ZeroRow,
@@ -72,10 +73,18 @@ _OFFSETS = _Log("offset_changes", "number", _columns(Kind.TOOL), "kind", "there 
 _ZEROS = _Log(
     "zero_offset_changes", "code", _columns(Kind.ZERO), "'zero'", "there is no change of G54…G59 to undo"
 )
+_SHAPES = _Log(
+    "tool_shape_changes",
+    "number",
+    _columns(Kind.SHAPE),
+    "'shape'",
+    "there is no change of a tool's shape to undo",
+)
 _TABLES = {
     Kind.TOOL: _Table("tool_offsets", "T", OFFSETS, ToolRow, _OFFSETS),
     Kind.SECONDARY: _Table("secondary_offsets", "D", OFFSETS, SecondaryRow, _OFFSETS),
     Kind.ZERO: _Table("zero_offsets", "G", ZERO_CODES, ZeroRow, _ZEROS),
+    Kind.SHAPE: _Table("tool_shapes", "T", OFFSETS, ShapeRow, _SHAPES),
 }
 
 
@@ -103,6 +112,11 @@ def zero(connection: sqlite3.Connection) -> dict[int, ZeroRow]:
     return {n: row for n, row in current(connection, Kind.ZERO).items() if isinstance(row, ZeroRow)}
 
 
+def shapes(connection: sqlite3.Connection) -> dict[int, ShapeRow]:
+    """The shapes of tools that have been set."""
+    return {n: row for n, row in current(connection, Kind.SHAPE).items() if isinstance(row, ShapeRow)}
+
+
 def change(
     connection: sqlite3.Connection, kind: Kind, number: int, reason: Reason, wanted: Mapping[str, Value]
 ) -> Row:
@@ -116,6 +130,8 @@ def change(
     if old is None and wanted.get("master") and not {"x", "z"} <= wanted.keys():
         raise StoreError(never_set(number))
     new = changed(kind, number, old, wanted)
+    if isinstance(new, ShapeRow) and not new.kind:
+        raise StoreError(f"T{number} has no shape yet; enter its kind first: {FIELDS[kind]['kind'].range}")
     if new != old:
         changes: dict[int, tuple[Row | None, Row | None]] = {number: (old, new)}
         if isinstance(new, ToolRow) and new.master:
@@ -175,6 +191,15 @@ def _plain(field: Field, value: Value | None) -> Value:
     if field.sort is Sort.FLAG:
         return bool(value)
     return int(value or 0) if field.sort is Sort.WHOLE else float(value or 0.0)
+
+
+def remove(connection: sqlite3.Connection, kind: Kind, number: int, reason: Reason) -> bool:
+    """Removes one offset or shape as one step; answers whether there was one."""
+    check_number(kind, number)
+    old = current(connection, kind).get(number)
+    if old is not None:
+        apply(connection, kind, {number: (old, None)}, reason)
+    return old is not None
 
 
 def clear(connection: sqlite3.Connection, kind: Kind, reason: Reason) -> int:

@@ -23,6 +23,7 @@ from core.store.store_rows import (
     Row,
     RunRow,
     SecondaryRow,
+    ShapeRow,
     ToolRow,
     Value,
     VersionRow,
@@ -125,6 +126,11 @@ class Store:
         with self.read() as connection:
             return offset_tables.zero(connection)
 
+    def shapes(self) -> dict[int, ShapeRow]:
+        """The shapes of tools that have been set."""
+        with self.read() as connection:
+            return offset_tables.shapes(connection)
+
     def programs(self) -> tuple[ProgramRow, ...]:
         """All programs by name."""
         with self.read() as connection:
@@ -204,6 +210,10 @@ class Store:
     def choose_master(self, number: int, why: str, *, who: str = "operator") -> Future[tuple[Change, ...]]:
         """The tool that the others are relative to, 0: none; no tip moves by it."""
         return self.write(lambda c: touch_off.choose_master(c, number, Reason(why, who)))
+
+    def remove_shape(self, number: int, why: str, *, who: str = "operator") -> Future[bool]:
+        """A tool without a shape again; answers whether it had one."""
+        return self.write(lambda c: offset_tables.remove(c, Kind.SHAPE, number, Reason(why, who)))
 
     def clear_offsets(self, kind: Kind, why: str, *, who: str = "operator") -> Future[int]:
         """All offsets of a table at once, as one step of its history; answers how many were set."""
@@ -304,6 +314,7 @@ class Store:
         secondary: Mapping[int, SecondaryRow],
         why: str,
         zero_rows: Mapping[int, ZeroRow] | None = None,
+        shapes: Mapping[int, ShapeRow] | None = None,
     ) -> Future[None]:
         """Programs and offsets of an export in one transaction: all of them or none."""
 
@@ -317,5 +328,7 @@ class Store:
                 offset_tables.change(connection, Kind.SECONDARY, number, reason, row._asdict())
             for code, offset in (zero_rows or {}).items():
                 offset_tables.change(connection, Kind.ZERO, code, reason, offset._asdict())
+            for number, shape in (shapes or {}).items():
+                offset_tables.change(connection, Kind.SHAPE, number, reason, shape._asdict())
 
         return self.write(operation)

@@ -11,7 +11,7 @@ from pathlib import Path
 from core.store.offset_fields import FIELDS, Field, Sort
 from core.store.store import Store
 from core.store.store_errors import Cause, StoreError, cause_of, why
-from core.store.store_rows import EventRow, Kind, RunRow, Value, inches
+from core.store.store_rows import EventRow, Kind, Row, RunRow, Value, inches
 
 PROGRAMS, OFFSETS, EVENTS, RUNS = "programs", "offsets.toml", "events.csv", "runs.csv"
 _ALL = 2**62
@@ -54,11 +54,21 @@ def _offset_lines(store: Store) -> Iterator[str]:
     for code, zero in store.zero_offsets().items():
         yield f"[zero.{code}]  # mm and degrees"
         yield from (f"{name} = {value!r}" for name, value in zero._asdict().items())
-    for kind, rows in ((Kind.TOOL, store.tools()), (Kind.SECONDARY, store.secondary())):
-        for number, row in rows.items():
-            yield f"[{kind.value}.{number}]"
-            for name, value in row._asdict().items():
-                yield f"{name} = {_toml(FIELDS[kind][name], value)}"
+    tools, shapes = store.tools(), store.shapes()
+    for number in sorted({*tools, *shapes}):
+        yield f"[tool.{number}]"
+        if number in tools:
+            yield from _entry_lines(Kind.TOOL, tools[number])
+        if number in shapes:
+            yield from _entry_lines(Kind.SHAPE, shapes[number])
+    for number, row in store.secondary().items():
+        yield f"[secondary.{number}]"
+        yield from _entry_lines(Kind.SECONDARY, row)
+
+
+def _entry_lines(kind: Kind, row: Row) -> Iterator[str]:
+    for name, value in row._asdict().items():
+        yield f"{name} = {_toml(FIELDS[kind][name], value)}"
 
 
 def _toml(field: Field, value: Value) -> str:

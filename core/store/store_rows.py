@@ -14,17 +14,20 @@ SECONDARY_REACH = 254.0  # mm: 10 in, what the control's display has digits for
 RADIUS_MAX = 50.8  # mm: 2 in
 WEAR_REACH = 2.54  # mm: .1 in; a tool that is off by more has to be touched off
 REMARK_LONGEST = 40  # characters
+SHAPE_REACH = 508.0  # mm: 20 in, longer than any tool of such a lathe sticks out
+OUTLINE_LONGEST = 600  # characters
 ZERO_REACH = 5000.0  # mm, more than any such lathe travels
 ANGLE_REACH = 360.0  # degrees: further is the same place
 Value = float | int | str | bool
 
 
 class Kind(StrEnum):
-    """The tables of offsets: T, D, and the settable zero offsets G54 to G59."""
+    """The tables of offsets: T, D, the settable zero offsets G54 to G59, and the shapes of the tools."""
 
     TOOL = "tool"
     SECONDARY = "secondary"
     ZERO = "zero"
+    SHAPE = "shape"
 
 
 class ToolRow(NamedTuple):
@@ -64,7 +67,30 @@ class ZeroRow(NamedTuple):
     c: float = 0.0
 
 
-Row = ToolRow | SecondaryRow | ZeroRow
+class ShapeRow(NamedTuple):
+    """Shape of a tool, mm and degrees, 0 or empty: not stated; nose radius and tip are those of its offset.
+
+    ``length`` is what can cut, ``stick_out`` where the tool is held, ``entry`` the entering angle of the main
+    edge; ``rear``: it works at X negative; ``profile`` is an outline, ``z,x z,x z,x`` in mm.
+    """
+
+    kind: str = ""
+    hand: str = "right"
+    insert: str = ""
+    holder: str = ""
+    width: float = 0.0
+    diameter: float = 0.0
+    point: float = 0.0
+    stick_out: float = 0.0
+    length: float = 0.0
+    pitch: float = 0.0
+    flutes: int = 0
+    entry: float = 0.0
+    rear: bool = False
+    profile: str = ""
+
+
+Row = ToolRow | SecondaryRow | ZeroRow | ShapeRow
 
 
 class Change(NamedTuple):

@@ -1,0 +1,46 @@
+"""Tool shapes as the proof counts with them: the store's rows joined with nose radius and tip quadrant."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from core.part.holder_codes import outline_points
+from core.part.shape_rules import ShapeMistake, shape_mistakes
+from core.part.tool_shape import Hand, ToolKind, ToolShape
+from core.store.store_rows import ShapeRow, ToolRow
+
+
+def shape_of(row: ShapeRow, tool: ToolRow | None) -> ToolShape:
+    """The shape of a tool; nose radius and tip quadrant are those of its offset, 0 where it has none."""
+    offset = tool or ToolRow()
+    return ToolShape(
+        kind=ToolKind(row.kind),
+        hand=Hand(row.hand),
+        tip=offset.quadrant,
+        nose_radius=offset.nose_radius,
+        insert=row.insert,
+        holder=row.holder,
+        width=row.width,
+        diameter=row.diameter,
+        point=row.point,
+        stick_out=row.stick_out,
+        length=row.length,
+        pitch=row.pitch,
+        flutes=row.flutes,
+        entry=row.entry,
+        rear=row.rear,
+        profile=outline_points(row.profile) or (),
+    )
+
+
+def tool_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -> dict[int, ToolShape]:
+    """All shapes by tool."""
+    return {number: shape_of(row, tools.get(number)) for number, row in shapes.items()}
+
+
+def row_mistakes(row: ShapeRow, tool: ToolRow | None) -> tuple[ShapeMistake, ...]:
+    """What in a row cannot be: fields that contradict each other, a code or an outline that means nothing."""
+    if row.profile and outline_points(row.profile) is None:
+        text = "a profile is three points or more, Z and X in mm: 0,0 2.5,0 1.2,1.5"
+        return (ShapeMistake("profile", text),)
+    return shape_mistakes(shape_of(row, tool))

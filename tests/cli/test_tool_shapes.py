@@ -1,0 +1,251 @@
+"""Shapes of tools by file and by command: inches at the door, millimetres inside, every mistake named."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.cli.command_errors import CommandError
+from app.cli.main import main
+from app.cli.toml_files import read_rows, read_shape_rows, read_tool_shapes
+from core.part.tool_shape import Hand, ToolKind, ToolShape
+from core.store.offset_fields import HANDS, TOOL_KINDS
+from core.store.store import Store
+from core.store.store_rows import Kind, ShapeRow, ToolRow
+
+Captured = pytest.CaptureFixture[str]
+SHEET = """
+[tool.3]
+kind = "turning"
+hand = "right"
+insert = "CNMG432"
+nose_radius = .0313
+tip = 3
+holder = "MCLNR-124B"
+[tool.5]
+kind = "drill"
+diameter = .25
+point = 118
+[tool.7]
+kind = "form"
+profile = "0,0 2.5,0 1.25,1.5"
+rear = true
+"""
+CNMG = ToolShape(ToolKind.TURNING, Hand.RIGHT, 3, 0.0313 * 25.4, insert="CNMG432", holder="MCLNR-124B")
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    folder = tmp_path / "home"
+    monkeypatch.setenv("TURNDESK_HOME", str(folder))
+    return folder
+
+
+@pytest.fixture
+def sheet(tmp_path: Path) -> Path:
+    path = tmp_path / "tools.toml"
+    path.write_text(SHEET, encoding="utf-8")
+    return path
+
+
+def wrong(path: Path, text: str) -> str:
+    """The sentence that a file with mistakes is refused with, by every reader alike."""
+    path.write_text(text, encoding="utf-8")
+    told = set()
+    for read in (read_tool_shapes, read_shape_rows, read_rows):
+        with pytest.raises(CommandError) as caught:
+            read(path)
+        told.add(str(caught.value))
+    assert len(told) == 1
+    return told.pop()
+
+
+def offsets(*argv: str) -> int:
+    return main(["offsets", *argv])
+
+
+def refused(capsys: Captured, *argv: str) -> str:
+    """The one line that a refused command says."""
+    capsys.readouterr()
+    assert offsets(*argv) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert told.err.count("\n") == 1
+    return told.err
+
+
+def test_words_of_the_store_are_those_of_the_part() -> None:
+    assert tuple(ToolKind) == TOOL_KINDS
+    assert tuple(Hand) == HANDS
+
+
+def test_file_of_tools_is_read_in_inches(sheet: Path) -> None:
+    shapes = read_tool_shapes(sheet)
+    assert sorted(shapes) == [3, 5, 7]
+    assert shapes[3] == replace(CNMG, nose_radius=shapes[3].nose_radius)
+    assert shapes[3].nose_radius == pytest.approx(0.79502)
+    assert shapes[5] == ToolShape(ToolKind.DRILL, diameter=6.35, point=118.0)
+    assert shapes[7].profile == ((0.0, 0.0), (2.5, 0.0), (1.25, 1.5)), "outlines are in mm"
+    assert shapes[7].rear
+
+
+def test_shapes_may_stand_in_the_offsets_file(tmp_path: Path) -> None:
+    path = tmp_path / "offsets.toml"
+    path.write_text(
+        '[tool.1]\nx = 0.0\nz = 0.0\nkind = "drill"\n[tool.2]\nx = 1.0\n'
+        "[secondary.1]\nx = 0.001\n[zero.54]\nz = 5\n",
+        encoding="utf-8",
+    )
+    tools, secondary, zero = read_rows(path)
+    assert tools == {1: ToolRow(), 2: ToolRow(25.4)}
+    assert (sorted(secondary), sorted(zero)) == ([1], [54])
+    assert sorted(read_tool_shapes(path)) == [1]
+
+
+def test_tool_with_a_shape_alone_was_never_touched_off(sheet: Path) -> None:
+    """A nose radius is not a place: the machine still refuses to start with this tool."""
+    assert read_rows(sheet)[0] == {}
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ('[tool.3]\nkind = "turnin"', "tool.3.kind = turnin is unknown; did you mean turning?"),
+        ('[tool.3]\nkind = ""', 'tool.3.kind = "" is unknown; known here: turning, boring'),
+        ("[tool.3]\nkind = 3", "tool.3.kind must be a text"),
+        ('[tool.3]\nkind = "turning"\nhand = "lefd"', "tool.3.hand = lefd is unknown; did you mean left?"),
+        ('[tool.3]\nkind = "turning"\ninsrt = "CNMG432"', "[tool.3] insrt is unknown; did you mean insert?"),
+        ('[tool.3]\nkind = "turning"\ninsert = 432', "tool.3.insert must be a text"),
+        (
+            '[tool.3]\nkind = "turning"\ninsert = "CNXG432"',
+            "tool.3.insert: CNXG432: character 3, X, means nothing",
+        ),
+        ('[tool.3]\nkind = "turning"\ntip = 10', "tool.3.tip = 10 is out of range; expected 0…9"),
+        ('[tool.3]\nkind = "turning"\ntip = 3\nquadrant = 4', "tool.3.quadrant is given under two names"),
+        ('[tool.3]\nkind = "turning"\nrear = 1', "tool.3.rear must be true or false"),
+        (
+            '[tool.3]\nkind = "turning"\nholder = "0,0 4,4 4,0 0,5"',
+            "tool.3.holder: the outline crosses itself",
+        ),
+        ("[tool.5]\ndiameter = .25", "[tool.5] has no kind, and a shape is nothing without"),
+        ('[tool.5]\nkind = "drill"\ndiameter = "1/4"', "tool.5.diameter must be a number of inches"),
+        (
+            '[tool.5]\nkind = "drill"\ndiameter = -.25',
+            "tool.5.diameter = -0.25 is out of range; expected 0…20 in",
+        ),
+        ('[tool.5]\nkind = "drill"\nflutes = 2.5', "tool.5.flutes = 2.5 is out of range; expected 0…20"),
+        (
+            '[tool.5]\nkind = "drill"\npoint = nan',
+            "tool.5.point = nan is out of range; expected 0…180 degrees",
+        ),
+        ('[tool.5]\nkind = "drill"\ntip = 3', "tool.5.tip: tip 3 is no end of a drill"),
+        ('[tool.7]\nkind = "form"\nprofile = "0,0 1,1"', "tool.7.profile: a profile is three points or more"),
+        ('[tool.33]\nkind = "drill"', "[tool.33] does not exist; offsets are 1…32"),
+        ('[tools.3]\nkind = "drill"', "tools is unknown; did you mean tool?"),
+        ("[tool.3]\nkind = drill", "is no TOML"),
+    ],
+)
+def test_mistake_is_named_by_file_and_key(tmp_path: Path, text: str, says: str) -> None:
+    path = tmp_path / "tools.toml"
+    told = wrong(path, text)
+    assert told.startswith(f"{path}")
+    assert says in told
+
+
+def test_every_mistake_is_named_at_once(tmp_path: Path) -> None:
+    text = (
+        '[tool.3]\nkind = "turnin"\ninsrt = ""\n[tool.4]\nkind = "turning"\ninsert = "CNXG432"\nwidth = -1\n'
+    )
+    told = wrong(tmp_path / "tools.toml", text)
+    for place in ("tool.3.kind", "insrt", "tool.4.insert", "tool.4.width"):
+        assert place in told
+
+
+def test_point_before_the_first_figure_is_a_figure(tmp_path: Path) -> None:
+    path = tmp_path / "tools.toml"
+    path.write_text('[tool.1]\nx = -.5\nz = +.25\nremark = "a = .5"\n', encoding="utf-8")
+    (row,) = read_rows(path)[0].values()
+    assert (row.x, row.z, row.remark) == (-12.7, 6.35, "a = .5")
+
+
+def test_shape_is_set_shown_and_told(capsys: Captured, home: Path) -> None:
+    assert offsets("set", "T3", "kind=turning", "insert=CNMG432", "x=1", "z=2", "tip=3") == 0
+    assert capsys.readouterr().out.splitlines()[1] == "T3  turning right  insert=CNMG432"
+    assert offsets("set", "T3", "holder=MCLNR-124B") == 0
+    assert offsets("set", "T5", "kind=DRILL", "diameter=1/4", "point=118") == 0
+    capsys.readouterr()
+    assert offsets("show", "--json") == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["tool"]["3"]["quadrant"] == 3
+    assert sorted(told["tool"]) == ["3"], "a drill that was never touched off has no offset"
+    assert told["shape"]["5"]["diameter"] == 0.25
+    assert told["shape"]["3"]["holder"] == "MCLNR-124B"
+    with Store.open(home, read_only=True) as store:
+        assert store.shapes()[5] == ShapeRow("drill", diameter=6.35, point=118.0)
+
+
+def test_shape_is_changed_with_its_history_and_taken_back(capsys: Captured, home: Path) -> None:
+    assert offsets("set", "T5", "kind=drill", "diameter=.25") == 0
+    assert offsets("set", "T5", "diameter=.26", "--why", "reground") == 0
+    capsys.readouterr()
+    assert offsets("history", "shape") == 0
+    newest, oldest = capsys.readouterr().out.splitlines()
+    assert "T5  drill right  diameter=0.25 → drill right  diameter=0.26  reground (command line)" in newest
+    assert "T5  not set → drill right  diameter=0.25" in oldest
+    assert offsets("undo", "shape") == 0
+    with Store.open(home, read_only=True) as store:
+        assert store.shapes()[5].diameter == 6.35
+        assert store.history() == (), "offsets have a history of their own"
+    assert offsets("set", "T5", "kind=none") == 0
+    assert capsys.readouterr().out.endswith("T5 has no shape\n")
+    assert offsets("undo", "shape") == 0
+    with Store.open(home, read_only=True) as store:
+        assert store.shapes()[5].kind == "drill"
+
+
+def test_shapes_go_with_an_export(capsys: Captured, home: Path, tmp_path: Path) -> None:
+    assert offsets("set", "T3", "kind=turning", "insert=CNMG432", "x=0", "z=0", "tip=3") == 0
+    assert offsets("set", "T5", "kind=drill", "diameter=.25", 'holder=a "collet"') == 0
+    with Store.open(home, read_only=True) as store:
+        before = store.shapes(), store.tools()
+    assert main(["store", "export", str(tmp_path / "out")]) == 0
+    for _ in range(2):  # again it changes nothing
+        assert main(["store", "import", str(tmp_path / "out")]) == 0
+    (home / "turndesk.db").unlink()
+    assert main(["store", "import", str(tmp_path / "out")]) == 0
+    with Store.open(home, read_only=True) as store:
+        assert (store.shapes(), store.tools()) == before
+        assert len(store.history(Kind.SHAPE)) == 2
+
+
+@pytest.mark.parametrize(
+    ("argv", "says"),
+    [
+        (("T5", "diameter=.25"), "T5 has no shape yet; give its kind too"),
+        (("T5", "kind=dril"), "kind: dril is unknown; did you mean drill?"),
+        (("T5", "kind=drill", "hand=lft"), "hand: lft is unknown; did you mean left?"),
+        (("T5", "kind=drill", "diameter=21"), "diameter = 21 is out of range; expected 0…20 in"),
+        (("T5", "kind=drill", "point=200"), "T5 point angle 200 is out of range; enter 0…180 degrees"),
+        (("T5", "kind=drill", "rear=maybe"), "rear = maybe is neither 1 nor 0"),
+        (("T5", "kind=turning", "insert=CNXG432"), "T5: insert: CNXG432: character 3, X, means nothing"),
+        (("T5", "kind=turning", "tip=3"), "T5 was never set, and quadrant would stand beside an offset of 0"),
+        (("T5", "tip=3", "quadrant=3"), "quadrant is given twice"),
+        (("T5", "insrt=CNMG432"), "insrt is unknown; did you mean insert?"),
+        (("D5", "kind=drill"), "kind is unknown; known here: x, z, r"),
+    ],
+)
+def test_refusal_is_one_line_and_sets_nothing(capsys: Captured, argv: tuple[str, ...], says: str) -> None:
+    assert offsets("set", "T9", "kind=drill") == 0
+    assert says in refused(capsys, "set", *argv)
+    capsys.readouterr()
+    assert offsets("show") == 0
+    assert capsys.readouterr().out == "T9  drill right\n"
+
+
+def test_contradiction_with_the_offset_of_the_tool_is_refused(capsys: Captured) -> None:
+    assert offsets("set", "T5", "x=1", "z=1", "quadrant=3") == 0
+    assert "tip 3 is no end of a drill" in refused(capsys, "set", "T5", "kind=drill")
+    assert offsets("set", "T5", "kind=drill", "quadrant=7") == 0

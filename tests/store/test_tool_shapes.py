@@ -1,0 +1,108 @@
+"""Shapes of tools in the store: their rows, their own history, and a store from before there were any."""
+
+from __future__ import annotations
+
+import sqlite3
+from math import inf
+from pathlib import Path
+
+import pytest
+
+from core.store import database
+from core.store.store import Store, StoreError
+from core.store.store_rows import Kind, ShapeRow, ToolRow
+
+DRILL = ShapeRow("drill", diameter=6.35, point=118.0, flutes=2)
+
+
+def set_shape(store: Store, number: int, **values: float | str) -> None:
+    store.set_offset(Kind.SHAPE, number, "entered", values).result()
+
+
+def test_shape_is_kept_beside_the_offset_of_its_tool(store: Store) -> None:
+    set_shape(store, 5, kind="drill", diameter=6.35, point=118.0, flutes=2)
+    assert store.shapes() == {5: DRILL}
+    assert store.tools() == {}, "the tool was never touched off"
+    set_shape(store, 5, rear=True)
+    assert store.shapes() == {5: DRILL._replace(rear=True)}
+
+
+def test_shapes_have_a_history_of_their_own(store: Store) -> None:
+    store.set_tool(5, "set", x=1.0, z=2.0).result()
+    set_shape(store, 5, kind="drill", diameter=6.35, point=118.0, flutes=2)
+    set_shape(store, 5, diameter=6.4)
+    newest, first = store.history(Kind.SHAPE)
+    assert (newest.old, newest.new) == (DRILL, DRILL._replace(diameter=6.4))
+    assert (first.old, first.new) == (None, DRILL)
+    assert len(store.history()) == 1
+    store.undo_offset(kind=Kind.SHAPE).result()
+    assert store.shapes() == {5: DRILL}
+    store.undo_offset(kind=Kind.SHAPE).result()
+    assert store.shapes() == {}
+    assert store.tools() == {5: ToolRow(1.0, 2.0)}
+
+
+def test_shape_is_taken_away_and_comes_back(store: Store) -> None:
+    set_shape(store, 5, kind="drill", diameter=6.35, point=118.0, flutes=2)
+    assert store.remove_shape(5, "sold").result() is True
+    assert store.shapes() == {}
+    assert store.remove_shape(5, "again").result() is False
+    store.undo_offset(kind=Kind.SHAPE).result()
+    assert store.shapes() == {5: DRILL}
+
+
+def test_what_is_entered_again_is_no_change(store: Store) -> None:
+    set_shape(store, 5, kind="drill")
+    set_shape(store, 5, kind="drill")
+    assert len(store.history(Kind.SHAPE)) == 1
+
+
+@pytest.mark.parametrize(
+    ("values", "told"),
+    [
+        ({"diameter": 6.0}, "T5 has no shape yet; enter its kind first: turning, boring"),
+        ({"kind": "hammer"}, "T5 kind 'hammer' is out of range; enter turning, boring"),
+        ({"kind": ""}, "T5 kind ''"),
+        ({"kind": "drill", "hand": "both"}, "T5 hand 'both' is out of range; enter right, left, neutral"),
+        ({"kind": "drill", "diameter": -0.1}, "T5 diameter"),
+        ({"kind": "drill", "diameter": inf}, "T5 diameter inf in is out of range; enter 0…20 in"),
+        ({"kind": "drill", "point": 180.5}, "T5 point angle 180.5 is out of range; enter 0…180 degrees"),
+        ({"kind": "drill", "flutes": 1.5}, "T5 flutes 1.5"),
+        ({"kind": "drill", "insert": "x" * 41}, "up to 40 characters in one line"),
+        ({"kind": "drill", "holder": "a\nb"}, "in one line"),
+        ({"kind": "drill", "colour": 3}, "T5 colour 3 is out of range; enter kind, hand, insert"),
+    ],
+)
+def test_value_that_cannot_be_is_refused(store: Store, values: dict[str, float | str], told: str) -> None:
+    with pytest.raises(StoreError) as caught:
+        set_shape(store, 5, **values)
+    assert told in str(caught.value)
+    assert store.shapes() == {}
+
+
+def test_tool_that_does_not_exist(store: Store) -> None:
+    with pytest.raises(StoreError, match="T33 does not exist"):
+        set_shape(store, 33, kind="drill")
+    with pytest.raises(StoreError, match="T0 does not exist"):
+        store.remove_shape(0, "no").result()
+
+
+def test_nothing_to_take_back(store: Store) -> None:
+    store.set_tool(5, "set", x=1.0, z=2.0).result()
+    with pytest.raises(StoreError, match="there is no change of a tool's shape to undo"):
+        store.undo_offset(kind=Kind.SHAPE).result()
+
+
+def test_store_from_before_has_no_shapes_and_takes_them(folder: Path) -> None:
+    folder.mkdir()
+    connection = sqlite3.connect(folder / database.FILE_NAME, isolation_level=None)
+    connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
+    connection.execute("PRAGMA journal_mode = WAL")
+    database.migrate(connection, database.migrations()[:4])
+    connection.execute("INSERT INTO tool_offsets (number, x, z, r) VALUES (3, 1.0, 2.0, 0.4)")
+    connection.close()
+    with Store.open(folder) as store:
+        assert store.shapes() == {}
+        assert store.tools() == {3: ToolRow(1.0, 2.0, 0.4)}
+        set_shape(store, 3, kind="turning", insert="CNMG432")
+        assert store.shapes() == {3: ShapeRow("turning", insert="CNMG432")}
