@@ -34,47 +34,58 @@ class CornerTooLargeError(CornerError):
         self.first = first
 
 
-def chamfer(before: Line, after: Line, set_back: float) -> tuple[Line, Line, Line]:
-    """Both lines shortened by ``set_back`` mm at the point where they meet, with a line between: in order.
+def chamfer(before: Element, after: Element, leg: float) -> tuple[Element, Line, Element]:
+    """Both elements ended ``leg`` mm from the point where they meet, with a line between: in order.
 
-    Raises NoCornerError, CornerTooLargeError, or CornerError where the lines run back on themselves.
-    """
-    _turned(before, after)
-    first, last = _shortened(before, after, set_back)
-    return first, Line(first.end, last.start), last
-
-
-def fillet(before: Line, after: Line, radius: float) -> tuple[Line, Arc, Line]:
-    """Both lines shortened to where an arc of ``radius`` mm touches them, with the arc between: in order.
-
-    The set-back is radius·tan(turn/2). Raises as ``chamfer``.
+    Raises NoCornerError, CornerTooLargeError, or CornerError where they run back on themselves or the line
+    would cross one of them.
     """
     angle = _turned(before, after)
-    first, last = _shortened(before, after, radius * tan(abs(angle) / 2))
-    side = radius if angle > 0 else -radius
-    left = left_of(before.end_direction)
-    centre = first.end[0] + left[0] * side, first.end[1] + left[1] * side
-    return first, Arc(first.end, last.start, centre, clockwise=angle < 0), last
+    first, last = _shortened(before, after, leg)
+    between = Line(first.end, last.start)
+    out = first.end_direction if first.length > SAME_POINT else before.start_direction
+    into = last.start_direction if last.length > SAME_POINT else after.end_direction
+    cut = between.start_direction
+    if turn(out, cut) * angle <= 0.0 or turn(cut, into) * angle <= 0.0:
+        raise CornerError("the chamfer would cross one of them")
+    return first, between, last
 
 
-def _turned(before: Line, after: Line) -> float:
-    if before.length < SAME_POINT or after.length < SAME_POINT:
-        raise CornerTooLargeError(0.0, first=before.length < SAME_POINT)
+def _turned(before: Element, after: Element) -> float:
+    """The angle by which the way turns from one to the other, rad."""
+    for element in (before, after):
+        if element.length < SAME_POINT:
+            raise CornerTooLargeError(0.0, first=element is before)
     angle = turn(before.end_direction, after.start_direction)
     if abs(angle) < STRAIGHT:
-        raise NoCornerError("the lines go on in one direction")
+        raise NoCornerError("they go on in one direction")
     if abs(angle) > pi - STRAIGHT:
-        raise CornerError("the next line runs straight back")
+        lines = isinstance(before, Line) and isinstance(after, Line)
+        raise CornerError("the next line runs straight back" if lines else "the next one runs straight back")
     return angle
 
 
-def _shortened(before: Line, after: Line, set_back: float) -> tuple[Line, Line]:
-    for line in (before, after):
-        if set_back > line.length + SAME_POINT:
-            raise CornerTooLargeError(set_back, first=line is before)
-    first = before.point(max(before.length - set_back, 0.0))
-    last = after.point(min(set_back, after.length))
-    return Line(before.start, first), Line(last, after.end)
+def _shortened(before: Element, after: Element, leg: float) -> tuple[Element, Element]:
+    """What is left of both where each ends ``leg`` mm from the point where they meet."""
+    end, start = before.length - _taken(before, leg, first=True), _taken(after, leg, first=False)
+    return before.part(before.start, before.point(max(end, 0.0))), after.part(after.point(start), after.end)
+
+
+def _taken(element: Element, leg: float, *, first: bool) -> float:
+    """mm along the element that the leg takes of it."""
+    if isinstance(element, Arc) and leg > 2.0 * element.radius:
+        raise CornerTooLargeError(leg, first=first)
+    way = _way(element, leg)
+    # Of an arc something must be left: ends in one point would be a full circle.
+    if way > element.length - _left(element):
+        raise CornerTooLargeError(way, first=first)
+    return min(way, element.length)
+
+
+def _way(element: Element, leg: float) -> float:
+    if isinstance(element, Line):
+        return leg
+    return 2.0 * element.radius * asin(min(1.0, leg / (2.0 * element.radius)))
 
 
 def _left(element: Element) -> float:
@@ -83,13 +94,13 @@ def _left(element: Element) -> float:
 
 
 def rounding(before: Element, after: Element, radius: float) -> tuple[Element, Arc, Element]:
-    """As ``fillet``, between lines and arcs: the centre is where both, moved aside by ``radius``, meet.
+    """An arc of ``radius`` mm that touches both, which end at it: in order.
 
-    Raises NoCornerError, CornerTooLargeError (between two lines), or CornerError where no such arc touches
-    both between their ends.
+    Between lines its set-back is radius·tan(turn/2); else its centre is where both, moved aside by
+    ``radius``, meet. Raises as ``chamfer``, and CornerError where no arc touches both between their ends.
     """
     if isinstance(before, Line) and isinstance(after, Line):
-        return fillet(before, after, radius)
+        return _fillet(before, after, radius)
     angle = turn(before.end_direction, after.start_direction)
     if abs(angle) < STRAIGHT:
         raise NoCornerError("they go on in one direction")
@@ -113,40 +124,28 @@ def rounding(before: Element, after: Element, radius: float) -> tuple[Element, A
     return first, Arc(first.end, last.start, centre, clockwise=angle < 0), last
 
 
-# --- chamfers beside arcs -------------------------------------------------------------------------------
+def _fillet(before: Line, after: Line, radius: float) -> tuple[Element, Arc, Element]:
+    angle = _turned(before, after)
+    first, last = _shortened(before, after, radius * tan(abs(angle) / 2))
+    side = radius if angle > 0 else -radius
+    left = left_of(before.end_direction)
+    centre = first.end[0] + left[0] * side, first.end[1] + left[1] * side
+    return first, Arc(first.end, last.start, centre, clockwise=angle < 0), last
+
+
+# --- the leg of a chamfer whose own length is given --------------------------------------------------------
 
 
 _STEPS = 256  # in which the first leg is looked for that is long enough
 _HALVINGS = 60
 
 
-def bevel(before: Element, after: Element, leg: float) -> tuple[Element, Line, Element]:
-    """Both elements ended ``leg`` mm from the point where they meet, with a line between: in order.
-
-    Raises NoCornerError, CornerTooLargeError, or CornerError where they run back on themselves or the line
-    would cross one of them.
-    """
-    if isinstance(before, Line) and isinstance(after, Line):
-        return chamfer(before, after, leg)
-    angle = _turned_bevel(before, after)
-    end, start = before.length - _taken(before, leg, first=True), _taken(after, leg, first=False)
-    first = before.part(before.start, before.point(max(end, 0.0)))
-    last = after.part(after.point(start), after.end)
-    between = Line(first.end, last.start)
-    out = first.end_direction if end > SAME_POINT else before.start_direction
-    into = last.start_direction if after.length - start > SAME_POINT else after.end_direction
-    cut = between.start_direction
-    if turn(out, cut) * angle <= 0.0 or turn(cut, into) * angle <= 0.0:
-        raise CornerError("the chamfer would cross one of them")
-    return first, between, last
-
-
 def leg_of(before: Element, after: Element, length: float) -> float:
-    """The leg of a chamfer that is itself ``length`` mm long. Raises as ``bevel``."""
+    """The leg of a chamfer that is itself ``length`` mm long. Raises as ``chamfer``."""
     if isinstance(before, Line) and isinstance(after, Line):
         # The chamfer and its two legs are a triangle of two equal sides.
         return length / (2.0 * max(abs(cos(turn(before.end_direction, after.start_direction) / 2)), 1e-9))
-    _turned_bevel(before, after)
+    _turned(before, after)
     most = min(_longest(before), _longest(after))
     for step in range(1, _STEPS + 1):
         if _width(before, after, most * step / _STEPS) >= length:
@@ -165,36 +164,6 @@ def _width(before: Element, after: Element, leg: float) -> float:
     """How long the chamfer of this leg is."""
     one = before.point(before.length - _way(before, leg))
     return dist(one, after.point(_way(after, leg)))
-
-
-def _turned_bevel(before: Element, after: Element) -> float:
-    for element in (before, after):
-        if element.length < SAME_POINT:
-            raise CornerTooLargeError(0.0, first=element is before)
-    angle = turn(before.end_direction, after.start_direction)
-    if abs(angle) < STRAIGHT:
-        raise NoCornerError("they go on in one direction")
-    if abs(angle) > pi - STRAIGHT:
-        raise CornerError("the next one runs straight back")
-    return angle
-
-
-def _taken(element: Element, leg: float, *, first: bool) -> float:
-    """mm along the element that the leg takes of it."""
-    if isinstance(element, Arc) and leg > 2.0 * element.radius:
-        raise CornerTooLargeError(leg, first=first)
-    way = _way(element, leg)
-    # Of an arc something must be left: ends in one point would be a full circle.
-    most = element.length + (SAME_POINT if isinstance(element, Line) else -SAME_POINT)
-    if way > most:
-        raise CornerTooLargeError(way, first=first)
-    return min(way, element.length)
-
-
-def _way(element: Element, leg: float) -> float:
-    if isinstance(element, Line):
-        return leg
-    return 2.0 * element.radius * asin(min(1.0, leg / (2.0 * element.radius)))
 
 
 def _longest(element: Element) -> float:

@@ -13,7 +13,7 @@ from core.geometry.chamfer_and_rounding import (
     CornerTooLargeError,
     NoCornerError,
     chamfer,
-    fillet,
+    rounding,
 )
 from core.geometry.intersections import distance
 from core.geometry.lines_and_arcs import Line, turn
@@ -29,7 +29,7 @@ def test_a_chamfer_at_a_right_angle() -> None:
 
 
 def test_a_fillet_at_a_convex_corner_is_clockwise_on_the_way_to_the_spindle() -> None:
-    first, round_, last = fillet(FACE, CYLINDER, 1)
+    first, round_, last = rounding(FACE, CYLINDER, 1)
     assert first.end == (4, 0)
     assert round_.end == last.start == pytest.approx((5, -1))
     assert round_.centre == pytest.approx((4, -1))
@@ -37,7 +37,7 @@ def test_a_fillet_at_a_convex_corner_is_clockwise_on_the_way_to_the_spindle() ->
 
 
 def test_a_fillet_at_a_hollow_corner_turns_the_other_way() -> None:
-    _, round_, _ = fillet(CYLINDER, Line((5, -9), (8, -9)), 1)
+    _, round_, _ = rounding(CYLINDER, Line((5, -9), (8, -9)), 1)
     assert (*round_.start, *round_.end, *round_.centre) == pytest.approx((5, -8, 6, -9, 6, -8))
     assert not round_.clockwise
 
@@ -50,7 +50,7 @@ def test_the_set_back_of_a_chamfer_counts_along_both_lines() -> None:
 
 
 def test_the_set_back_of_a_fillet_is_by_the_half_turn() -> None:
-    first, _, _ = fillet(FACE, Line((5, 0), (8, -3)), 2)
+    first, _, _ = rounding(FACE, Line((5, 0), (8, -3)), 2)
     assert first.end == pytest.approx((5 - 2 * tan(pi / 8), 0))
 
 
@@ -60,12 +60,12 @@ def test_a_set_back_longer_than_the_line_is_refused(size: float) -> None:
         chamfer(FACE, CYLINDER, size)
     assert refused.value.first
     with pytest.raises(CornerTooLargeError):
-        fillet(FACE, CYLINDER, size)
+        rounding(FACE, CYLINDER, size)
 
 
 def test_a_set_back_longer_than_the_next_line_is_refused() -> None:
     with pytest.raises(CornerTooLargeError) as refused:
-        fillet(CYLINDER, Line((5, -9), (7, -9)), 2.5)
+        rounding(CYLINDER, Line((5, -9), (7, -9)), 2.5)
     assert (refused.value.first, refused.value.needed) == (False, pytest.approx(2.5))
 
 
@@ -81,7 +81,7 @@ def test_lines_in_one_direction_have_no_corner() -> None:
 
 def test_lines_that_run_back_have_no_corner() -> None:
     with pytest.raises(CornerError, match="straight back"):
-        fillet(FACE, Line((5, 0), (1, 0)), 1)
+        rounding(FACE, Line((5, 0), (1, 0)), 1)
 
 
 def test_a_line_of_no_length_takes_no_corner() -> None:
@@ -95,7 +95,7 @@ def test_a_fillet_touches_both_lines(angle: float, radius: float) -> None:
     assert isinstance(before, Line)
     assert isinstance(after, Line)
     try:
-        first, round_, last = fillet(before, after, radius)
+        first, round_, last = rounding(before, after, radius)
     except CornerTooLargeError:
         assume(radius * tan(abs(angle) / 2) < 50)
         raise

@@ -11,7 +11,6 @@ from core.geometry.chamfer_and_rounding import (
     CornerError,
     CornerTooLargeError,
     NoCornerError,
-    bevel,
     chamfer,
     leg_of,
 )
@@ -24,13 +23,13 @@ BALL = arc_between((0.0, 10.0), (10.0, 0.0), (0.0, 0.0), clockwise=True)
 
 def test_two_lines_are_cut_as_ever() -> None:
     one, other = Line((0.0, 0.0), (0.0, -20.0)), Line((0.0, -20.0), (15.0, -20.0))
-    assert bevel(one, other, 3.0) == chamfer(one, other, 3.0)
+    assert chamfer(one, other, 3.0) == chamfer(one, other, 3.0)
     assert leg_of(one, other, 3.0) == pytest.approx(3.0 / 2**0.5)
 
 
 def test_a_line_onto_a_ball_worked_out() -> None:
     """On the circle of 10 a chord of 4 spans 2 asin(.2)."""
-    first, cut, last = bevel(LINE, BALL, 4.0)
+    first, cut, last = chamfer(LINE, BALL, 4.0)
     angle = 2 * asin(0.2)
     assert first == Line((0.0, 30.0), (0.0, 14.0))
     assert last.start == pytest.approx((10 * sin(angle), 10 * cos(angle)))
@@ -44,7 +43,7 @@ def test_random_pairs() -> None:
         before, after = _way(dice).reversed(), _way(dice)
         leg = dice.uniform(0.01, 3.0)
         try:
-            first, cut, last = bevel(before, after, leg)
+            first, cut, last = chamfer(before, after, leg)
         except CornerError:
             continue
         made += 1
@@ -67,7 +66,7 @@ def test_the_leg_of_a_length_makes_it() -> None:
         before, after = _way(dice).reversed(), _way(dice)
         length = dice.uniform(0.01, 2.0)
         try:
-            _, cut, _ = bevel(before, after, leg_of(before, after, length))
+            _, cut, _ = chamfer(before, after, leg_of(before, after, length))
         except CornerError:
             continue
         made += 1
@@ -99,30 +98,30 @@ def _way(dice: random.Random) -> Element:
 )
 def test_what_is_too_short_is_named(before: Element, after: Element, leg: float, first: bool) -> None:
     with pytest.raises(CornerTooLargeError) as caught:
-        bevel(before, after, leg)
+        chamfer(before, after, leg)
     assert caught.value.first is first
 
 
 def test_a_chamfer_that_takes_a_whole_arc_would_leave_a_full_circle() -> None:
     with pytest.raises(CornerTooLargeError):
-        bevel(LINE, BALL, dist(BALL.start, BALL.end))
+        chamfer(LINE, BALL, dist(BALL.start, BALL.end))
 
 
 def test_a_tangent_has_no_corner() -> None:
     with pytest.raises(NoCornerError):
-        bevel(Line((-5.0, 10.0), (0.0, 10.0)), BALL, 1.0)
+        chamfer(Line((-5.0, 10.0), (0.0, 10.0)), BALL, 1.0)
 
 
 def test_straight_back_is_no_corner_either() -> None:
     with pytest.raises(CornerError, match="straight back"):
-        bevel(Line((5.0, 10.0), (0.0, 10.0)), BALL, 1.0)
+        chamfer(Line((5.0, 10.0), (0.0, 10.0)), BALL, 1.0)
 
 
 def test_a_chamfer_that_would_cross_the_arc_is_refused() -> None:
     """A blunt corner onto an arc that bends back under the chamfer."""
     before = Line((-4.0, 10.5), (0.0, 10.0))
     with pytest.raises(CornerError, match="would cross"):
-        bevel(before, BALL, 3.0)
+        chamfer(before, BALL, 3.0)
 
 
 def test_a_length_that_fits_nowhere() -> None:

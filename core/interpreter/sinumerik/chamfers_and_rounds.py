@@ -9,7 +9,7 @@ from core.geometry.chamfer_and_rounding import (
     CornerError,
     CornerTooLargeError,
     NoCornerError,
-    bevel,
+    chamfer,
     leg_of,
     rounding,
 )
@@ -126,7 +126,7 @@ class Corners:
         if corner.word.name == "RND":
             return rounding(first, last, corner.size)
         leg = leg_of(first, last, corner.size) if corner.word.name == "CHF" else corner.size
-        return bevel(first, last, leg)
+        return chamfer(first, last, leg)
 
     def _along(self, block: Block, element: Element) -> Block:
         """The block's own move on a part of its way; a rapid takes the time of its slowest axis."""
