@@ -11,7 +11,6 @@ from concurrent.futures import Future
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import TracebackType
 from typing import NamedTuple, TypeVar
 
 from core.store import event_log, program_records
@@ -172,24 +171,6 @@ Keeping = Callable[[Unwritten], None]
 AGAIN = 2.0  # s after which what the disk did not take is tried again
 
 
-class _Answering:
-    """Whatever an operation raises becomes its future's answer; the thread itself goes on."""
-
-    def __init__(self, fail: Callable[[Exception], None]) -> None:
-        self._fail = fail
-
-    def __enter__(self) -> None:
-        return None
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> bool:
-        if not isinstance(error, Exception):
-            return False
-        self._fail(error)
-        return True
-
-
 class StoreWriter:
     """Runs operations one after the other, each in a transaction of its own.
 
@@ -263,19 +244,22 @@ class StoreWriter:
         """All that waits, in one transaction: on the disk, or held as before."""
         if not self._unwritten:
             return
-
-        def fail(error: Exception) -> None:
+        try:
+            self._in_transaction(self._unwritten.write)
+        except Exception as error:  # noqa: BLE001 - whatever it is becomes the answer; the thread goes on
             told = self._failed(error)
             self.held = self._unwritten.held(self.trouble or str(told))
             self._tell(lambda future: future.set_exception(told))
+            return
+        self._unwritten.clear()
+        self.trouble, self.held = "", None
+        self._tell(lambda future: future.set_result(None))
 
-        with _Answering(fail):
-            self._connection.execute("BEGIN IMMEDIATE")
-            self._unwritten.write(self._connection)
-            self._connection.execute("COMMIT")
-            self._unwritten.clear()
-            self.trouble, self.held = "", None
-            self._tell(lambda future: future.set_result(None))
+    def _in_transaction(self, operation: Operation[T]) -> T:
+        self._connection.execute("BEGIN IMMEDIATE")
+        answer = operation(self._connection)
+        self._connection.execute("COMMIT")
+        return answer
 
     def _tell(self, answer: Callable[[Future[None]], None]) -> None:
         waiting, self._waiting = self._waiting, []
@@ -287,16 +271,13 @@ class StoreWriter:
         self._write_held()  # what happened before it stands before it
         if not future.set_running_or_notify_cancel():
             return
-
-        def fail(error: Exception) -> None:
+        try:
+            answer = self._in_transaction(operation)
+        except Exception as error:  # noqa: BLE001 - whatever it is becomes the answer; the thread goes on
             future.set_exception(self._failed(error))
-
-        with _Answering(fail):
-            self._connection.execute("BEGIN IMMEDIATE")
-            answer = operation(self._connection)
-            self._connection.execute("COMMIT")
-            self.trouble = self.trouble if self._unwritten else ""
-            future.set_result(answer)
+            return
+        self.trouble = self.trouble if self._unwritten else ""
+        future.set_result(answer)
 
     def _failed(self, error: Exception) -> Exception:
         """The transaction is taken back; a failure of the store becomes its sentence."""
