@@ -7,7 +7,6 @@ the frame of the metal, whatever G10, G92 and D do to the words of the program.
 
 from __future__ import annotations
 
-from array import array
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import cos, hypot, inf, pi, sin, sqrt
@@ -19,7 +18,6 @@ from core.geometry.lines_and_arcs import arc_sweep
 from core.geometry.virtual_mill import Side
 from core.interpreter.actions import Collet
 from core.interpreter.elementary_blocks import Block, Kind, Series
-from core.interpreter.modal_state import Modal
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -78,6 +76,10 @@ class CutRecord:
         """The first row of the block that this row belongs to."""
         return int(np.searchsorted(self.n, self.n[row], side="left"))
 
+    def ends(self, row: int) -> tuple[float, float, float, float]:
+        """(x0, z0, x, z) of a row."""
+        return float(self.x0[row]), float(self.z0[row]), float(self.x[row]), float(self.z[row])
+
     def front(self, tool: int) -> float:
         """The Z of the tip from which on nothing is before the part."""
         return self.faces.get(tool, self.face)
@@ -92,54 +94,54 @@ class CutRecord:
 
 
 class _Rows:
+    """Collects tables (9, m) whose rows are ``n line x0 z0 x z how tool bar``."""
+
     def __init__(self) -> None:
-        self.n, self.line = array("q"), array("q")
-        self.x0, self.z0, self.x, self.z = array("d"), array("d"), array("d"), array("d")
-        self.how, self.tool, self.bar = array("q"), array("q"), array("q")
         self.offsets: dict[int, tuple[float, float]] = {}
-        self.opened = 0
+        self._tables = [np.zeros((9, 0))]
+        self._pieces: list[tuple[float, ...]] = []  # of blocks, which are no table yet
+        self._opened = 0
 
     def take(self, block: Block) -> None:
         """Add the rows of one block, arcs in chords."""
-        modal = block.modal
         if not block.moves:
-            if isinstance(block.action, Collet):
-                self.opened += 1
+            self._opened += isinstance(block.action, Collet)
             return
         if block.kind in {Kind.ROTATE, Kind.DWELL}:
             return
-        dx, dz = block.offset_x - modal.tool_x, block.offset_z - modal.tool_z
-        self.offsets[modal.tool] = modal.tool_x, modal.tool_z
+        dx, dz = self._frame(block)
         x, z = block.x0 + dx, block.z0 + dz
+        same = (_how(block), block.modal.tool, self._opened)
         for to_x, to_z in _points(block):
-            self._row(block, x, z, to_x + dx, to_z + dz)
+            self._pieces.append((block.n, block.line, x, z, to_x + dx, to_z + dz, *same))
             x, z = to_x + dx, to_z + dz
-
-    def _row(self, block: Block, x0: float, z0: float, x: float, z: float) -> None:
-        self.n.append(block.n)
-        self.line.append(block.line)
-        self.x0.append(x0)
-        self.z0.append(z0)
-        self.x.append(x)
-        self.z.append(z)
-        self.how.append(_how(block))
-        self.tool.append(block.modal.tool)
-        self.bar.append(self.opened)
+        if len(self._pieces) >= _WATCHED:
+            self._finish_pieces()
 
     def take_series(self, series: Series) -> None:
         """Add the rows of many straight moves at once."""
-        like, count = series.pattern, len(series)
-        modal: Modal = like.modal
-        dx, dz = like.offset_x - modal.tool_x, like.offset_z - modal.tool_z
+        self._finish_pieces()
+        like, ends = series.pattern, (series.x0, series.z0, series.x, series.z)
+        dx, dz = self._frame(like)
+        places = (column + off for column, off in zip(ends, (dx, dz, dx, dz), strict=True))
+        same = (np.full(len(series), each) for each in (_how(like), like.modal.tool, self._opened))
+        self._tables.append(np.array([series.n, series.line, *places, *same], dtype=np.float64))
+
+    def table(self) -> Floats:
+        """All rows."""
+        self._finish_pieces()
+        return np.concatenate(self._tables, axis=1)
+
+    def _frame(self, block: Block) -> tuple[float, float]:
+        """From the program's frame to the tip's in that of part zero, mm."""
+        modal = block.modal
         self.offsets[modal.tool] = modal.tool_x, modal.tool_z
-        for column, values in (
-            (self.x0, series.x0 + dx), (self.z0, series.z0 + dz),
-            (self.x, series.x + dx), (self.z, series.z + dz),
-            (self.n, series.n.astype(np.int64)), (self.line, series.line.astype(np.int64)),
-        ):  # fmt: skip
-            column.frombytes(values.tobytes())
-        for column, value in ((self.how, _how(like)), (self.tool, modal.tool), (self.bar, self.opened)):
-            column.frombytes(np.full(count, value, dtype=np.int64).tobytes())
+        return block.offset_x - modal.tool_x, block.offset_z - modal.tool_z
+
+    def _finish_pieces(self) -> None:
+        if self._pieces:
+            self._tables.append(np.array(self._pieces, dtype=np.float64).T)
+            self._pieces = []
 
 
 def record_cuts(blocks: Iterable[Block | Series], watch: Callable[[float], None]) -> CutRecord:
@@ -159,27 +161,22 @@ def record_cuts(blocks: Iterable[Block | Series], watch: Callable[[float], None]
 
 
 def _told(rows: _Rows, blocks: int) -> CutRecord:
-    n, line, how, tool, bar = (
-        np.frombuffer(column, dtype=np.int64) if column else np.zeros(0, dtype=np.int64)
-        for column in (rows.n, rows.line, rows.how, rows.tool, rows.bar)
-    )
-    x0, z0, x, z = (
-        np.frombuffer(column) if column else np.zeros(0) for column in (rows.x0, rows.z0, rows.x, rows.z)
-    )
-    x0, z0, x, z = _unknown_start(x0.copy(), z0.copy(), x.copy(), z.copy())
+    table = rows.table()
+    n, line, how, tool, bar = table[[0, 1, 6, 7, 8]].astype(np.int64)
+    x0, z0, x, z = table[2:6]
+    _forget_start(x0, z0, x, z)
     feeds = (how & FEED) != 0
     radius = _greatest(np.abs(np.concatenate((x0[feeds], x[feeds]))), 0.0)
     radius = max(radius, _ON_CENTRE) if feeds.any() else 0.0
     faces = _faces(feeds, x0, x, z, tool, radius)
     farthest = _farthest(feeds, z0, z, tool)
-    machine = {each: rows.offsets[each] for each in rows.offsets}
     clear, reach = -inf, {}
-    for each, (off_x, off_z) in machine.items():
+    for each, (off_x, off_z) in rows.offsets.items():
         own = tool == each
         reach[each] = -_greatest(-x[own], inf) + off_x, _greatest(x[own], -inf) + off_x
         clear = max(clear, _greatest(z[own], -inf) + off_z)
     return CutRecord(
-        n, line, x0, z0, x, z, how, tool, bar, machine,
+        n, line, x0, z0, x, z, how, tool, bar, rows.offsets,
         radius, _greatest(np.concatenate((z0[feeds], z[feeds])), -inf), _over(feeds, x0, z0, x, z, radius),
         min(faces.values(), default=inf), {**farthest, **faces}, reach, clear, blocks,
     )  # fmt: skip
@@ -220,14 +217,13 @@ def _over(feeds: Bools, x0: Floats, z0: Floats, x: Floats, z: Floats, radius: fl
     return float(levels.min()) if len(levels) else inf
 
 
-def _unknown_start(x0: Floats, z0: Floats, x: Floats, z: Floats) -> tuple[Floats, ...]:
+def _forget_start(x0: Floats, z0: Floats, x: Floats, z: Floats) -> None:
     """Where the slides stood at Cycle Start is not known: nan until an axis has been moved."""
     for start, end in ((x0, x), (z0, z)):
         if len(start):
             moved = np.flatnonzero(np.abs(end - start) > SAME)
             first = int(moved[0]) if len(moved) else len(start)
             start[: first + 1], end[:first] = np.nan, np.nan
-    return x0, z0, x, z
 
 
 def _greatest(values: Floats, none: float) -> float:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from math import hypot, inf, isfinite
+from math import hypot
 
 from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleRun, SpindleStop
 from core.interpreter.checkpoint import ApproachStep, Begin, CTurn, FunctionStep, Leg
@@ -152,29 +152,18 @@ def way_out(cut: CutRecord, now: MachineNow, choices: Choices) -> tuple[Leg, ...
         off_x, off_z = cut.offsets[tool]
         for hop in found.legs:
             to_x, to_z = hop.x + off_x, hop.z + off_z
-            free = cut.outside(x - off_x, z - off_z, tool) and cut.outside(hop.x, hop.z, tool)
-            legs += _leg(
-                x,
-                z,
-                to_x,
-                to_z,
-                choices,
-                rapid=free and not _through_front(cut, x - off_x, z - off_z, hop, tool),
-            )
+            legs += _leg(x, z, to_x, to_z, choices, rapid=_free(cut, tool, (x, z), (to_x, to_z)))
             x, z = to_x, to_z
-    return (*legs, *_leg(x, z, x, max(z, clear_of(cut)), choices, rapid=True))
+    return (*legs, *_leg(x, z, x, max(z, cut.clear_z), choices, rapid=True))
 
 
-def clear_of(cut: CutRecord) -> float:
-    """Machine Z that is clear of the part, mm: the farthest out that the program goes."""
-    return cut.clear_z if isfinite(cut.clear_z) else -inf
-
-
-def _through_front(cut: CutRecord, x: float, z: float, hop: RetractLeg, tool: int) -> bool:
-    """Whether a straight way between two free places goes through the corner of the bar."""
-    over = min(abs(x), abs(hop.x)) >= cut.over - _SAME and x * hop.x > 0.0
-    before = min(z, hop.z) >= cut.front(tool) - _SAME
-    return not (over or before)
+def _free(cut: CutRecord, tool: int, start: tuple[float, float], end: tuple[float, float]) -> bool:
+    """Whether a straight way between two machine points leads from one free place to another, and not
+    through the corner of the bar."""
+    (x0, z0), (x1, z1) = _tip(cut, start, tool), _tip(cut, end, tool)
+    over = min(abs(x0), abs(x1)) >= cut.over - _SAME and x0 * x1 > 0.0
+    before = min(z0, z1) >= cut.front(tool) - _SAME
+    return cut.outside(x0, z0, tool) and cut.outside(x1, z1, tool) and (over or before)
 
 
 def starting(found: RestartPoint, now: MachineNow, choices: Choices) -> tuple[ApproachStep, ...]:
@@ -219,14 +208,10 @@ def _in(found: RestartPoint, at: tuple[float, float], choices: Choices) -> Itera
     """Down to where the work begins by rapid, and into it by the way that leads out of it."""
     places = _before(found)
     x, z = places[0][0], max(at[1], places[0][1])
-    cut, row_tool = found.cut, found.checkpoint.modal.tool
+    cut, tool = found.cut, found.checkpoint.modal.tool
+    known = cut is not None and tool in cut.offsets
     for number, (to_x, to_z) in enumerate(places):
-        free = number == 0
-        if cut is not None and row_tool in cut.offsets and not free:
-            off_x, off_z = cut.offsets[row_tool]
-            hop = RetractLeg(to_x - off_x, to_z - off_z)
-            free = cut.outside(x - off_x, z - off_z, row_tool) and cut.outside(hop.x, hop.z, row_tool)
-            free = free and not _through_front(cut, x - off_x, z - off_z, hop, row_tool)
+        free = number == 0 or (cut is not None and known and _free(cut, tool, (x, z), (to_x, to_z)))
         yield from _leg(x, z, to_x, to_z, choices, rapid=free)
         x, z = to_x, to_z
 

@@ -49,15 +49,11 @@ class RestartLines:
         """Whether the run may come to it more than once, or never: within a loop or a subroutine."""
         return any(each.first <= line <= each.last for each in self.repeated)
 
-    def before(self, line: int) -> int:
-        """The nearest line above it, loops and subroutines apart, that is good by its text; 0: none is."""
-        return self._nearest(line, -1)
+    def nearest(self, line: int, way: int) -> int:
+        """The nearest line below it (``way`` 1) or above it (-1) that is good by its text; 0: none is.
 
-    def after(self, line: int) -> int:
-        """The nearest line below it, loops and subroutines apart, that is good by its text; 0: none is."""
-        return self._nearest(line, 1)
-
-    def _nearest(self, line: int, way: int) -> int:
+        Loops and subroutines are passed by.
+        """
         at = min(line + way, self.count) if way < 0 else line + way
         while 1 <= at <= self.count:
             lines = next((each for each in self._apart if each.first <= at <= each.last), None)

@@ -86,8 +86,7 @@ class Place(NamedTuple):
     z: float
 
 
-@dataclass(frozen=True, slots=True)
-class _Segment:
+class _Segment(NamedTuple):
     x0: float
     z0: float
     x: float
@@ -99,20 +98,15 @@ class _Segment:
     def length(self) -> float:
         return hypot(self.x - self.x0, self.z - self.z0)
 
-    @property
-    def outwards(self) -> float:
-        return abs(self.x) - abs(self.x0)
-
 
 def retract(cut: CutRecord, place: Place, done: int) -> Retract:
     """The way from this place to where no metal can be; what was cut are the blocks up to ``done``."""
     row = cut.row_behind(place.block)
-    if row < 0 or int(cut.tool[row]) != place.tool:
-        return Retract(ToolPlace.CLEAR if _clear(cut, place) else ToolPlace.UNKNOWN)
-    row, on = _on_row(cut, row, place)
-    if not on:
-        return Retract(ToolPlace.CLEAR if _clear(cut, place) else ToolPlace.UNKNOWN)
-    return _Search(cut, place, row, done).found()
+    if row >= 0 and int(cut.tool[row]) == place.tool:
+        row, on = _on_row(cut, row, place)
+        if on:
+            return _Search(cut, place, row, done).found()
+    return Retract(ToolPlace.CLEAR if _clear(cut, place) else ToolPlace.UNKNOWN)
 
 
 def _clear(cut: CutRecord, place: Place) -> bool:
@@ -128,7 +122,7 @@ def _on_row(cut: CutRecord, row: int, place: Place) -> tuple[int, bool]:
 
 def off_row(cut: CutRecord, row: int, x: float, z: float) -> float:
     """How far a point lies off a row, mm."""
-    x0, z0, x1, z1 = (float(each[row]) for each in (cut.x0, cut.z0, cut.x, cut.z))
+    x0, z0, x1, z1 = cut.ends(row)
     if isnan(x0) or isnan(z0):
         return hypot(x - x1, z - z1)
     return off_line(x0, z0, x1, z1, x, z)
@@ -136,21 +130,23 @@ def off_row(cut: CutRecord, row: int, x: float, z: float) -> float:
 
 def nearest(cut: CutRecord, row: int, x: float, z: float) -> tuple[float, float] | None:
     """The point of a row that is nearest to (x, z), mm; None where it is not known whence the row comes."""
-    x0, z0, x1, z1 = (float(each[row]) for each in (cut.x0, cut.z0, cut.x, cut.z))
-    dx, dz = x1 - x0, z1 - z0
-    size = dx * dx + dz * dz
-    if isnan(size) or not size:
-        return None
-    share = max(0.0, min(1.0, ((x - x0) * dx + (z - z0) * dz) / size))
-    return x0 + share * dx, z0 + share * dz
+    x0, z0, x1, z1 = cut.ends(row)
+    length = hypot(x1 - x0, z1 - z0)
+    return None if isnan(length) or not length else _foot(x0, z0, x1, z1, x, z)
 
 
 def off_line(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> float:
     """How far a point lies off the straight piece from (x0, z0) to (x1, z1), mm."""
+    foot_x, foot_z = _foot(x0, z0, x1, z1, x, z)
+    return hypot(foot_x - x, foot_z - z)
+
+
+def _foot(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> tuple[float, float]:
+    """The point of a straight piece that is nearest to (x, z)."""
     dx, dz = x1 - x0, z1 - z0
     size = dx * dx + dz * dz
     share = max(0.0, min(1.0, ((x - x0) * dx + (z - z0) * dz) / size)) if size > 0.0 else 0.0
-    return hypot(x0 + share * dx - x, z0 + share * dz - z)
+    return x0 + share * dx, z0 + share * dz
 
 
 class _Search:
@@ -199,15 +195,7 @@ class _Search:
             yield self._segment(each)
 
     def _segment(self, row: int) -> _Segment:
-        cut = self.cut
-        return _Segment(
-            float(cut.x0[row]),
-            float(cut.z0[row]),
-            float(cut.x[row]),
-            float(cut.z[row]),
-            int(cut.how[row]),
-            row,
-        )
+        return _Segment(*self.cut.ends(row), int(self.cut.how[row]), row)
 
     def _going_on(self) -> Retract | None:
         """The rapids that the program would make next from here, where they lead out of the work."""
@@ -363,12 +351,8 @@ class _Search:
         for each in range(row, max(-1, row - _BACK), -1):
             segment = self._segment(each)
             other = int(cut.tool[each]) != tool or int(cut.bar[each]) != bar or int(cut.n[each]) > self.done
-            if (
-                other
-                or segment.how & (THREAD | STILL | FACE | SIDE)
-                or isnan(segment.x0)
-                or isnan(segment.z0)
-            ):
+            unknown = isnan(segment.x0) or isnan(segment.z0)
+            if other or unknown or segment.how & (THREAD | STILL | FACE | SIDE):
                 return
             if before is not None and hypot(segment.x - before.x0, segment.z - before.z0) > NEAR:
                 return
@@ -400,11 +384,8 @@ class _Search:
     def _lost(self) -> Retract:
         """Only where it would leave to is known: as its next rapid does, or back as it came."""
         cut, row = self.cut, self.row
-        ways = [
-            (segment.x - segment.x0, segment.z - segment.z0)
-            for segment in self._ahead()
-            if not segment.how & FEED
-        ]
+        rapids = (segment for segment in self._ahead() if not segment.how & FEED)
+        ways = [(segment.x - segment.x0, segment.z - segment.z0) for segment in rapids]
         ways.append((float(cut.x0[row]) - self.x, float(cut.z0[row]) - self.z))
         away = next(((_sign(dx), _sign(dz)) for dx, dz in ways if _sign(dx) or _sign(dz)), (0, 0))
         return Retract(ToolPlace.UNKNOWN, away=away if away[1] >= 0 else (0, 0))
@@ -453,10 +434,8 @@ class _Search:
         for axis in (FACE, SIDE):
             if (own & axis).any():
                 return axis
-        off = next(
-            (segment for segment in self._ahead() if not segment.how & FEED and segment.length > _ASIDE), None
-        )
-        segment = off or self._segment(row)
+        off = (each for each in self._ahead() if not each.how & FEED and each.length > _ASIDE)
+        segment = next(off, self._segment(row))
         return SIDE if abs(segment.x - segment.x0) > abs(segment.z - segment.z0) else FACE
 
     def _made(self, legs: list[RetractLeg]) -> Retract:

@@ -147,7 +147,7 @@ class StateRebuild:
     def _nearest_good(self, line: int, way: int, broken: Interruption | None) -> int:
         """The nearest line that the pass itself confirms; few upwards, where each costs a pass of its own."""
         for _ in range(_DOWN if way > 0 else _UP):
-            line = self.lines.after(line) if way > 0 else self.lines.before(line)
+            line = self.lines.nearest(line, way)
             if not line or isinstance(self._search(line, 0, broken), RestartPoint):
                 return line
         return 0
