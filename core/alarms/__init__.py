@@ -25,9 +25,3 @@ SUBJECTS: tuple[tuple[str, Entries], ...] = (
     ("The control", CONTROL),
 )
 CATALOGUE: dict[Code, Entry] = {code: entry for _, entries in SUBJECTS for code, entry in entries.items()}
-_BY_NUMBER = {entry.number: entry for entry in CATALOGUE.values()}
-
-
-def by_number(number: int) -> Entry | None:
-    """The entry of a number; None for one that is not in this catalogue."""
-    return _BY_NUMBER.get(number)

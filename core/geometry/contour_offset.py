@@ -1,13 +1,13 @@
 """A contour moved to one side by a fixed distance: outside corners become arcs, inside corners meet.
 
-``offset_contour`` refuses a contour that the distance does not fit into; ``trimmed_offset``, for roughing,
+``Offset`` refuses a contour that the distance does not fit into; ``trimmed_offset``, for roughing,
 does not: a fillet smaller than what is left on the part, or a groove narrower than twice that, is passed by.
 """
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from math import dist, pi
 from typing import NamedTuple
@@ -70,20 +70,14 @@ def offset_element(element: Element, distance_left: float) -> Element:
     return Arc(start, end, element.centre, element.clockwise)
 
 
-def offset_contour(elements: Iterable[Element], distance_left: float) -> list[Element]:
-    """The path ``distance_left`` mm to the left of a contour (negative: right); starts and ends square to it.
-
-    Each element must start where the one before it ends, and have a length. Raises GougeError where an
-    inside arc is too small, an element vanishes or would be run backwards, or a path comes nearer to any
-    element than the distance (a second wall farther than WINDOW elements away is not seen).
-    """
-    offset = Offset(distance_left)
-    path = [piece.element for element in elements for piece in offset.add(element)]
-    return path + [piece.element for piece in offset.close()]
-
-
 class Offset:
-    """Makes the offset of a contour that comes in element by element."""
+    """The path ``distance_left`` mm to the left of a contour (negative: right) that comes in by elements.
+
+    It starts and ends square to the contour. Each element must start where the one before it ends, and have a
+    length. GougeError is raised where an inside arc is too small, an element vanishes or would be run
+    backwards, or a path comes nearer to any element than the distance (a second wall farther than WINDOW
+    elements away is not seen).
+    """
 
     def __init__(self, distance_left: float) -> None:
         self._distance = distance_left

@@ -10,11 +10,9 @@ from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow
 
 
-def log(connection: sqlite3.Connection, events: Iterable[EventRow]) -> int:
-    """Adds to the log; answers how many."""
-    rows = tuple(events)
-    connection.executemany("INSERT INTO events (at, kind, text, line) VALUES (?, ?, ?, ?)", rows)
-    return len(rows)
+def log(connection: sqlite3.Connection, events: Iterable[EventRow]) -> None:
+    """Adds to the log."""
+    connection.executemany("INSERT INTO events (at, kind, text, line) VALUES (?, ?, ?, ?)", events)
 
 
 def events(

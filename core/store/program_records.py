@@ -89,26 +89,20 @@ def spoilt(connection: sqlite3.Connection) -> tuple[str, ...]:
     )
 
 
-def count_part(connection: sqlite3.Connection, program: str) -> int:
-    """One part more; answers the new count."""
-    return add_parts(connection, program, 1, utc_now())
-
-
 def parts(connection: sqlite3.Connection, program: str) -> int:
     """Parts made since the count was last put to nought."""
     row = connection.execute("SELECT count FROM part_counts WHERE program = ?", (program,)).fetchone()
     return int(row[0]) if row else 0
 
 
-def add_parts(connection: sqlite3.Connection, program: str, by: int, last: str) -> int:
-    """Parts made, added or taken away, never below nought; answers the new count."""
+def add_parts(connection: sqlite3.Connection, program: str, by: int, last: str) -> None:
+    """Parts made, added or taken away, never below nought."""
     count = max(0, parts(connection, program) + by)
     connection.execute(
         "INSERT INTO part_counts VALUES (?1, ?2, ?3)"
         " ON CONFLICT (program) DO UPDATE SET count = ?2, last = ?3",
         (program, count, last),
     )
-    return count
 
 
 def reset_parts(connection: sqlite3.Connection, program: str) -> None:
@@ -131,12 +125,10 @@ def all_of(connection: sqlite3.Connection) -> tuple[RunRow, ...]:
     return tuple(RunRow(*row) for row in rows)
 
 
-def started(connection: sqlite3.Connection, program: str, at: str = "") -> None:
-    """A run begins, now if not said otherwise."""
+def started(connection: sqlite3.Connection, program: str, at: str) -> None:
+    """A run began at this moment."""
     _row(connection, program)
-    connection.execute(
-        "UPDATE runs SET started = ?, outcome = '' WHERE program = ?", (at or utc_now(), program)
-    )
+    connection.execute("UPDATE runs SET started = ?, outcome = '' WHERE program = ?", (at, program))
 
 
 def ended(connection: sqlite3.Connection, program: str, outcome: str) -> None:
@@ -155,31 +147,22 @@ def cut_off(connection: sqlite3.Connection, outcome: str) -> tuple[str, ...]:
     return tuple(sorted(program for (program,) in rows))
 
 
-def finished(
-    connection: sqlite3.Connection,
-    program: str,
-    seconds: float,
-    *,
-    count: int = 1,
-    best: float | None = None,
-) -> None:
+def finished(connection: sqlite3.Connection, program: str, seconds: float, count: int, best: float) -> None:
     """Whole cycles: the time of the last one, and the best of all of them."""
     _row(connection, program)
     connection.execute(
         "UPDATE runs SET cycles = cycles + ?3, latest = ?1, best = min(coalesce(best, ?4), ?4)"
         " WHERE program = ?2",
-        (seconds, program, count, seconds if best is None else best),
+        (seconds, program, count, best),
     )
 
 
-def proved(
-    connection: sqlite3.Connection, program: str, result: str, planned: float | None, at: str = ""
-) -> None:
-    """What proving found, and the cycle time that it reckons with; None: none."""
+def proved(connection: sqlite3.Connection, program: str, result: str, planned: float | None, at: str) -> None:
+    """What proving found at this moment, and the cycle time that it reckons with; None: none."""
     _row(connection, program)
     connection.execute(
         "UPDATE runs SET proved = ?, proof = ?, planned = ? WHERE program = ?",
-        (at or utc_now(), result, planned, program),
+        (at, result, planned, program),
     )
 
 

@@ -155,7 +155,7 @@ def _writing_parts(program: str, parts: _Parts) -> Deferred:
 
 def _writing_cycles(program: str, cycles: _Cycles) -> Deferred:
     return lambda connection: program_records.finished(
-        connection, program, cycles.latest, count=cycles.made, best=cycles.best
+        connection, program, cycles.latest, cycles.made, cycles.best
     )
 
 

@@ -11,7 +11,7 @@ from typing import Literal, get_args, get_origin
 
 import pytest
 
-from core.alarms import CATALOGUE, SUBJECTS, Entry, Reaction, by_number
+from core.alarms import CATALOGUE, SUBJECTS, Entry, Reaction
 from core.alarms.alarm_entry import Code, OwnCode
 from core.faults import FaultCode
 
@@ -56,7 +56,7 @@ def test_numbers_that_were_there_before_stay() -> None:
 @ENTRIES
 def test_an_entry_says_what_why_and_what_to_do(code: Code) -> None:
     entry = CATALOGUE[code]
-    assert by_number(entry.number) is entry
+    assert [each for each in CATALOGUE.values() if each.number == entry.number] == [entry]
     assert 100 <= entry.number <= 999
     assert entry.causes
     for text in (entry.text, entry.remedy, *entry.causes):
@@ -72,11 +72,6 @@ def test_the_remedy_names_the_key_that_goes_on(code: Code) -> None:
     entry = CATALOGUE[code]
     if entry.reaction is Reaction.HOLD:
         assert "Cycle Start" in entry.remedy
-
-
-def test_a_number_that_is_not_there_has_no_entry() -> None:
-    assert by_number(0) is None
-    assert by_number(100) is None
 
 
 def raised(tree: ast.AST) -> Iterator[tuple[str, int]]:

@@ -46,15 +46,13 @@ class AxisTravel(NamedTuple):
         """Signed travel of C, degrees."""
         return self.c - self.c0
 
-    def rapid_time(self, speeds: tuple[float, float, float]) -> float:
-        """Seconds that the slowest axis needs at its limit (``speeds`` of X, Z, C)."""
-        return max(
-            abs(self.x - self.x0) / speeds[0], abs(self.z - self.z0) / speeds[1], abs(self.turn) / speeds[2]
-        )
-
     def rapid_rate(self, speeds: tuple[float, float, float]) -> float:
-        """Speed along the path of a rapid, or of C where there is none: mm/s or degrees/s."""
-        time = self.rapid_time(speeds)
+        """Speed along the path of a rapid, or of C where there is none: mm/s or degrees/s.
+
+        The slowest axis goes at its limit, ``speeds`` of X, Z and C.
+        """
+        ways = (self.x - self.x0, self.z - self.z0, self.turn)
+        time = max(abs(way) / speed for way, speed in zip(ways, speeds, strict=True))
         return (self.length or abs(self.turn)) / time if time else min(speeds)
 
 
@@ -77,7 +75,7 @@ def _slide(state: State, made: Statement, name: str, at: float, offset: float) -
         return at
     if word.form in third_axis.NO_ROTARY:
         text = f"{word.text}: {word.form} needs a rotary axis."
-        raise made.alarm(word, third_axis.NO_ROTARY[word.form], text, f"Write {name}=AC( ) or {name}=IC( ).")
+        raise made.refuse(word, third_axis.NO_ROTARY[word.form], text, f"Write {name}=AC( ) or {name}=IC( ).")
     value = state.length(made, word) / (2.0 if name == "X" and state.modal.diameter else 1.0)
     return at + value if _form(state, word) is Form.IC else value + offset
 
@@ -94,7 +92,7 @@ def _turn(state: State, made: Statement, modal: Modal) -> float:
         travel = third_axis.linear_travel(form, value, at)
         third_axis.check_reach(state.c + travel)
     except third_axis.TargetError as problem:
-        raise made.alarm(word, problem.number, f"{word.text}: {problem}.", _HINTS[problem.number]) from None
+        raise made.refuse(word, problem.number, f"{word.text}: {problem}.", _HINTS[problem.number]) from None
     return travel
 
 
@@ -140,7 +138,7 @@ def check_feed(state: State, made: Statement, x0: float, x1: float) -> float:
     modal = state.modal
     if modal.feed is None:
         hint = "Write F. Between G94 and G95 the old value is forgotten."
-        raise made.alarm(_mover(made), NO_FEED, "no feedrate is programmed.", hint)
+        raise made.refuse(_mover(made), NO_FEED, "no feedrate is programmed.", hint)
     if modal.css and modal.spindle and not modal.surface_speed:
         text = "G96 is in force and no S has given a surface speed."
         raise made.refuse(made.words.get("S"), "surface-speed-missing", text, "Write S beside G96.")

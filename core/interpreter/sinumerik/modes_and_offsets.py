@@ -5,7 +5,7 @@ from __future__ import annotations
 from core.interpreter.job_setup import ZeroOffset
 from core.interpreter.sinumerik.sinumerik_state import NO_OFFSET, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
-from core.language.sinumerik.sinumerik_words import Form, Word
+from core.language.sinumerik.sinumerik_words import Form
 
 
 def settable_offset(state: State, made: Statement) -> None:
@@ -25,11 +25,8 @@ def programmed_offset(state: State, made: Statement) -> None:
         return
     check_c(state, made)
     base = state.programmed if key.name == "ATRANS" else NO_OFFSET
-    state.programmed = ZeroOffset(
-        base.x + _shift(state, made, "X"),
-        base.z + _shift(state, made, "Z"),
-        base.c + _shift(state, made, "C"),
-    )
+    x, z, c = (_shift(state, made, name) for name in "XZC")
+    state.programmed = ZeroOffset(base.x + x, base.z + z, base.c + c)
     state.derive_offsets()
 
 
@@ -53,21 +50,18 @@ def _shift(state: State, made: Statement, name: str) -> float:
     word = made.words.get(name)
     if word is None:
         return 0.0
-    _check_form(made, word)
-    return state.number(made, word) if name == "C" else state.length(made, word)
-
-
-def _check_form(made: Statement, word: Word) -> None:
     if word.form is not Form.PLAIN:
         text = f"{word.text}: an offset is a plain number."
         raise made.refuse(word, "offset-form", text, f"Write {word.name} with its number.")
+    return state.number(made, word) if name == "C" else state.length(made, word)
 
 
 def modes(state: State, made: Statement) -> None:
     """Take up the codes of a block that stay in force."""
     modal = state.modal
-    state.motion = _chosen(made.code("motion"), state.motion)
-    state.plane = _chosen(made.code("plane"), state.plane)
+    motion, plane = made.code("motion"), made.code("plane")
+    state.motion = state.motion if motion is None else motion
+    state.plane = plane or state.plane
     metric, absolute = made.code("unit of length"), made.code("absolute or incremental")
     if "DIAMON" in made.keys or "DIAMOF" in made.keys:
         modal = modal._replace(diameter="DIAMON" in made.keys)
@@ -79,7 +73,3 @@ def modes(state: State, made: Statement) -> None:
         modal = modal._replace(rapid=state.motion == 0)
     state.adopt(modal)
     settable_offset(state, made)
-
-
-def _chosen(code: int | None, before: int) -> int:
-    return before if code is None else code

@@ -21,7 +21,7 @@ from core.interpreter.sinumerik.sinumerik_statement import Statement, statement
 from core.interpreter.sinumerik.spindle_and_dwell import dwell, spindle_words
 from core.interpreter.sinumerik.subprogram_flow import Flow, ends_main
 from core.language.diagnostics import Diagnostic, ProgramError
-from core.language.sinumerik.sinumerik_alarms import refused
+from core.language.sinumerik.sinumerik_alarms import fault
 from core.language.sinumerik.sinumerik_words import ARC, SPINDLE, Line
 from core.language.sinumerik.subprogram_files import HEADER
 from core.language.source import Source
@@ -173,6 +173,5 @@ class Interpreter(Interpretation):
 
     def _never_ends(self, line: Line) -> None:
         text = f"the program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
-        self._refuse(
-            refused(line.number, 0, "too-many-blocks", line.block, text, "Lower the passes of the calls.")
-        )
+        hint = "Lower the passes of the calls."
+        self._refuse(fault(line.number, 0, "too-many-blocks", line.block, text, hint))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from core.language.diagnostics import Diagnostic, ProgramError
+from core.language.diagnostics import ProgramError
 from core.language.sinumerik import sinumerik_words as known
-from core.language.sinumerik.sinumerik_alarms import ONE_GROUP, TWICE, alarm, refused
+from core.language.sinumerik.sinumerik_alarms import ONE_GROUP, TWICE, fault
 from core.language.sinumerik.sinumerik_words import Line, Word
 
 _DWELL_WORDS = frozenset({"F", "S"})
@@ -49,17 +49,11 @@ class Statement:
         """Whether the block holds M2, M17 or M30."""
         return bool(_ENDS & self.m.keys())
 
-    def refuse(self, word: Word | None, code: str, text: str, hint: str) -> ProgramError:
-        """An error of ours at this word."""
+    def refuse(self, word: Word | None, code: int | str, text: str, hint: str) -> ProgramError:
+        """An error at this word, to be raised: an alarm of the control by its number, or one of ours."""
         line, column = self.line, word.column if word else 1
         axis = word.name if word and word.name in known.AXES else ""
-        return ProgramError(refused(line.number, column, code, line.block, text, hint, axis=axis))
-
-    def alarm(self, word: Word | None, number: int, text: str, hint: str) -> ProgramError:
-        """An alarm of the control at this word."""
-        line, column = self.line, word.column if word else 1
-        axis = word.name if word and word.name in known.AXES else ""
-        return ProgramError(_alarm(line, column, number, text, hint, axis))
+        return ProgramError(fault(line.number, column, code, line.block, text, hint, axis=axis))
 
 
 def statement(line: Line) -> Statement:
@@ -75,10 +69,6 @@ def statement(line: Line) -> Statement:
     return made
 
 
-def _alarm(line: Line, column: int, number: int, text: str, hint: str, axis: str = "") -> Diagnostic:
-    return alarm(line.number, column, number, line.block, text, hint, axis=axis)
-
-
 def _sort(made: Statement, word: Word) -> None:
     if word.name == "G":
         _sort_g(made, word)
@@ -92,7 +82,7 @@ def _sort(made: Statement, word: Word) -> None:
     elif word.name[0] == "R" and word.name not in known.CORNERS:
         made.sets.append(word)
     elif word.name in made.words:
-        raise made.alarm(word, TWICE, f"{word.name} is programmed twice in the block.", "Keep one of them.")
+        raise made.refuse(word, TWICE, f"{word.name} is programmed twice in the block.", "Keep one of them.")
     else:
         made.words[word.name] = word
 
@@ -104,7 +94,7 @@ def _sort_g(made: Statement, word: Word) -> None:
     before = made.g.get(group)
     if before is not None:
         text = f"{before.text} and {word.text} are of one group ({group})."
-        raise made.alarm(word, ONE_GROUP, text, "One G code of a group per block.")
+        raise made.refuse(word, ONE_GROUP, text, "One G code of a group per block.")
     made.g[group] = word
 
 
@@ -119,7 +109,7 @@ def _check_m(made: Statement) -> None:
             raise made.refuse(made.m[found[1]], "m-conflict", text, "Keep one of them.")
     if "DIAMON" in made.keys and "DIAMOF" in made.keys:
         text = "DIAMON and DIAMOF are of one group."
-        raise made.alarm(made.keys["DIAMOF"], ONE_GROUP, text, "Keep one of them.")
+        raise made.refuse(made.keys["DIAMOF"], ONE_GROUP, text, "Keep one of them.")
 
 
 def _check_alone(made: Statement) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from core.interpreter.interpretation import DEEPEST_CALL
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import Diagnostic, ProgramError
-from core.language.sinumerik.sinumerik_alarms import refused
+from core.language.sinumerik.sinumerik_alarms import fault
 from core.language.sinumerik.sinumerik_lexer import lex_line
 from core.language.sinumerik.sinumerik_words import Line
 from core.language.sinumerik.subprogram_files import Section, program_name, sections
@@ -123,4 +123,4 @@ def ends_main(made: Statement, *, called: bool) -> bool:
 
 
 def _refused(line: Line, code: str, text: str, hint: str) -> ProgramError:
-    return ProgramError(refused(line.number, line.call_column, code, line.block, text, hint))
+    return ProgramError(fault(line.number, line.call_column, code, line.block, text, hint))

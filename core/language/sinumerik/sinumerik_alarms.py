@@ -11,20 +11,12 @@ ONE_GROUP = 12060
 CHANNEL = 1
 
 
-def alarm(
-    line: int, column: int, number: int, block: str, text: str, hint: str, *, axis: str = ""
+def fault(
+    line: int, column: int, code: int | str, block: str, text: str, hint: str, *, axis: str = ""
 ) -> Diagnostic:
-    """An alarm of the control by its number, which is the diagnostic's code as well."""
-    return refusal(line, column, str(number), f"Alarm {number}: {_place(block, axis)}: {text}", hint)
-
-
-def refused(
-    line: int, column: int, code: str, block: str, text: str, hint: str, *, axis: str = ""
-) -> Diagnostic:
-    """An error that has no number on the control: ours, with a word for a code."""
-    return refusal(line, column, code, f"{_place(block, axis)}: {text}", hint)
-
-
-def _place(block: str, axis: str) -> str:
+    """An error: an alarm of the control by its number, or by a word one of ours that has none there."""
     where = f"channel {CHANNEL} block {block}"
-    return f"{where} axis {axis}" if axis else where
+    where = f"{where} axis {axis}" if axis else where
+    if isinstance(code, int):
+        return refusal(line, column, str(code), f"Alarm {code}: {where}: {text}", hint)
+    return refusal(line, column, code, f"{where}: {text}", hint)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from core.language.diagnostics import Diagnostic
 from core.language.sinumerik import sinumerik_words as known
-from core.language.sinumerik.sinumerik_alarms import SYNTAX, alarm, refused
+from core.language.sinumerik.sinumerik_alarms import SYNTAX, fault
 from core.language.sinumerik.sinumerik_words import LONGEST_LINE, Form, Line, Word
 from core.language.typography import ascii_upper, typed
 
@@ -127,19 +127,19 @@ class _Scanner:
         """A letter and its number, with nothing behind that could belong to it."""
         letter, number = match.groups()
         word = Word(letter, float(number), match.start(1) + 1, letter + number)
-        if fault := beyond(word):
-            self.refuse(word.column, *fault)
+        if wrong := beyond(word):
+            self.refuse(word.column, *wrong)
         self.words.append(word)
         return match.end()
 
     def refuse(self, column: int, text: str, hint: str) -> None:
         """A syntax alarm at this column."""
-        self._tell(alarm(self._number, column, SYNTAX, self._block, f"syntax error: {text}.", hint))
+        self._tell(fault(self._number, column, SYNTAX, self._block, f"syntax error: {text}.", hint))
 
-    def _tell(self, fault: Diagnostic) -> None:
+    def _tell(self, found: Diagnostic) -> None:
         """The first mistake of a block is told; what follows may come of it."""
         if not self.errors:
-            self.errors.append(fault)
+            self.errors.append(found)
 
     def _skip(self, at: int, text: str, hint: str) -> int:
         self.refuse(at + 1, text, hint)
@@ -148,8 +148,8 @@ class _Scanner:
 
     def _outside(self, at: int, end: int, name: str, why: str) -> int:
         """A word of the language that this control does not execute."""
-        fault = refused(self._number, at + 1, "not-in-subset", self._block, f"{name}: {why}.", "Take it out.")
-        self._tell(fault)
+        text, hint = f"{name}: {why}.", "Take it out."
+        self._tell(fault(self._number, at + 1, "not-in-subset", self._block, text, hint))
         rest = _REST_OF_WORD.match(self._text, end)
         return rest.end() if rest and not self._text[end : end + 1].isspace() else end
 
@@ -243,8 +243,7 @@ class _Scanner:
         after = self._text[end : end + 1]
         if after in {".", "+", "-", "*", "=", "(", ")", ","}:
             return self._skip(word.column - 1, f"{word.text}{after} is no number", "Correct the number.")
-        fault = beyond(word)
-        if fault:
-            self.refuse(word.column, *fault)
+        if wrong := beyond(word):
+            self.refuse(word.column, *wrong)
         self.words.append(word)
         return end
