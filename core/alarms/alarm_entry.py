@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import Enum
+from functools import partial
 from typing import Literal, NamedTuple
 
 from core.faults import FaultCode
@@ -76,12 +77,14 @@ class Entry(NamedTuple):
     """
 
     number: int
-    reaction: Reaction
     text: str
     causes: tuple[str, ...]
     remedy: str
+    reaction: Reaction
     tells: bool = False
 
 
 Entries = Mapping[Code, Entry]
-OFF, STOP, HOLD, ASKED = Reaction.OFF, Reaction.STOP, Reaction.HOLD, Reaction.ASKED
+# An entry of the catalogue begins with what it makes of the machine.
+off, stop = partial(Entry, reaction=Reaction.OFF), partial(Entry, reaction=Reaction.STOP)
+hold, asked = partial(Entry, reaction=Reaction.HOLD), partial(Entry, reaction=Reaction.ASKED)

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from core.alarms.alarm_entry import OFF, STOP, Entries, Entry
+from core.alarms.alarm_entry import Entries, off, stop
 
 AXES: Entries = {
-    "axis": Entry(
+    "axis": off(
         101,
-        OFF,
         "axis drive fault",
         ("a drive has tripped: its display says why", "a motor or encoder cable", "the slide is blocked"),
         "read the drive's display, put the cause right, Reset, Drives On",
         tells=True,
     ),
-    "following": Entry(
+    "following": off(
         102,
-        OFF,
         "following error",
         (
             "the slide is blocked, or the tool has run into something",
@@ -25,9 +23,8 @@ AXES: Entries = {
         "look where the tool stands, free the slide, Reset, Drives On; home where the axis asks for it",
         tells=True,
     ),
-    "in-position": Entry(
+    "in-position": stop(
         103,
-        STOP,
         "slide does not arrive",
         (
             "the slide is blocked or runs stiff",
@@ -37,9 +34,8 @@ AXES: Entries = {
         "look for what keeps the slide from its place, Reset",
         tells=True,
     ),
-    "driver": Entry(
+    "driver": off(
         104,
-        OFF,
         "the drives refuse",
         (
             "something was asked of the drives that they cannot do now",
@@ -47,9 +43,8 @@ AXES: Entries = {
         ),
         "Reset, Drives On, start again; if it comes again, the log says what was refused",
     ),
-    "power-lost": Entry(
+    "power-lost": off(
         105,
-        OFF,
         "the drives have lost power",
         (
             "the safety circuit has opened: door, guard, E-stop elsewhere on the machine",
@@ -58,9 +53,8 @@ AXES: Entries = {
         "close the safety circuit, Reset, Drives On; home where the axis asks for it",
         tells=True,
     ),
-    "no-power": Entry(
+    "no-power": off(
         106,
-        OFF,
         "the drives do not come on",
         (
             "E-stop is pressed or the safety circuit is open",
@@ -70,17 +64,15 @@ AXES: Entries = {
         "release the E-stop, switch the drives' power on, Reset, Drives On",
         tells=True,
     ),
-    "drive-silent": Entry(
+    "drive-silent": off(
         107,
-        OFF,
         "an axis drive does not answer",
         ("its bus cable is off or damaged", "its power is off", "it has failed"),
         "check the drive's power and bus cable, Reset, Drives On; home again",
         tells=True,
     ),
-    "drive-restarted": Entry(
+    "drive-restarted": off(
         108,
-        OFF,
         "a drive has restarted",
         (
             "its control power broke down for a moment",
@@ -89,9 +81,8 @@ AXES: Entries = {
         "check its supply, Reset, Drives On; home again",
         tells=True,
     ),
-    "drive-setup": Entry(
+    "drive-setup": off(
         109,
-        OFF,
         "a drive does not take its settings",
         (
             "it is another drive than the machine file says, or has other firmware",
@@ -101,17 +92,15 @@ AXES: Entries = {
         "run 'turndesk machine check' with the machine file: it names the setting",
         tells=True,
     ),
-    "drive-keeps-fault": Entry(
+    "drive-keeps-fault": off(
         110,
-        OFF,
         "a drive keeps its fault",
         ("the cause still stands: too hot, no motor, no encoder", "it has to be switched off and on"),
         "read the drive's display; switch the machine off and on when it does not clear",
         tells=True,
     ),
-    "limit-switch": Entry(
+    "limit-switch": off(
         111,
-        OFF,
         "a slide has hit its limit switch",
         (
             "it was moved before it was homed",
@@ -121,25 +110,22 @@ AXES: Entries = {
         "Reset, Drives On, home; if it stands on the switch move it off by hand first",
         tells=True,
     ),
-    "homing": Entry(
+    "homing": off(
         112,
-        OFF,
         "homing has failed",
         ("the switch was not found: its cable, or the slide went the wrong way", "the slide is blocked"),
         "look at switch and direction, Reset, Drives On, home again",
         tells=True,
     ),
-    "position-lost": Entry(
+    "position-lost": off(
         113,
-        OFF,
         "the position is lost",
         ("the controller was stopped while the slides moved", "its limit was hit"),
         "Reset, Drives On, home all axes before anything is started",
         tells=True,
     ),
-    "drive-limits": Entry(
+    "drive-limits": off(
         114,
-        OFF,
         "a move beyond what the drives allow",
         (
             "speed or travel in the machine file differ from the drives' own",
@@ -148,16 +134,14 @@ AXES: Entries = {
         "Reset, Drives On; compare the machine file with the drives before the program is run again",
         tells=True,
     ),
-    "queue-dry": Entry(
+    "queue-dry": off(
         115,
-        OFF,
         "the drives ran out of setpoints",
         ("the computer was busy with something else for too long", "the bus was disturbed"),
         "Reset, Drives On; end other programs on this computer, and restart at the line",
     ),
-    "standstill": Entry(
+    "standstill": off(
         116,
-        OFF,
         "an axis is not where it ought to stand",
         (
             "the slide is jammed, or something pushes against it",
@@ -167,9 +151,8 @@ AXES: Entries = {
         "keep clear of the slide, it may jump when it comes free; look what holds it, Reset, Drives On",
         tells=True,
     ),
-    "encoder-still": Entry(
+    "encoder-still": off(
         117,
-        OFF,
         "axis sent, its encoder does not count",
         (
             "the encoder, its cable or its coupling: the slide may have moved all the same",
@@ -179,9 +162,8 @@ AXES: Entries = {
         "look where the slide really stands; check encoder and coupling, Reset, Drives On, home the axis",
         tells=True,
     ),
-    "moved-unasked": Entry(
+    "moved-unasked": off(
         118,
-        OFF,
         "an axis has moved unasked",
         (
             "it was moved by hand while the drives are off",

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from core.alarms.alarm_entry import OFF, STOP, Code, Entries, Entry
+from core.alarms.alarm_entry import Code, Entries, off, stop
 
 # Behind these nothing can be told to the machine any more: that it cannot be made safe follows from them.
 CUT_OFF: frozenset[Code] = frozenset(("bus", "feeder-gone", "feeder-silent", "controller-lost"))
 WIRES: Entries = {
-    "bus": Entry(
+    "bus": off(
         501,
-        OFF,
         "the drive bus has failed",
         (
             "the CAN cable is off, or a terminator is missing",
@@ -19,25 +18,22 @@ WIRES: Entries = {
         "PRESS E-STOP; check cable, terminators and interface, then start the control again",
         tells=True,
     ),
-    "io-silent": Entry(
+    "io-silent": off(
         502,
-        OFF,
         "an I/O module does not answer",
         ("its bus cable or power", "it has restarted: its outputs have fallen"),
         "check the module's power and cable, Reset, Drives On; look what the outputs have let go",
         tells=True,
     ),
-    "output": Entry(
+    "output": stop(
         503,
-        STOP,
         "an output cannot be switched",
         ("the machine file does not name it, or the controller does not have it", "its module has failed"),
         "check the output in the machine file, Reset",
         tells=True,
     ),
-    "feeder-gone": Entry(
+    "feeder-gone": off(
         511,
-        OFF,
         "the feeder has ended",
         (
             "the feeder process was ended or has failed: slides, spindle and outputs are off",
@@ -45,37 +41,32 @@ WIRES: Entries = {
         ),
         "PRESS E-STOP; look where the tool stands, end TurnDesk and start it again, home where asked",
     ),
-    "feeder-silent": Entry(
+    "feeder-silent": off(
         512,
-        OFF,
         "the feeder does not answer",
         ("the computer is overloaded: the slides stop at the end of what they have", "the feeder has failed"),
         "PRESS E-STOP; look where the tool stands, end TurnDesk and start it again",
     ),
-    "controller-lost": Entry(
+    "controller-lost": off(
         521,
-        OFF,
         "the connection to the controller is lost",
         ("the cable to the controller was pulled or damaged", "the controller's power is off"),
         "PRESS E-STOP; it moves what it has and then rests. Check cable and power, start the control again",
     ),
-    "controller-silent": Entry(
+    "controller-silent": off(
         522,
-        OFF,
         "the controller does not answer",
         ("its cable, or its line is disturbed", "the controller hangs"),
         "check the cable, Reset; switch the controller off and on when it does not answer",
     ),
-    "controller-reset": Entry(
+    "controller-reset": off(
         523,
-        OFF,
         "the controller was reset",
         ("its reset button or input", "its supply broke down for a moment"),
         "the program is given up: look where the tool stands, Reset, Drives On, home",
     ),
-    "controller-refuses": Entry(
+    "controller-refuses": off(
         524,
-        OFF,
         "the controller refuses a block",
         (
             "its settings forbid what the program asks for: travel, speed, spindle",
@@ -84,32 +75,28 @@ WIRES: Entries = {
         "Reset, Drives On; compare its settings with the machine file ('turndesk machine check')",
         tells=True,
     ),
-    "controller-alarm": Entry(
+    "controller-alarm": off(
         525,
-        OFF,
         "alarm of the controller",
         ("what the controller's number says",),
         "put right what is named, Reset, Drives On; home where asked",
         tells=True,
     ),
-    "controller-modes": Entry(
+    "controller-modes": off(
         526,
-        OFF,
         "the controller has lost its modes",
         ("another program has written to the controller", "it was reset unseen"),
         "end whatever else talks to the controller, Reset, Drives On",
         tells=True,
     ),
-    "controller-estop": Entry(
+    "controller-estop": off(
         527,
-        OFF,
         "E-stop at the controller",
         ("its E-stop or reset input is on",),
         "release the E-stop, Reset, Drives On",
     ),
-    "door": Entry(
+    "door": off(
         528,
-        OFF,
         "the safety door is open",
         ("the door was opened in the cycle", "the door's switch or cable"),
         "spindle and coolant are off: close the door, Reset, Drives On",

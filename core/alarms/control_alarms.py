@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from core.alarms.alarm_entry import HOLD, OFF, STOP, Entries, Entry
+from core.alarms.alarm_entry import Entries, hold, off, stop
 
 CONTROL: Entries = {
-    "internal": Entry(
+    "internal": off(
         901,
-        OFF,
         "the control has failed",
         ("a mistake in TurnDesk; the log has it",),
         "look where the tool stands; save the log (F10), end TurnDesk and start it again",
     ),
-    "broken-path": Entry(
+    "broken-path": off(
         902,
-        OFF,
         "the planned path does not fit together",
         ("a mistake in TurnDesk; nothing of the wrong piece was moved",),
         "Reset, Drives On; save program and log (F10), and restart at another line",
     ),
-    "not-safe": Entry(
+    "not-safe": off(
         905,
-        OFF,
         "the machine could not be made safe",
         (
             "a driver does not do what a stop asks of it: a wire is off, or it has failed",
@@ -30,9 +27,8 @@ CONTROL: Entries = {
         "PRESS E-STOP, switch the machine off; save the log (F10), end TurnDesk and start it again",
         tells=True,
     ),
-    "control-silent": Entry(
+    "control-silent": off(
         908,
-        OFF,
         "the control's thread is stuck or dead",
         (
             "a driver does not come back: its wire, its adapter, the computer's disk or network",
@@ -41,9 +37,8 @@ CONTROL: Entries = {
         "PRESS E-STOP: what is shown is not of now; save the log, end TurnDesk and start it again",
         tells=True,
     ),
-    "feeder-tripped": Entry(
+    "feeder-tripped": hold(
         906,
-        HOLD,
         "the feeder has switched off",
         (
             "another program, a backup or an update keeps this computer busy",
@@ -53,9 +48,8 @@ CONTROL: Entries = {
         "look at the tool; read what starts again, then Cycle Start; measure the part: it is not counted",
         tells=True,
     ),
-    "switched-off": Entry(
+    "switched-off": hold(
         907,
-        HOLD,
         "an output is not as commanded",
         (
             "a fuse, a relay or a terminal has switched it",
@@ -64,9 +58,8 @@ CONTROL: Entries = {
         "look why; read what is switched again, then Cycle Start; measure the part, it is not counted",
         tells=True,
     ),
-    "late": Entry(
+    "late": hold(
         903,
-        HOLD,
         "the computer was too late",
         (
             "another program, a backup or an update keeps this computer busy",
@@ -75,9 +68,8 @@ CONTROL: Entries = {
         ),
         "the slides have stopped on the path; end other programs, then Cycle Start",
     ),
-    "low-queue": Entry(
+    "low-queue": hold(
         904,
-        HOLD,
         "setpoints ran low",
         (
             "another program, a backup or an update keeps this computer busy",
@@ -91,9 +83,8 @@ CONTROL: Entries = {
 
 
 PROGRAM: Entries = {
-    "program": Entry(
+    "program": stop(
         401,
-        STOP,
         "program error",
         (
             "this line cannot be run as it stands",
@@ -102,9 +93,8 @@ PROGRAM: Entries = {
         "correct the line in the editor (F3), load the program again",
         tells=True,
     ),
-    "travel": Entry(
+    "travel": stop(
         402,
-        STOP,
         "end of travel",
         (
             "the offset of the tool, or the zero of the part, is wrong",
@@ -113,9 +103,8 @@ PROGRAM: Entries = {
         "check the tool's offset and where the slides stood at the start; Reset",
         tells=True,
     ),
-    "no-end": Entry(
+    "no-end": stop(
         403,
-        STOP,
         "the program ends without M30 or M02",
         ("the last line is missing: cut off when it was sent or copied",),
         "compare the end of the program with the original, add M30, load it again",

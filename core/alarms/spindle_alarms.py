@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from core.alarms.alarm_entry import HOLD, OFF, STOP, Entries, Entry
+from core.alarms.alarm_entry import Entries, hold, off, stop
 
 SPINDLE: Entries = {
-    "spindle": Entry(
+    "spindle": stop(
         201,
-        STOP,
         "spindle drive fault",
         (
             "the spindle drive has tripped: its display says why",
@@ -17,9 +16,8 @@ SPINDLE: Entries = {
         "read the drive's display, put the cause right, Reset",
         tells=True,
     ),
-    "at-speed": Entry(
+    "at-speed": stop(
         202,
-        STOP,
         "spindle not at speed",
         (
             "the spindle does not turn: belt, brake, or its drive is not enabled",
@@ -29,9 +27,8 @@ SPINDLE: Entries = {
         "look at the spindle, Reset; try the speed in MDI before the program is run again",
         tells=True,
     ),
-    "ignores-stop": Entry(
+    "ignores-stop": stop(
         203,
-        STOP,
         "spindle ignores the command",
         (
             "the spindle drive does not follow its command: cable, settings, local mode at its keypad",
@@ -40,17 +37,15 @@ SPINDLE: Entries = {
         "PRESS E-STOP; then find out why before it is started again",
         tells=True,
     ),
-    "spindle-still": Entry(
+    "spindle-still": stop(
         204,
-        STOP,
         "feed per revolution with a still spindle",
         ("no M03 or M04 before the cut",),
         "start the spindle in the program before this line",
         tells=True,
     ),
-    "thread-lost": Entry(
+    "thread-lost": stop(
         205,
-        STOP,
         "spindle lost in a thread",
         (
             "the cut stalled the spindle",
@@ -60,86 +55,75 @@ SPINDLE: Entries = {
         "X was drawn back: look at part and insert; the thread is not finished",
         tells=True,
     ),
-    "c-is-spindle": Entry(
+    "c-is-spindle": stop(
         206,
-        STOP,
         "C moves while the spindle turns",
         ("on this machine the spindle is C, and M05 is missing before this line",),
         "put M05 before the line, load the program again",
         tells=True,
     ),
-    "spindle-off": Entry(
+    "spindle-off": stop(
         207,
-        STOP,
         "the spindle may not start",
         ("E-stop is pressed", "a fault of its drive stands", "it is held as C"),
         "put right what is named, Reset, start again",
         tells=True,
     ),
-    "inverter-silent": Entry(
+    "inverter-silent": stop(
         208,
-        STOP,
         "the inverter does not answer",
         ("its cable is off, or disturbed by the motor cable", "its power is off", "baud rate or address"),
         "IF THE SPINDLE TURNS PRESS E-STOP; then check the inverter's cable and power, Reset",
         tells=True,
     ),
-    "spindle-disagrees": Entry(
+    "spindle-disagrees": stop(
         209,
-        STOP,
         "encoder and spindle drive disagree",
         ("the belt slips or is off", "the encoder's coupling is loose", "counts a turn in the machine file"),
         "PRESS E-STOP; look at belt and encoder before the spindle is started again",
         tells=True,
     ),
-    "spindle-encoder": Entry(
+    "spindle-encoder": stop(
         210,
-        STOP,
         "spindle encoder lost",
         ("its cable", "its power", "it has restarted or reports a fault"),
         "check encoder and cable, Reset; without it no thread is cut",
         tells=True,
     ),
-    "c-coupling": Entry(
+    "c-coupling": off(
         211,
-        OFF,
         "the spindle does not become C",
         ("its index was not found", "the drive did not change over in time", "power was lost meanwhile"),
         "Reset, Drives On; try M19 in MDI",
         tells=True,
     ),
-    "thread-no-encoder": Entry(
+    "thread-no-encoder": stop(
         212,
-        STOP,
         "a thread needs a turning spindle",
         ("no M03 or M04 before the thread", "this machine has no encoder on the spindle"),
         "start the spindle before the thread; without an encoder use a die or tap",
         tells=True,
     ),
-    "spindle-slow": Entry(
+    "spindle-slow": hold(
         221,
-        HOLD,
         "spindle below half its speed",
         ("the cut is too heavy", "the belt slips", "the spindle pot was turned down"),
         "let it come to speed, then Cycle Start",
     ),
-    "spindle-stopped": Entry(
+    "spindle-stopped": hold(
         222,
-        HOLD,
         "spindle stopped",
         ("the spindle was stopped while the program fed by the revolution",),
         "start the spindle, then Cycle Start; else Reset",
     ),
-    "spindle-switch": Entry(
+    "spindle-switch": hold(
         223,
-        HOLD,
         "spindle switch off",
         ("the spindle switch stands at OFF",),
         "switch it to AUTO, let the spindle come to speed, then Cycle Start",
     ),
-    "spindle-has-stopped": Entry(
+    "spindle-has-stopped": hold(
         225,
-        HOLD,
         "spindle has stopped",
         (
             "something between control and spindle has switched it off: safety circuit, guard, its drive",
@@ -147,16 +131,14 @@ SPINDLE: Entries = {
         ),
         "look at spindle and tool; Cycle Start starts it again, as it says, and goes on",
     ),
-    "spindle-late": Entry(
+    "spindle-late": hold(
         226,
-        HOLD,
         "spindle not at its speed",
         ("the spindle did not come back to its speed: load, belt, drive", "its pot was turned down"),
         "look at spindle and tool; Cycle Start tries again, Reset gives the program up",
     ),
-    "spindle-pot": Entry(
+    "spindle-pot": hold(
         224,
-        HOLD,
         "spindle override at 0",
         ("the spindle pot stands at 0",),
         "turn the spindle pot up, let it come to speed, then Cycle Start",
@@ -164,33 +146,29 @@ SPINDLE: Entries = {
 }
 
 CHUCK: Entries = {
-    "collet-open": Entry(
+    "collet-open": stop(
         301,
-        STOP,
         "spindle start with the collet open",
         ("the program starts the spindle before M12", "the collet's switch does not answer"),
         "close the collet with M12, Reset, start again",
         tells=True,
     ),
-    "unclamp": Entry(
+    "unclamp": stop(
         302,
-        STOP,
         "unclamping refused",
         ("the spindle still turns where the program opens the collet",),
         "put M05 before M13, load the program again",
         tells=True,
     ),
-    "collet": Entry(
+    "collet": stop(
         303,
-        STOP,
         "collet does not answer",
         ("no air", "its switch or cable", "bar or part keeps it from moving"),
         "check air and switch, Reset",
         tells=True,
     ),
-    "collet-lost": Entry(
+    "collet-lost": stop(
         304,
-        STOP,
         "collet has opened",
         ("air was lost while the spindle turned", "the switch or its cable"),
         "WAIT UNTIL THE SPINDLE STANDS; check air, collet and bar, Reset",

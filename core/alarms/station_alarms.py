@@ -2,95 +2,83 @@
 
 from __future__ import annotations
 
-from core.alarms.alarm_entry import ASKED, HOLD, Entries, Entry
+from core.alarms.alarm_entry import Entries, asked, hold
 
 STATION: Entries = {
-    "held": Entry(
+    "held": hold(
         600,
-        HOLD,
         "held by the control",
         ("what is told here",),
         "put right what is named, then Cycle Start",
         tells=True,
     ),
-    "station-silent": Entry(
+    "station-silent": hold(
         601,
-        HOLD,
         "operator station silent",
         ("the station's cable is off or damaged", "its power is off"),
         "check cable and power of the station; its buttons do nothing now. Then Cycle Start",
     ),
-    "pot-jumps": Entry(
+    "pot-jumps": hold(
         602,
-        HOLD,
         "override pot jumps",
         ("the feed or spindle pot has a worn track", "its cable is loose"),
         "turn the pot slowly through its range; if it still jumps change it. Then Cycle Start",
     ),
-    "guard-open": Entry(
+    "guard-open": hold(
         604,
-        HOLD,
         "guard open",
         ("the guard was opened in the cycle", "the guard's switch or cable"),
         "close the guard; Cycle Start says what it starts again",
     ),
-    "controller-holds": Entry(
+    "controller-holds": hold(
         603,
-        HOLD,
         "the controller holds",
         ("its own feed hold or safety door input is on",),
         "look at the controller's hold and door inputs, then Cycle Start",
     ),
-    "estop": Entry(
+    "estop": asked(
         701,
-        ASKED,
         "E-stop",
         ("an E-stop button was pressed", "the safety circuit has opened"),
         "make the machine safe, release the button, then Drives On",
         tells=True,
     ),
-    "feed-hold": Entry(
+    "feed-hold": asked(
         702,
-        ASKED,
         "feed hold",
         ("feed hold was pressed",),
         "Cycle Start goes on; Reset gives the program up",
         tells=True,
     ),
-    "reset": Entry(
+    "reset": asked(
         703,
-        ASKED,
         "reset",
         ("Reset was pressed: the program was given up",),
         "look where the tool stands before anything is started",
         tells=True,
     ),
-    "program-stop": Entry(
+    "program-stop": asked(
         704,
-        ASKED,
         "program stop",
         ("M00 in the program",),
         "do what the message says, then Cycle Start",
         tells=True,
     ),
-    "optional-stop": Entry(
+    "optional-stop": asked(
         705,
-        ASKED,
         "optional stop",
         ("M01 in the program, and Optional Stop is on",),
         "Cycle Start goes on; O switches Optional Stop off",
         tells=True,
     ),
-    "single-block": Entry(
+    "single-block": asked(
         706,
-        ASKED,
         "single block",
         ("Single Block is on: each block waits for Cycle Start",),
         "Cycle Start runs the next block; S switches Single Block off",
     ),
-    "by-hand": Entry(
+    "by-hand": asked(
         707,
-        ASKED,
         "stopped by hand",
         ("the spindle was stopped by hand",),
         "nothing: it was asked for",

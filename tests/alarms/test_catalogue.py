@@ -124,4 +124,4 @@ def test_an_alarm_is_made_in_one_place() -> None:
 
 
 def test_a_plain_entry_is_whole() -> None:
-    assert Entry(999, Reaction.STOP, "text", ("cause",), "remedy").tells is False
+    assert Entry(999, "text", ("cause",), "remedy", Reaction.STOP).tells is False
