@@ -31,19 +31,9 @@ def arc_move(state: State, made: Statement) -> Block:
     length = arc_length(start, (state.x, state.z), centre, clockwise=clockwise)
     check_move(state, made.line, start[0], state.x, length)
     warn_of_title_rapid(state, made.line)
-    return _block(state, made, start, centre, clockwise=clockwise)
-
-
-def _block(state: State, made: Statement, start: Point, centre: Point, *, clockwise: bool) -> Block:
-    modal = state.modal
-    state.blocks += 1
-    return Block(
-        n=state.blocks, line=made.line, kind=Kind.ARC, text=made.part("move"),
-        x0=start[0], z0=start[1], c0=state.c, x=state.x, z=state.z, c=state.c,
-        offset_x=state.offset_x, offset_z=state.offset_z, modal=modal,
-        feed=state.feed, per_rev=state.per_rev, rpm=state.rpm_at(state.x),
-        css=modal.css_speed,
-        cx=centre[0], cz=centre[1], clockwise=clockwise,
+    return state.move(
+        Kind.ARC, made.line, made.part("move"), (*start, state.c), state.feed, per_rev=state.per_rev,
+        rpm=state.rpm_at(state.x), css=state.modal.css_speed, centre=centre, clockwise=clockwise,
     )  # fmt: skip
 
 

@@ -98,22 +98,16 @@ def c_move(state: State, made: Statement) -> Iterator[Block]:
         check_move(state, made.line, x0, state.x, way)
         rpm = 0.0
     warn_of_title_rapid(state, made.line)
-    state.blocks += 1
-    yield Block(
-        state.blocks, made.line, state.kind, made.part("move"), x0, z0, c0, state.x, state.z, goal,
-        state.offset_x, state.offset_z, state.modal, state.feed, state.per_rev, rpm,
-    )  # fmt: skip
+    start, text = (x0, z0, c0), made.part("move")
+    yield state.move(state.kind, made.line, text, start, state.feed, per_rev=state.per_rev, rpm=rpm)
 
 
 def rotation(state: State, line: int, text: str, goal: float) -> Block:
     """C alone turns to ``goal`` (degrees) at the speed in force; the state stands there afterwards."""
     rpm = state.modal.c_rpm or state.setup.limits.c_max_rpm
     c0, state.c = state.c, goal
-    state.blocks += 1
-    return Block(
-        state.blocks, line, Kind.ROTATE, text, state.x, state.z, c0, state.x, state.z, goal,
-        state.offset_x, state.offset_z, state.modal, rpm * 6.0, False, copysign(rpm, goal - c0),
-    )  # fmt: skip
+    start = state.x, state.z, c0
+    return state.move(Kind.ROTATE, line, text, start, rpm * 6.0, rpm=copysign(rpm, goal - c0))
 
 
 def _c_word(state: State, made: Statement) -> Word:

@@ -87,24 +87,17 @@ def blocks_of_moves(state: State, made: Statement, moves: Sequence[Move]) -> Ite
 
     Raises ProgramError where the feed cannot be: none, or per revolution of a spindle that stands.
     """
-    moves = _without_stops((state.x, state.z), moves)
+    kept: list[Move] = []
     at = state.x, state.z
     for move in moves:
+        if move.centre is None and hypot(move.x - at[0], move.z - at[1]) <= _SAME:
+            continue
+        kept.append(move)
         if move.rapid is None:
             check_move(state, made.line, at[0], move.x, _length(at, move))
         at = move.x, move.z
-    for move in moves:
+    for move in kept:
         yield _block(state, made, move)
-
-
-def _without_stops(start: Point, moves: Sequence[Move]) -> list[Move]:
-    kept: list[Move] = []
-    at = start
-    for move in moves:
-        if move.centre is not None or hypot(move.x - at[0], move.z - at[1]) > _SAME:
-            kept.append(move)
-            at = move.x, move.z
-    return kept
 
 
 def _length(start: Point, move: Move) -> float:
@@ -114,27 +107,20 @@ def _length(start: Point, move: Move) -> float:
 
 
 def _block(state: State, made: Statement, move: Move) -> Block:
-    modal, feeds = state.modal, move.rapid is None
-    kind = Kind.RAPID if not feeds else Kind.FEED if move.centre is None else Kind.ARC
-    x0, z0 = state.x, state.z
-    text = move_text(state, (x0, z0), move)
+    kind = Kind.RAPID if move.rapid is not None else Kind.FEED if move.centre is None else Kind.ARC
+    start, text = (state.x, state.z, state.c), _text(state, move)
     state.x, state.z = move.x, move.z
     state.px, state.pz = state.x - state.dx, state.z - state.dz
-    state.blocks += 1
-    cx, cz = move.centre or (0.0, 0.0)
-    return Block(
-        n=state.blocks, line=made.line, kind=kind, text=text,
-        x0=x0, z0=z0, c0=state.c, x=move.x, z=move.z, c=state.c,
-        offset_x=state.offset_x, offset_z=state.offset_z, modal=modal,
-        feed=state.feed if move.rapid is None else move.rapid, per_rev=feeds and state.per_rev,
-        rpm=state.rpm_at(move.x), css=modal.css_speed,
-        cx=cx, cz=cz, clockwise=move.clockwise,
+    return state.move(
+        kind, made.line, text, start, state.feed if move.rapid is None else move.rapid,
+        per_rev=move.rapid is None and state.per_rev, rpm=state.rpm_at(move.x), css=state.modal.css_speed,
+        centre=move.centre or (0.0, 0.0), clockwise=move.clockwise,
     )  # fmt: skip
 
 
-def move_text(state: State, start: Point, move: Move) -> str:
+def _text(state: State, move: Move) -> str:
     """The motion as a line of the program would say it, in the mode and unit in force."""
-    end = move.x, move.z
+    start, end = (state.x, state.z), (move.x, move.z)
     if move.centre is not None:
         return move_words(state.modal, Arc(start, end, move.centre, move.clockwise))
     return ("" if move.rapid is None else "G00") + move_words(state.modal, Line(start, end))

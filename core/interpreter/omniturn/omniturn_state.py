@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from core.geometry.virtual_mill import PlaneMove
 from core.interpreter.actions import Action, Dwell
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
@@ -155,15 +156,21 @@ class State:
     def action(self, line: int, text: str, action: Action) -> Block:
         """A block in which no axis moves."""
         self.blocks += 1
+        kind = Kind.DWELL if isinstance(action, Dwell) else Kind.ACTION
+        x, z, c, modal = self.x, self.z, self.c, self.modal
         return Block(
-            n=self.blocks,
-            line=line,
-            kind=Kind.DWELL if isinstance(action, Dwell) else Kind.ACTION,
-            text=text,
-            x0=self.x, z0=self.z, c0=self.c, x=self.x, z=self.z, c=self.c,
-            offset_x=self.offset_x, offset_z=self.offset_z,
-            modal=self.modal,
-            rpm=self.rpm_at(self.x),
-            css=self.modal.css_speed,
-            action=action,
+            self.blocks, line, kind, text, x, z, c, x, z, c, self.offset_x, self.offset_z, modal,
+            rpm=self.rpm_at(x), css=modal.css_speed, action=action,
+        )  # fmt: skip
+
+    def move(
+        self, kind: Kind, line: int, text: str, start: tuple[float, float, float], feed: float,
+        *, per_rev: bool = False, rpm: float = 0.0, css: float | None = None,
+        centre: tuple[float, float] = (0.0, 0.0), clockwise: bool = False, plane: PlaneMove | None = None,
+    ) -> Block:  # fmt: skip
+        """The block of a move from ``start`` (x, z, c) to where the state stands by now."""
+        self.blocks += 1
+        return Block(
+            self.blocks, line, kind, text, *start, self.x, self.z, self.c, self.offset_x, self.offset_z,
+            self.modal, feed, per_rev, rpm, css, *centre, clockwise, plane=plane,
         )  # fmt: skip

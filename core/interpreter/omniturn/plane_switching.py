@@ -122,18 +122,12 @@ def _block(state: State, made: Statement, leg: PlaneMove) -> Block:
     leg = replace(leg, theta=mill.theta)
     (x, z, c) = leg.machine(_ENDS)[1].tolist()
     theta = leg.theta if isinstance(leg.frame, Side) else float(leg.thetas(leg.points(_ENDS), _ENDS)[1])
-    x0, z0, c0 = state.x, state.z, state.c
+    start = state.x, state.z, state.c
     state.px, state.pz, state.c = x, z, c
     state.x, state.z = x + state.dx, z + state.dz
     state.adopt(state.modal._replace(mill=Mill(leg.frame, *leg.end, theta, False)))
-    state.blocks += 1
-    kind = Kind.PLANE_ARC if leg.centre is not None else Kind.PLANE_LINE
-    return Block(
-        n=state.blocks, line=made.line, kind=kind, text=made.text,
-        x0=x0, z0=z0, c0=c0, x=state.x, z=state.z, c=c,
-        offset_x=state.offset_x, offset_z=state.offset_z, modal=state.modal,
-        feed=state.modal.feed or 0.0, clockwise=leg.clockwise, plane=leg,
-    )  # fmt: skip
+    kind, feed = Kind.PLANE_ARC if leg.centre is not None else Kind.PLANE_LINE, state.modal.feed or 0.0
+    return state.move(kind, made.line, made.text, start, feed, clockwise=leg.clockwise, plane=leg)
 
 
 def plane_length(state: State, made: Statement, letter: str, default: float) -> float:

@@ -6,7 +6,7 @@ All lengths mm, X a radius. The formulas: docs/decisions/0009-threads.md.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import ceil, copysign, radians, tan
 
 from core.interpreter.elementary_blocks import Block, Kind
@@ -214,13 +214,8 @@ class _Cutter:
     """Makes the blocks of one cycle one after the other."""
 
     def __init__(self, state: State, made: Statement, thread: Thread) -> None:
-        self._state = state
-        self._thread = thread
-        self._at = state.x, state.z
-        self._like = Block(
-            0, made.line, Kind.RAPID, made.part("move"), state.x, state.z, state.c, state.x, state.z, state.c,
-            state.offset_x, state.offset_z, state.modal, rpm=state.rpm_at(state.x),
-        )  # fmt: skip
+        self._state, self._line, self._thread = state, made.line, thread
+        self._rpm = state.rpm_at(state.x)
 
     def blocks(self) -> Iterator[Block]:
         thread = self._thread
@@ -241,27 +236,22 @@ class _Cutter:
                 yield from self._rapid(retract, thread.z1)
         yield from self._rapid(retract, thread.z0)
         yield from self._rapid(thread.x0, thread.z0)
+        self._state.x, self._state.z = thread.x0, thread.z0
 
     def _rapid(self, x: float, z: float) -> Iterator[Block]:
         """A rapid, none where the slides stand there."""
-        if max(abs(x - self._at[0]), abs(z - self._at[1])) > _FACE:
+        if max(abs(x - self._state.x), abs(z - self._state.z)) > _FACE:
             yield self._block(x, z, Kind.RAPID, self._state.modal.rapid_rate, self._text("G00", x, z))
 
     def _cut(self, x: float, z: float, what: str) -> Block:
         lead = self._state.modal.feed_text(self._thread.lead, per_rev=True).split()[0]
-        return self._block(
-            x, z, Kind.THREAD, self._thread.lead, f"{self._text('G33', x, z)}K{lead} {what}", per_rev=True
-        )
+        text = f"{self._text('G33', x, z)}K{lead} {what}"
+        return self._block(x, z, Kind.THREAD, self._thread.lead, text)
 
-    def _block(
-        self, x: float, z: float, kind: Kind, feed: float, text: str, *, per_rev: bool = False
-    ) -> Block:
-        self._state.blocks += 1
-        (x0, z0), self._at = self._at, (x, z)
-        return replace(
-            self._like, n=self._state.blocks, kind=kind, text=text, x0=x0, z0=z0, x=x, z=z, feed=feed,
-            per_rev=per_rev,
-        )  # fmt: skip
+    def _block(self, x: float, z: float, kind: Kind, feed: float, text: str) -> Block:
+        state, per_rev = self._state, kind is Kind.THREAD
+        start, state.x, state.z = (state.x, state.z, state.c), x, z
+        return state.move(kind, self._line, text, start, feed, per_rev=per_rev, rpm=self._rpm)
 
     def _text(self, code: str, x: float, z: float) -> str:
         """As a line of the program would say it, in its unit and its X words."""
