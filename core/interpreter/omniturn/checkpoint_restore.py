@@ -10,22 +10,12 @@ from core.interpreter.checkpoint import Begin, Checkpoint, CTurn, FunctionStep, 
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.omniturn_state import State
 
+_KEPT = Checkpoint._fields[:-1]  # by the names that they have in the state; the flow is the interpreter's
+
 
 def checkpoint_of(state: State) -> Checkpoint:
     """All that the line that comes next inherits, to go on from there in another pass."""
-    return Checkpoint(
-        modal=state.modal,
-        x=state.x,
-        z=state.z,
-        c=state.c,
-        px=state.px,
-        pz=state.pz,
-        first_feed=state.first_feed,
-        tool_line=state.tool_line,
-        title_rapid=state.title_rapid,
-        coarse_at=state.coarse_at,
-        blocks=state.blocks,
-    )
+    return Checkpoint(*(getattr(state, name) for name in _KEPT))
 
 
 def restore(state: State, begin: Begin) -> None:
@@ -35,28 +25,22 @@ def restore(state: State, begin: Begin) -> None:
     C stays where it is unless it is locked.
     """
     point = begin.checkpoint
-    state.first_feed, state.tool_line, state.title_rapid = (
-        point.first_feed,
-        point.tool_line,
-        point.title_rapid,
-    )
-    state.coarse_at, state.blocks = point.coarse_at, point.blocks
-    state.modal = point.modal
+    for name in _KEPT:
+        setattr(state, name, getattr(point, name))
     state.derive()
     start_x, start_z, start_c = state.setup.start[:3]
     if begin.single:
         state.x, state.z = start_x - state.offset_x, start_z - state.offset_z
         state.px, state.pz = state.x - state.dx, state.z - state.dz
+    if begin.single or not point.modal.c_locked:
         state.c = start_c - point.modal.offset_c
-        return
-    state.x, state.z, state.px, state.pz = point.x, point.z, point.px, point.pz
-    state.c = point.c if point.modal.c_locked else start_c - point.modal.offset_c
 
 
 def approach_blocks(state: State, begin: Begin) -> Iterator[Block]:
     """The blocks of the way, numbered so that the first block of the line keeps its number of a full run."""
     modal, point = state.modal, begin.checkpoint
-    at = [value - offset for value, offset in zip(state.setup.start, _offsets(state), strict=False)]
+    offsets = state.offset_x, state.offset_z, modal.offset_c
+    at = [value - offset for value, offset in zip(state.setup.start, offsets, strict=False)]
     turning = 0.0
     for number, step in enumerate(begin.approach, start=point.blocks - len(begin.approach) + 1):
         x0, z0, c0 = at
@@ -79,7 +63,3 @@ def approach_blocks(state: State, begin: Begin) -> Iterator[Block]:
             number, begin.line, kind, step.text, x0, z0, c0, at[0], at[1], at[2],
             state.offset_x, state.offset_z, modal, feed, False, rpm, css, action=action,
         )  # fmt: skip
-
-
-def _offsets(state: State) -> tuple[float, float, float]:
-    return state.offset_x, state.offset_z, state.modal.offset_c

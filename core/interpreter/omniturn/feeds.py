@@ -79,19 +79,10 @@ def _feed(state: State, made: Statement, word: Word, *, first: bool) -> None:
         state.first_feed = within
         state.adopt(state.modal._replace(feed=within, rapid=False, rapid_rate=within))
         state.derive()
-    elif (modal.feed, modal.cut_feed, modal.cut_per_rev, modal.rapid) == (
-        within,
-        within,
-        modal.per_rev,
-        False,
-    ):
-        pass
     elif first:
-        state.adopt(state.modal._replace(feed=within, rapid=False))
-    else:
-        state.adopt(
-            state.modal._replace(feed=within, rapid=False, cut_feed=within, cut_per_rev=modal.per_rev)
-        )
+        state.adopt(modal._replace(feed=within, rapid=False))
+    elif modal.rapid or not modal.feed == modal.cut_feed == within or modal.cut_per_rev is not modal.per_rev:
+        state.adopt(modal._replace(feed=within, rapid=False, cut_feed=within, cut_per_rev=modal.per_rev))
     if not least / _ROUNDING <= feed <= most * _ROUNDING:
         message = out_of_range(modal, feed, least, most)
         otherwise = "Lower F." if feed > most else "Raise F."

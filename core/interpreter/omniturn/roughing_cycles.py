@@ -284,9 +284,6 @@ def _view(state: State, made: Statement, contour: list[Element]) -> ContourView:
 # --- G74
 
 
-_WHOLE_BOX_CYCLE = 1e-6  # of a pass: what a decimal fraction lacks in binary
-
-
 def box_moves(state: State, made: Statement) -> list[Move]:
     """Equal passes from the start's X to X, none deeper than I, U left on a side; back to the start.
 
@@ -300,7 +297,7 @@ def box_moves(state: State, made: Statement) -> list[Move]:
     if depth <= 0:
         text = f"{made.words['U'].text} leaves nothing of the box to cut."
         raise made.refuse("U", "cycle-nothing", text, "U is less than the way from the start to X.")
-    count = ceil(depth / cut - _WHOLE_BOX_CYCLE)
+    count = ceil(depth / cut - _WHOLE)
     check_count(made, "I", count, "passes")
     rapid = state.modal.rapid_rate
     moves: list[Move] = []

@@ -26,14 +26,12 @@ def _offset(state: State, line: int, word: Word, use: ToolUse) -> ToolOffset:
 
 def missing_offset(tools: Sequence[int], line: int, column: int) -> Diagnostic:
     """The warning for tools whose offset nobody has set."""
-    if len(tools) == 1:
-        text = f"Tool {tools[0]} has no offset; 0 is used, and the machine will refuse to start."
-        return Diagnostic(
-            line, column, Severity.WARNING, "tool-offset-missing", text, "Set the tool's offset."
-        )
-    names = ", ".join(f"T{number}" for number in tools)
+    names, hint = ", ".join(f"T{number}" for number in tools), "Set their offsets."
     text = f"{names} have no offset; 0 is used, and the machine will refuse to start."
-    return Diagnostic(line, column, Severity.WARNING, "tool-offset-missing", text, "Set their offsets.")
+    if len(tools) == 1:
+        hint = "Set the tool's offset."
+        text = f"Tool {tools[0]} has no offset; 0 is used, and the machine will refuse to start."
+    return Diagnostic(line, column, Severity.WARNING, "tool-offset-missing", text, hint)
 
 
 def tool_change(state: State, made: Statement, word: Word, use: ToolUse) -> Block:
@@ -50,21 +48,11 @@ def tool_change(state: State, made: Statement, word: Word, use: ToolUse) -> Bloc
     shift_z = modal.pending_shift_z if number else 0.0
     state.stay(
         modal._replace(
-            tool=number,
-            tool_x=offset.x,
-            tool_z=offset.z,
-            shift_x=shift_x,
-            shift_z=shift_z,
-            pending_shift_x=shift_x,
-            pending_shift_z=shift_z,
-            preset_x=0.0,
-            preset_z=0.0,
-            secondary=0,
-            secondary_x=0.0,
-            secondary_z=0.0,
-            nose_comp=40,
+            tool=number, tool_x=offset.x, tool_z=offset.z, nose_comp=40,
+            shift_x=shift_x, shift_z=shift_z, pending_shift_x=shift_x, pending_shift_z=shift_z,
+            preset_x=0.0, preset_z=0.0, secondary=0, secondary_x=0.0, secondary_z=0.0,
         )
-    )
+    )  # fmt: skip
     state.tool_line = made.line if number else 0
     state.fast = False  # the same tool again changes no word, and yet the next move has to be looked at
     secondary(state, made)
@@ -105,12 +93,8 @@ def preset(state: State, made: Statement) -> Iterator[Block]:
     x, z = on_step(state, made, "X"), on_step(state, made, "Z")
     x, z = state.x if x is None else x, state.z if z is None else z
     modal = state.modal
-    state.stay(
-        modal._replace(
-            preset_x=modal.preset_x + state.x - x,
-            preset_z=modal.preset_z + state.z - z,
-        )
-    )
+    preset_x, preset_z = modal.preset_x + state.x - x, modal.preset_z + state.z - z
+    state.stay(modal._replace(preset_x=preset_x, preset_z=preset_z))
     state.tool_line = 0
     yield state.action(made.line, made.part("frame"), Preset(x, z))
 
