@@ -9,7 +9,7 @@ wide: they divide at shoulders and at the floors of pockets, so that these stand
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,7 @@ import numpy.typing as npt
 from core.part.ray_cuts import FloatArray
 
 IntArray = npt.NDArray[np.intp]
+Real = TypeVar("Real", FloatArray, npt.NDArray[np.float32])
 
 COLUMNS = 900
 """How many columns a field begins with at most; it may divide into twice as many."""
@@ -178,11 +179,11 @@ class PolarField:
         return low, high
 
 
-def in_order(low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray]:
+def in_order(low: Real, high: Real) -> tuple[Real, Real]:
     """The same intervals ascending along the first axis, empty ones last and 0."""
     there = high > low
     order = np.argsort(np.where(there, low, np.inf), axis=0, kind="stable")
-    low, high = np.where(there, low, 0.0), np.where(there, high, 0.0)
+    low, high = low * there, high * there
     return np.take_along_axis(low, order, axis=0), np.take_along_axis(high, order, axis=0)
 
 

@@ -1,0 +1,351 @@
+"""The solid picture of a part, drawn by numpy: points of its surfaces, the nearest at each pixel, lit.
+
+No graphics card and no Qt: what comes out is an image of 0xAARRGGBB that any of them can show. Normals are
+made for the pixels that are seen, and for no others.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from core.part.solid_view import SolidView
+from core.part.surface_points import AWAY, Floats, IntArray, Patch, Solid, Surface, Wall
+
+Image = npt.NDArray[np.uint32]
+Numbers = npt.NDArray[np.int64]
+Bools = npt.NDArray[np.bool_]
+Doubles = npt.NDArray[np.float64]
+Codes = npt.NDArray[np.int16]
+Spans = tuple[tuple[float, float], ...]
+
+_POINT = 26  # bits of a key that say which point it is; the depth stands above them
+_NUMBER = (1 << _POINT) - 1
+_DEPTH = 32.0  # steps of depth a pixel
+_FAR = 1e5  # pixels; no point lies further from the middle of the part
+_BLOCK = 1 << 15  # points put at once: what is worked on stays in the cache
+_LIGHT = (-0.38, 0.62, 0.69)  # to the right, up, towards the viewer
+_BISECTOR = (-0.207, 0.337, 0.919)  # half way between light and viewer
+_SHADES = 256
+_FACING = 0.02  # radians beyond the horizon that are drawn too
+
+
+class Colours(NamedTuple):
+    """0xRRGGBB of the outside, of bores, of cut faces and of what was hit; the ground is 0xAARRGGBB."""
+
+    outside: int = 0xB9C3CC
+    bore: int = 0xC9B48A
+    section: int = 0xD98E4A
+    hit: int = 0xE5322D
+    ground: int = 0x00000000
+
+
+_OUTSIDE, _BORE, _SECTION, _HIT = range(4)
+_AWAY = -2  # in place of a colour
+
+
+class _Group(NamedTuple):
+    """Points drawn together, and their first number: those of a wall, of a patch or of a cut face."""
+
+    first: int
+    points: int
+    wall: Wall | None = None
+    columns: IntArray | None = None
+    rays: slice = slice(None)
+    patch: Patch | None = None
+    edge: float = 0.0  # phi of a cut face
+    z: Floats | None = None
+
+
+class SolidPicture:
+    """Draws a solid again and again; what does not change between two pictures is kept."""
+
+    def __init__(self, colours: Colours | None = None) -> None:
+        self.colours = colours or Colours()
+        self._table = _shades(self.colours)
+        self._surface: Surface | None = None
+        self._made_of: tuple[object, ...] = ()
+
+    def draw(
+        self,
+        solid: Solid,
+        view: SolidView,
+        width: int,
+        height: int,
+        *,
+        version: int = 0,
+        hits: Spans = (),
+    ) -> Image:
+        """The picture (height, width); ``version`` changes with the metal, ``hits`` are spans of Z in red."""
+        surface = self._kept(solid, view, width, version)
+        drawn = _Drawing(surface, view, width, height)
+        return drawn.image(self._table, self.colours.ground, hits)
+
+    def _kept(self, solid: Solid, view: SolidView, width: int, version: int) -> Surface:
+        cos, sin = view.along
+        towards = 0 if abs(sin) < 0.01 else int(math.copysign(1, sin))
+        half = (0.5 * width / view.scale + solid.radius * abs(sin)) / max(cos, 0.05)
+        span = view.centre - half, view.centre + half
+        made_of = (id(solid.edges), id(solid.high), version, view.scale, towards, span)
+        if self._surface is None or made_of != self._made_of:
+            self._surface = Surface(solid, view.scale, view.centre, span, towards)
+            self._made_of = made_of
+        return self._surface
+
+
+class _Drawing:
+    """One picture: points put into pixels, then the nearest ones lit."""
+
+    def __init__(self, surface: Surface, view: SolidView, width: int, height: int) -> None:
+        self.surface, self.view, self.width, self.height = surface, view, width, height
+        self.cos, self.sin = (np.float32(part) for part in view.along)
+        self.phi = view.phi(surface.angles)
+        self.shown = ~view.open_at(self.phi)
+        # What patches need: half way between rays too.
+        phi = view.phi(np.arange(2 * surface.rays) * (math.pi / surface.rays))
+        self.near, self.up = np.cos(phi).astype(np.float32), np.sin(phi).astype(np.float32)
+        self.halves_shown = None if view.opening is None else ~view.open_at(phi)
+        self.nearest = np.zeros((height + 2) * (width + 2), np.int64)
+        self.groups: list[_Group] = []
+        self._next = 0
+        for wall in surface.walls:
+            self._wall(wall)
+        self._patches()
+        self._sections()
+
+    # --- points into pixels
+
+    def _wall(self, wall: Wall) -> None:
+        """Put what of a wall may look at the viewer; its slanted columns may do so beyond the horizon."""
+        if wall.inside and not self._seen_inside():
+            return
+        off = math.pi - np.abs(self.phi) if wall.inside else np.abs(self.phi)
+        facing = off <= 0.5 * math.pi + wall.lean + _FACING
+        self._part_of_wall(wall, None, facing & self.shown)
+        if self.surface.faces is not None and wall.leaning.any():
+            self._part_of_wall(wall, np.flatnonzero(wall.leaning), ~facing & self.shown)
+
+    def _seen_inside(self) -> bool:
+        looked_into = self.surface.faces is not None or self.view.opening is not None
+        return looked_into or len(self.surface.low) > 1
+
+    def _part_of_wall(self, wall: Wall, columns: IntArray | None, rays: Bools) -> None:
+        for run in _runs(rays):
+            r = wall.r if columns is None else wall.r[columns]
+            z = self.surface.z[wall.columns if columns is None else wall.columns[columns]][:, None]
+            group = _Group(self._next, len(r) * (run.stop - run.start), wall, columns, run)
+            if not self.surface.turned:
+                r = r[:, run]
+            self._put(group, z, r, self.up[::2][run], self.near[::2][run], masked=not wall.whole)
+
+    def _patches(self) -> None:
+        for patch in (self.surface.faces, self.surface.flanks):
+            if patch is None or not len(patch.r):
+                continue
+            z, r = patch.z[:, None], patch.r[:, None]
+            if patch.ray is None:
+                for run in _runs(self.shown):
+                    group = _Group(self._next, len(r) * (run.stop - run.start), rays=run, patch=patch)
+                    self._put(group, z, r, self.up[::2][run], self.near[::2][run])
+            else:
+                if self.halves_shown is not None:
+                    r = np.where(self.halves_shown[patch.ray][:, None], r, AWAY)
+                up, near = self.up[patch.ray][:, None], self.near[patch.ray][:, None]
+                self._put(_Group(self._next, len(r), patch=patch), z, r, up, near, masked=True)
+
+    def _sections(self) -> None:
+        """Put the metal that an opening lays bare, at both its edges."""
+        if self.view.opening is None:
+            return
+        surface = self.surface
+        r = (np.arange(math.ceil(max(surface.radius, 1.0))) + 0.5).astype(np.float32)
+        for side, degrees in zip((1.0, -1.0), self.view.opening, strict=True):
+            edge = math.radians(degrees)
+            away = np.abs(np.remainder(self.phi - edge + math.pi, 2.0 * math.pi) - math.pi)
+            ray = 0 if surface.turned else int(np.argmin(away))
+            metal = np.zeros((len(surface.z), len(r)), np.bool_)
+            for low, high in zip(surface.low, surface.high, strict=True):
+                metal |= (low[:, ray, None] <= r) & (r < high[:, ray, None])
+            column, place = np.nonzero(metal)
+            z = surface.z[column]
+            group = _Group(self._next, len(column), edge=side * (edge or 1e-9), z=z)
+            up, near = np.array([math.sin(edge)], np.float32), np.array([math.cos(edge)], np.float32)
+            self._put(group, z[:, None], r[place][:, None], up, near)
+
+    def _put(
+        self, group: _Group, z: Floats, r: Floats, up: Floats, near: Floats, *, masked: bool = False
+    ) -> None:
+        """Keep the nearest point of each pixel: depth and number in one figure, of which the greatest stays.
+
+        ``z``, ``r`` and sine and cosine of phi fit together (n, k); the points count along k first. Some are
+        away where it is ``masked``.
+        """
+        across = max(r.shape[1], up.shape[-1])
+        block = max(_BLOCK // across, 1)
+        for start in range(0, len(z), block):
+            rows = slice(start, start + block)
+            turned = (up[rows], near[rows]) if up.ndim == 2 else (up, near)
+            self._put_block(group.first + start * across, z[rows], r[rows], *turned, masked=masked)
+        self.groups.append(group)
+        self._next += group.points
+
+    def _put_block(self, first: int, z: Floats, r: Floats, up: Floats, near: Floats, *, masked: bool) -> None:
+        right = r * (near * -self.sin)
+        right += z * self.cos + np.float32(0.5 * self.width + 1.0)
+        np.clip(right, 0.0, self.width + 1.0, out=right)
+        np.floor(right, out=right)
+        pixel = r * -up
+        pixel += np.float32(0.5 * self.height + 1.0)
+        np.clip(pixel, 0.0, self.height + 1.0, out=pixel)
+        np.floor(pixel, out=pixel)
+        pixel *= np.float32(self.width + 2)
+        pixel += right
+        depth = r * (near * (self.cos * np.float32(_DEPTH)))
+        depth += (z * self.sin + np.float32(_FAR)) * np.float32(_DEPTH)
+        if masked:
+            depth *= r > 0.0
+        keys = depth.astype(np.int64)
+        keys <<= _POINT
+        keys += np.arange(first, first + keys.size).reshape(keys.shape)
+        np.maximum.at(self.nearest, pixel.astype(np.intp).ravel(), keys.ravel())
+
+    # --- the nearest ones lit
+
+    def image(self, table: Image, ground: int, hits: Spans) -> Image:
+        """The picture; ``table`` (colours, shades)."""
+        inside = self.nearest.reshape(self.height + 2, self.width + 2)[1:-1, 1:-1].ravel()
+        pixel = np.flatnonzero(inside > _NUMBER)
+        point = inside[pixel] & _NUMBER
+        order = np.zeros(len(point), np.int16)
+        bounds = np.array([group.first for group in self.groups[1:]], np.int64)
+        which = np.searchsorted(bounds, point, side="right").astype(np.int8)
+        for number, group in enumerate(self.groups):
+            own = np.flatnonzero(which == number)
+            if len(own):
+                order[own] = self._lit(group, point[own] - group.first, hits)
+        codes = np.full(inside.shape, -1, np.int16)
+        codes[pixel] = order
+        codes = _without_specks(codes.reshape(self.height, self.width))
+        return np.append(table.ravel(), np.uint32(ground))[np.maximum(codes, -1)]
+
+    def _lit(self, group: _Group, index: Numbers, hits: Spans) -> Codes:
+        """Places (n,) in the table of colours by shades, of points of a group."""
+        if group.wall is not None:
+            shade, z, colour = self._wall_light(group, group.wall, index)
+        elif group.patch is not None:
+            shade, z, colour = self._patch_light(group, group.patch, index)
+        else:
+            assert group.z is not None
+            shade, z, colour = self._section_light(group.edge, len(index)), group.z[index], _SECTION
+        level: Codes = np.clip(shade * np.float32(_SHADES), 0, _SHADES - 1).astype(np.int16)
+        away = shade < 0.0
+        if hits:
+            at = z / self.view.scale + self.view.centre
+            hit = np.any([(at >= low) & (at <= high) for low, high in hits], axis=0)
+            level += np.where(hit, _HIT * _SHADES, colour * _SHADES).astype(np.int16)
+        else:
+            level += np.int16(colour * _SHADES)
+        level[away] = _AWAY
+        return level
+
+    def _wall_light(self, group: _Group, wall: Wall, index: Numbers) -> tuple[Floats, Floats, int]:
+        row, ray = np.divmod(index, group.rays.stop - group.rays.start)
+        ray += group.rays.start
+        if group.columns is not None:
+            row = group.columns[row]
+        across, way, along = _normals(wall, row, ray, self.surface)
+        if wall.inside:
+            across, way, along = -across, -way, -along
+        shade = self._shade(2 * ray, across, way, along)
+        return shade, self.surface.z[wall.columns[row]], _BORE if wall.bore else _OUTSIDE
+
+    def _patch_light(self, group: _Group, patch: Patch, index: Numbers) -> tuple[Floats, Floats, int]:
+        if patch.ray is None:
+            index, ray = np.divmod(index, group.rays.stop - group.rays.start)
+            halves = 2 * (ray + group.rays.start)
+        else:
+            halves = patch.ray[index]
+        shade = self._shade(halves, patch.across[index], patch.way[index], patch.along[index])
+        return shade, patch.z[index], _OUTSIDE
+
+    def _section_light(self, edge: float, count: int) -> Floats:
+        phi, side = abs(edge), math.copysign(1.0, edge)
+        towards, above = np.array([-side * math.sin(phi)]), np.array([side * math.cos(phi)])
+        shade = self._light(towards.astype(np.float32), above.astype(np.float32), np.zeros(1, np.float32))
+        return np.repeat(np.maximum(shade, np.float32(0.5)), count)
+
+    def _shade(self, halves: IntArray, across: Floats, way: Floats, along: Floats) -> Floats:
+        """How light normals along r, the part's angle and Z are. Phi counts against the part's angle."""
+        near, up = self.near[halves], self.up[halves]
+        return self._light(across * near + way * up, across * up - way * near, along)
+
+    def _light(self, towards: Floats, above: Floats, along: Floats) -> Floats:
+        """How light normals towards the side's viewer, upwards and along Z are: 0 … 1; -1: they look away."""
+        right = along * self.cos - towards * self.sin
+        towards = along * self.sin + towards * self.cos
+        lit = right * _LIGHT[0] + above * _LIGHT[1] + towards * _LIGHT[2]
+        np.maximum(lit, 0.0, out=lit)
+        glint = right * _BISECTOR[0] + above * _BISECTOR[1] + towards * _BISECTOR[2]
+        np.maximum(glint, 0.0, out=glint)
+        for _ in range(4):
+            glint *= glint
+        shade = np.asarray(0.2 + 0.5 * lit + 0.28 * glint, np.float32)
+        shade[towards < -0.05] = -1.0
+        return shade
+
+
+def _runs(wanted: Bools) -> list[slice]:
+    """The runs of neighbours that are wanted."""
+    bounds = np.flatnonzero(np.diff(wanted, prepend=False, append=False)).tolist()
+    return [slice(a, b) for a, b in zip(bounds[::2], bounds[1::2], strict=True)]
+
+
+def _normals(wall: Wall, row: IntArray, ray: IntArray, surface: Surface) -> tuple[Floats, Floats, Floats]:
+    """Normals of a wall along r, the angle and Z, from the smoother neighbour on either side."""
+    r, here, last = wall.r, (0 if surface.turned else ray), len(wall.r) - 1
+    own = r[row, here]
+    along = -_smoother(own - r[np.maximum(row - 1, 0), here], r[np.minimum(row + 1, last), here] - own)
+    along = np.clip(along, -50.0, 50.0) / np.float32(surface.step)
+    if surface.turned:
+        size = 1.0 / np.sqrt(1.0 + along * along)
+        return size, np.zeros_like(size), along * size
+    before, behind = r[row, ray - 1], r[row, (ray + 1) % surface.rays]
+    ring = np.maximum(own, np.float32(1e-3)) * np.float32(2.0 * math.pi / surface.rays)
+    way = -np.clip(_smoother(own - before, behind - own), -50.0, 50.0) / ring
+    size = 1.0 / np.sqrt(1.0 + along * along + way * way)
+    return size, way * size, along * size
+
+
+def _smoother(before: Floats, behind: Floats) -> Floats:
+    return np.where(np.abs(before) < np.abs(behind), before, behind)
+
+
+def _without_specks(codes: Codes) -> Codes:
+    """Points that look away, which show at a rim, give way to a neighbour; single points do so too.
+
+    Of three across, then of three upright the middle one stays.
+    """
+    for turned in (codes, codes[:, ::-1], codes.T, codes.T[:, ::-1]):
+        away = turned[:, :-1] == _AWAY
+        np.copyto(turned[:, :-1], turned[:, 1:], where=away)
+    for turned in (codes.T, codes):
+        before, own, behind = turned[:-2], turned[1:-1], turned[2:]
+        low, high = np.minimum(before, behind), np.maximum(before, behind)
+        turned[1:-1] = np.maximum(low, np.minimum(high, own))
+    return codes
+
+
+def _shades(colours: Colours) -> Image:
+    """(colours, shades) of 0xAARRGGBB: dark at 0, the colour itself at .7, light beyond."""
+    share = np.linspace(0.0, 1.0, _SHADES)
+    rows = []
+    for colour in colours[:4]:
+        rgb = np.array([(colour >> 16) & 255, (colour >> 8) & 255, colour & 255])[:, None]
+        dark = rgb * np.minimum(share / 0.7, 1.0)
+        light = dark + (255.0 - dark) * np.maximum((share - 0.7) / 0.3, 0.0) * 0.9
+        red, green, blue = np.clip(light, 0, 255).astype(np.uint32)
+        rows.append((np.uint32(0xFF) << 24) | (red << 16) | (green << 8) | blue)
+    return np.array(rows, np.uint32)

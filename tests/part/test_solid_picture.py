@@ -1,0 +1,216 @@
+"""The solid picture: what is seen where, by areas and places worked out from the part, not from pictures."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from core.part.milled_part import MilledPart
+from core.part.polar_field import turned_field
+from core.part.solid_picture import Colours, Image, SolidPicture
+from core.part.solid_view import SolidView, fitted
+from core.part.surface_points import Solid, solid_of, turned_solid
+
+WIDTH, HEIGHT = 420, 300
+RED = ((-1e9, 1e9),)
+
+
+def turned(*steps: tuple[float, float], bore: float = 0.0, deep: float = 0.0) -> Solid:
+    """A shaft of ``steps`` (length, radius) from Z0 backwards, bored ``deep`` from its face."""
+    parts = [(round(length / 0.01), radius) for length, radius in steps]
+    high = np.concatenate([np.full(count, radius) for count, radius in parts[::-1]])
+    edges = np.linspace(-0.01 * len(high), 0.0, len(high) + 1)
+    low = np.where(0.5 * (edges[1:] + edges[:-1]) > -deep, bore, 0.0)
+    return turned_solid(edges, low[None], high[None])
+
+
+def milled(length: float = 20.0, radius: float = 10.0) -> MilledPart:
+    count = round(length / 0.01)
+    edges = np.linspace(-length, 0.0, count + 1)
+    return MilledPart(turned_field(edges, np.zeros((1, count)), np.full((1, count), radius)))
+
+
+def draw(solid: Solid, view: SolidView, hits: tuple[tuple[float, float], ...] = ()) -> Image:
+    return SolidPicture().draw(solid, view, WIDTH, HEIGHT, hits=hits)
+
+
+def red(image: Image) -> np.ndarray:
+    """Where it is painted red; glints are paler."""
+    return ((image >> 16) & 255) > 1.3 * ((image >> 8) & 255)
+
+
+def orange(image: Image) -> np.ndarray:
+    """Where a cut face is: its green lies between, twice its blue nearly."""
+    r, g, b = (((image >> shift) & 255).astype(int) for shift in (16, 8, 0))
+    return (r > 1.4 * g) & (r < 2.0 * g) & (g > 1.6 * b)
+
+
+# --- places and areas
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 25.0, -25.0, 60.0, -80.0, 89.0])
+def test_outline_of_a_cylinder(azimuth: float) -> None:
+    image = draw(turned((30.0, 8.0)), SolidView(azimuth=azimuth, scale=7.0, centre=-15.0))
+    cos, sin = math.cos(math.radians(azimuth)), abs(math.sin(math.radians(azimuth)))
+    area = 30.0 * 16.0 * cos + math.pi * 64.0 * sin
+    assert np.count_nonzero(image) == pytest.approx(area * 49.0, rel=0.02)
+    rows, columns = np.nonzero(image)
+    assert np.ptp(rows) + 1 == pytest.approx(16.0 * 7.0, abs=2)
+    assert np.ptp(columns) + 1 == pytest.approx((30.0 * cos + 16.0 * sin) * 7.0, abs=2)
+
+
+@pytest.mark.parametrize(
+    ("azimuth", "least", "most"),
+    [(40.0, 0.98, 1.02), (0.0, 0.98, 1.02), (-40.0, 0.60, 0.80)],
+)
+def test_flange_hides_the_pin_and_the_pin_the_flange(azimuth: float, least: float, most: float) -> None:
+    """From its face the flange is seen whole; from behind half as thick a pin stands before its middle.
+
+    That takes half the strip of 10 mm across its ellipse, and half the pin's own ellipse: 80 of 278 mm².
+    """
+    solid = turned((5.0, 10.0), (15.0, 5.0))
+    image = draw(solid, SolidView(azimuth=azimuth, scale=9.0, centre=-10.0), hits=((-5.0, 1.0),))
+    cos, sin = math.cos(math.radians(azimuth)), abs(math.sin(math.radians(azimuth)))
+    flange = (5.0 * 20.0 * cos + math.pi * 100.0 * sin) * 81.0
+    assert least * flange < np.count_nonzero(red(image)) < most * flange
+
+
+def test_half_section_shows_what_is_metal() -> None:
+    solid = turned((20.0, 9.0), (10.0, 6.0), bore=4.0, deep=12.0)
+    image = draw(solid, SolidView(azimuth=0.0, scale=9.0, centre=-15.0, opening=(-90.0, 90.0)))
+    area = 2.0 * (20.0 * 9.0 + 10.0 * 6.0 - 12.0 * 4.0)
+    assert np.count_nonzero(orange(image)) == pytest.approx(area * 81.0, rel=0.02)
+
+
+def test_nothing_is_cut_open_that_was_not_asked_for() -> None:
+    image = draw(turned((20.0, 9.0), bore=4.0, deep=12.0), SolidView(scale=9.0, centre=-10.0))
+    assert not orange(image).any()
+    assert not red(image).any()
+
+
+def test_bore_is_seen_from_the_face_and_not_from_behind() -> None:
+    solid = turned((20.0, 9.0), bore=5.0, deep=12.0)
+    bore = Colours(outside=0x0000FF, bore=0x00FF00)
+
+    def green(azimuth: float) -> int:
+        view = SolidView(azimuth=azimuth, scale=9.0, centre=-10.0)
+        image = SolidPicture(bore).draw(solid, view, WIDTH, HEIGHT)
+        return int(np.count_nonzero(((image >> 8) & 255) > (image & 255)))
+
+    # Of the mouth's ellipse the bottom of the bore takes a part: it is 12 deep and 10 wide.
+    mouth = math.pi * 25.0 * math.sin(math.radians(30.0)) * 81.0
+    assert 0.8 * mouth < green(30.0) < 1.05 * mouth
+    assert green(-30.0) == 0
+    assert green(0.0) == 0
+
+
+# --- turned by hand and by C
+
+
+def hole_at(angle: float, end: float = 2.0) -> Solid:
+    part = milled()
+    part.mill_radial(np.array([[12.0, -10.0, angle], [end, -10.0, angle]]), 2.0)
+    return solid_of(part.field)
+
+
+@pytest.mark.parametrize(
+    ("angle", "tilt", "roll", "place"),
+    [
+        (180.0, 0.0, 0.0, "middle"),  # lathe X+ looks at the operator
+        (90.0, 90.0, 0.0, "middle"),  # from above the part's Y
+        (0.0, 90.0, 0.0, "top"),  # and lathe X- is the upper edge, as in the path view
+        (0.0, 0.0, 180.0, "middle"),  # C turns X to where the operator stands
+        (90.0, 0.0, 90.0, "middle"),
+        (90.0, 0.0, 0.0, "top"),
+        (0.0, 0.0, 0.0, "hidden"),
+    ],
+)
+def test_hole_stands_where_c_and_tilt_bring_it(angle: float, tilt: float, roll: float, place: str) -> None:
+    view = SolidView(azimuth=0.0, tilt=tilt, roll=roll, scale=12.0, centre=-10.0)
+    plain = draw(solid_of(milled().field), view)
+    blind, through = draw(hole_at(angle), view), draw(hole_at(angle, -12.0), view)
+    gone = (plain != 0) & (blind == 0)
+    assert bool(through[HEIGHT // 2, WIDTH // 2] == 0) is (place != "top")
+    assert bool(np.count_nonzero(gone) > 20) is (place == "top")
+    assert bool(np.count_nonzero(plain != blind) == 0) is (place == "hidden")
+    if place == "top":
+        assert np.nonzero(gone)[0].max() < HEIGHT // 2
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 35.0, -50.0])
+@pytest.mark.parametrize("roll", [0.0, 77.0])
+def test_point_on_the_screen_is_where_the_picture_has_it(azimuth: float, roll: float) -> None:
+    """The middle of a blind hole that looks at the viewer as far as it can."""
+    view = SolidView(azimuth=azimuth, tilt=20.0, roll=roll, scale=11.0, centre=-9.0)
+    angle = 180.0 - 20.0 - roll
+    plain, drilled = (draw(solid, view) for solid in (solid_of(milled().field), hole_at(angle)))
+    rows, columns = np.nonzero(plain != drilled)
+    rim = view.on_screen(np.array([[10.0, -10.0, angle]]), WIDTH, HEIGHT)[0]
+    assert rows.mean() == pytest.approx(rim[1], abs=2.0)
+    assert columns.mean() == pytest.approx(rim[0], abs=8.0)
+
+
+def test_field_that_no_mill_has_touched_looks_as_the_turned_part() -> None:
+    view = SolidView(azimuth=30.0, scale=9.0, centre=-10.0)
+    one, other = draw(turned((20.0, 10.0)), view), draw(solid_of(milled().field), view)
+    assert np.count_nonzero((one == 0) != (other == 0)) < 0.006 * np.count_nonzero(one)
+    both = (one != 0) & (other != 0)
+    level = [((image[both] >> 8) & 255).astype(int) for image in (one, other)]
+    assert np.percentile(np.abs(level[0] - level[1]), 99) <= 4
+
+
+def test_flat_is_lit_evenly_and_the_round_is_not() -> None:
+    part = milled()
+    part.mill_radial(np.array([[8.0, 5.0, 160.0], [8.0, -30.0, 160.0]]), 7.0)
+    image = draw(solid_of(part.field), SolidView(azimuth=0.0, tilt=20.0, scale=11.0, centre=-10.0))
+    rows = ((image[:, WIDTH // 2] >> 8) & 255).astype(int)
+    middle = HEIGHT // 2
+    assert np.ptp(rows[middle - 55 : middle + 55]) <= 2  # the flat is 12 wide: 66 pixels on either side
+    assert np.ptp(rows[middle + 75 : middle + 105]) > 10
+
+
+# --- what is not there
+
+
+def test_part_beside_the_picture_leaves_the_ground() -> None:
+    view = SolidView(scale=10.0, centre=200.0)
+    assert not draw(turned((20.0, 5.0)), view).any()
+    ground = SolidPicture(Colours(ground=0xFF102030)).draw(turned((20.0, 5.0)), view, WIDTH, HEIGHT)
+    assert np.all(ground == 0xFF102030)
+
+
+def test_part_larger_than_the_picture_fills_it() -> None:
+    image = draw(turned((60.0, 30.0)), SolidView(azimuth=0.0, scale=40.0, centre=-30.0))
+    assert np.count_nonzero(image) == WIDTH * HEIGHT
+
+
+def test_hits_are_red_where_they_are_and_nowhere_else() -> None:
+    solid, view = turned((20.0, 5.0)), SolidView(azimuth=0.0, scale=10.0, centre=-10.0)
+    image = draw(solid, view, hits=((-12.0, -8.0),))
+    columns = np.flatnonzero(red(image).any(axis=0))
+    assert columns[0] == pytest.approx(WIDTH / 2 - 20, abs=2)
+    assert columns[-1] == pytest.approx(WIDTH / 2 + 20, abs=2)
+    assert red(draw(solid, view, RED))[image != 0].mean() > 0.9
+
+
+def test_picture_changes_with_the_version_of_the_metal() -> None:
+    part, picture = milled(), SolidPicture()
+    view = SolidView(azimuth=30.0, scale=9.0, centre=-10.0)
+    before = picture.draw(solid_of(part.field), view, WIDTH, HEIGHT, version=part.field.changes)
+    part.mill_axial(np.array([[0.0, 0.0, -4.0]]), 6.0)
+    after = picture.draw(solid_of(part.field), view, WIDTH, HEIGHT, version=part.field.changes)
+    assert np.count_nonzero(before != after) > 1000
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 30.0, 90.0])
+def test_fitted_part_lies_within_the_picture(azimuth: float) -> None:
+    scale, centre = fitted(-40.0, 2.0, 9.0, WIDTH, HEIGHT, azimuth)
+    image = draw(turned((42.0, 9.0)), SolidView(azimuth=azimuth, scale=scale, centre=centre - 2.0))
+    rows, columns = np.nonzero(image)
+    assert rows.min() > 0
+    assert rows.max() < HEIGHT - 1
+    assert columns.min() > 0
+    assert columns.max() < WIDTH - 1
+    assert max(np.ptp(rows) / HEIGHT, np.ptp(columns) / WIDTH) > 0.9
