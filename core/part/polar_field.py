@@ -81,8 +81,13 @@ class PolarField:
     @property
     def volume(self) -> float:
         """mm³ of metal, by the middles of columns and rays."""
+        return float(self.volumes.sum())
+
+    @property
+    def volumes(self) -> FloatArray:
+        """mm³ of metal of each column."""
         area = np.einsum("lcr,lcr->c", self.high, self.high) - np.einsum("lcr,lcr->c", self.low, self.low)
-        return float(area @ self.widths) * math.pi / len(self.angles)
+        return np.asarray(area * self.widths * (math.pi / len(self.angles)))
 
     @property
     def outermost(self) -> FloatArray:

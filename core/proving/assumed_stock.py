@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from core.interpreter.elementary_blocks import Kind
 from core.part.stock import Stock
-from core.proving.tip_moves import TipMove
+from core.proving.tip_moves import QUICK, LiveStep, TipMove
 
 _MORE = 0.25  # mm of radius that a bar is larger
 _BEHIND = 10.0  # mm of bar behind the last cut
@@ -18,7 +18,11 @@ _WALL = 2.0  # mm around a bore
 
 
 def assumed_stock(
-    outside: Sequence[TipMove], bore: Sequence[TipMove], face: float | None, drill: float
+    outside: Sequence[TipMove],
+    bore: Sequence[TipMove],
+    face: float | None,
+    drill: float,
+    live: Sequence[LiveStep] = (),
 ) -> Stock | None:
     """The bar for the moves of outside tools; a tube where tools of a bore begin without a drill before them.
 
@@ -27,10 +31,13 @@ def assumed_stock(
     """
     cuts = [move for move in (*outside, *bore) if not move.quick]
     front = 0.0 if face is None else face
-    back = min((z for move in cuts for z, _ in move.points), default=front)
-    if back > front:
+    milled = [step for step in live if not step.block.rapid and step.block.feed < QUICK]
+    depths = [z for move in cuts for z, _ in move.points] + [b.reach()[2] + dz for b, (_, dz) in milled]
+    back = min(depths, default=front)
+    if back > front or not depths:
         return None
-    radius = max(_bar_radius(outside, bore, front), drill)
+    reach = max((_live_reach(step) for step in milled), default=0.0)
+    radius = max(_bar_radius(outside, bore, front) if cuts else reach, drill)
     hole = 0.0 if drill else min(_bore_radius(bore, front), radius - _SAME)
     ends = back - _BEHIND, front
     inner = tuple((z, hole) for z in ends) if hole > 0.0 else ()
@@ -54,6 +61,14 @@ def _bar_radius(outside: Sequence[TipMove], bore: Sequence[TipMove], front: floa
     passed = [abs(r) for m in outside if m.quick for z, r in m.points if z < front - _SAME]
     beside = [r for r in passed if r >= cut - _SAME]
     return max(min([cut + _MORE, *beside]), widest + _WALL if widest else 0.0, _LEAST)
+
+
+def _live_reach(step: LiveStep) -> float:
+    """A little less than where a live tool's cut begins or ends, the further out."""
+    low, high, _, _ = step.block.reach()
+    return (
+        max(abs(low + step.place[0]), abs(high + step.place[0]), abs(step.block.x0 + step.place[0])) - _MORE
+    )
 
 
 def _faced(feeds: Iterable[TipMove], front: float) -> float:

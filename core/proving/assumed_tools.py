@@ -13,13 +13,14 @@ from itertools import pairwise
 
 from core.interpreter.elementary_blocks import Kind
 from core.part.tool_shape import ToolKind, ToolShape
-from core.proving.tip_moves import TipMove
+from core.proving.tip_moves import QUICK, LiveStep, TipMove
 
 _ON_AXIS = 0.05  # mm; a tool that feeds along Z no further off it is a drill
 _SQUARE = 0.02  # mm of Z, in a plunge
 _GROOVE = 2.0  # mm; width of a grooving or parting tool that nobody has given
 _USUAL, _SMALLEST, _ALLOWANCE = 6.35, 1.0, 0.5  # mm; diameter of a drill that nobody has given
 _SLIM = "VNMG160404"  # reaches into contours that a stouter insert would not: a doubt speaks for the program
+_MILL = 3.175  # mm; diameter of a mill that nobody has given
 _WIDE = 1.6  # widths; what feeds further along Z than that turns
 
 # Words of shop comments, the more telling first.
@@ -48,7 +49,15 @@ class ToolUse:
     comments: list[str] = field(default_factory=list)
     moves: list[TipMove] = field(default_factory=list)
     pushes_bar: bool = False  # it fed while the collet was open
-    mills: bool = False  # with C held, or in a plane of the virtual mill
+    live: list[LiveStep] = field(default_factory=list)  # with C held, or in a plane of the virtual mill
+
+    @property
+    def across(self) -> bool:
+        """Whether a live tool goes into the part along X, and not along Z."""
+        feeds = [b for b, _ in self.live if b.plane is None and not b.rapid and b.feed < QUICK]
+        along = sum(max(b.z0 - b.z, 0.0) for b in feeds)
+        return sum(max(abs(b.x0) - abs(b.x), 0.0) for b in feeds) > along
+
     nose_radius: float = 0.0
 
 
@@ -86,7 +95,7 @@ def _kind(use: ToolUse) -> tuple[ToolKind | None, str]:
             return kind, "by its comment"
     if use.pushes_bar:
         return None, "by its moves"
-    if use.mills:
+    if use.live:
         return ToolKind.END_MILL, "by its moves"
     return _by_moves(use.moves), "by its moves"
 
@@ -150,10 +159,9 @@ def _shape(kind: ToolKind, use: ToolUse) -> ToolShape | None:
     if kind is ToolKind.THREADING:
         return ToolShape(kind, tip=6 if in_bore(use.moves) is not rear else 8, nose_radius=nose, rear=rear)
     diameter = _diameter(" ".join(use.comments))
-    if kind is ToolKind.END_MILL and not diameter:
-        return None
-    across = use.mills and not _on_axis(use.moves)
-    return ToolShape(kind, tip=8 if across else 0, diameter=diameter, point=118.0)
+    if use.live and not _on_axis(use.moves):
+        return ToolShape(kind, tip=8 if use.across else 7, diameter=diameter or _MILL, point=118.0)
+    return ToolShape(kind, diameter=diameter, point=118.0)
 
 
 def _rear(moves: Sequence[TipMove]) -> bool:
@@ -186,4 +194,5 @@ def _diameter(comment: str) -> float:
 def _names(kind: ToolKind, shape: ToolShape | None) -> str:
     name = {ToolKind.END_MILL: "an end mill"}.get(kind, f"a {kind.replace('-', ' ')} tool")
     name = name.replace("drill tool", "drill").replace("reamer tool", "reamer").replace("tap tool", "tap")
-    return name if shape is not None else f"{name} of unknown diameter, which cuts nothing here"
+    size = f", {shape.diameter / 25.4:.3f} in" if shape is not None and shape.diameter else ""
+    return f"{name}{size}"

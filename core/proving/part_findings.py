@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import pairwise
 
 from core.interpreter.elementary_blocks import Kind
+from core.interpreter.modal_state import Modal
 from core.language.diagnostics import Diagnostic
 from core.part.cutter import Cutter
+from core.part.polar_field import Taken
 from core.part.stock import Stock
 from core.part.swept_edge import Point
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import NOTHING, Cut, Piece, TurnedPart
+from core.proving.mill_moves import MillMove
 from core.proving.part_checks import CHECKS
 from core.proving.tip_moves import TipMove
 
@@ -121,6 +125,14 @@ class PartFindings:
                 "drill-too-deep", move, f"T{tool} goes {move.modal.length_text(deep)} deep; it cuts {length}."
             )
 
+    def milled(self, move: MillMove, met: Taken, shape: ToolShape, modal: Modal) -> None:
+        """A live tool has moved."""
+        if move.quick and met.volume > _RAPID * math.pi * (shape.diameter / 2.0) ** 2:
+            where = f"Z {modal.length_text(met.front)} … {modal.length_text(met.back)}"
+            self._tell(
+                "rapid-into-stock", move.line, move.n, f"A rapid of a live tool goes into metal at {where}."
+            )
+
     def parted(self, move: TipMove, piece: Piece) -> None:
         """A piece has come off."""
         if not piece.outside:
@@ -132,12 +144,14 @@ class PartFindings:
             self._add("part-off-unsupported", move, text)
 
     def _add(self, check: str, move: TipMove, text: str) -> None:
-        if len(self._found) >= _MOST or (check, move.line) in self._found:
-            return
-        entry = CHECKS[check]
-        self._found[check, move.line] = Diagnostic(
-            move.line, 0, entry.severity, check, text, entry.remedy, check=check, n=move.n
-        )
+        self._tell(check, move.line, move.n, text)
+
+    def _tell(self, check: str, line: int, n: int, text: str) -> None:
+        if len(self._found) < _MOST and (check, line) not in self._found:
+            entry = CHECKS[check]
+            self._found[check, line] = Diagnostic(
+                line, 0, entry.severity, check, text, entry.remedy, check=check, n=n
+            )
 
 
 def part_depth(move: TipMove, stock: Stock | None) -> float:

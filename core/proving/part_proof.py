@@ -22,11 +22,13 @@ from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import Piece, TurnedPart
 from core.proving.assumed_stock import assumed_stock
 from core.proving.assumed_tools import Assumed, ToolUse, assumed_tool
+from core.proving.mill_moves import mill_move
+from core.proving.milling import Milling
 from core.proving.part_findings import PartFindings
 from core.proving.program_timeline import MotionSpan, Part, RestSpan
 from core.proving.proof_report import Report, in_order
 from core.proving.prove_program import Progress, prove
-from core.proving.tip_moves import Step, Steps, TipMove
+from core.proving.tip_moves import LiveStep, Step, Steps, TipMove
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +109,9 @@ class Tools:
         self._setting = setting
         self._gather(steps)
         self.assumed: dict[int, Assumed] = {
-            n: assumed_tool(use) for n, use in self.uses.items() if n not in setting.shapes and use.moves
+            n: assumed_tool(use)
+            for n, use in self.uses.items()
+            if n not in setting.shapes and (use.moves or use.live)
         }
         self._give_drills_a_size()
 
@@ -120,17 +124,18 @@ class Tools:
                 use.moves.append(step)
                 use.pushes_bar = use.pushes_bar or (is_open and not step.quick)
                 cut = cut or not (step.quick or is_open or self._stop_to_come(use))
+            elif isinstance(step, LiveStep):
+                use.live.append(step)
+                cut = True
             elif isinstance(step.action, ToolChange):
                 use = self._use(step.action.tool)
                 use.comments.append(step.modal.comment if step.modal.comment != comment else "")
-            elif step.action is None:
-                use.mills = True
             elif isinstance(step.action, Collet):
                 is_open = not step.action.closed
                 self.feeds_first = self.feeds_first or (is_open and not cut)
                 if not is_open and use.pushes_bar and self.fed_at is None:
                     self.fed_at = place[0]
-            comment = step.modal.comment
+            comment = (step.block if isinstance(step, LiveStep) else step).modal.comment
 
     def _use(self, number: int) -> ToolUse:
         nose = self._setting.nose_radii.get(number, 0.0)
@@ -179,8 +184,9 @@ class Tools:
             shape = self.shape(number)
             if shape is not None:
                 (outside if _side(shape) is Side.OUTSIDE else bore).extend(use.moves)
+        live = [step for use in self.uses.values() for step in use.live]
         drills = [s.diameter for s in map(self.shape, self.uses) if s is not None and s.turns_itself]
-        return assumed_stock(outside, bore, self.fed_at, max(drills, default=0.0))
+        return assumed_stock(outside, bore, self.fed_at, max(drills, default=0.0), live)
 
 
 def _side(shape: ToolShape) -> Side:
@@ -206,6 +212,7 @@ class Making:
         self._last: Piece | None = None  # the last piece that a collet let go or a parting tool cut off
         self._milled = False
         self.findings = PartFindings(tools.shape, stock)
+        self.milling: Milling | None = None  # from the first cut of a live tool on
         self.part = TurnedPart(stock) if stock is not None and not tools.feeds_first else None
 
     def see(self, step: Step) -> None:
@@ -216,13 +223,14 @@ class Making:
             if self.part is not None and not self._is_open:
                 self._move(step, self.part)
             return
+        if isinstance(step, LiveStep):
+            self._live(step)
+            return
         match step.action:
             case ToolChange(tool=tool):
                 self._tool = tool
             case Collet(closed=closed):
                 self._clamp(closed)
-            case None:
-                self._milled = True
             case _:
                 pass
 
@@ -236,6 +244,18 @@ class Making:
             self.part = TurnedPart(self._stock)
         self._is_open = False
 
+    def _live(self, step: LiveStep) -> None:
+        shape = self._tools.shape(self._tool)
+        if self.part is None or self._is_open or shape is None or not shape.diameter:
+            return
+        move = mill_move(step.block, step.place, shape)
+        if move is None:
+            return
+        if self.milling is None:
+            self.milling = Milling(self.part)
+        self._milled = True
+        self.findings.milled(move, self.milling.cut(move, shape), shape, step.block.modal)
+
     def _cutter(self) -> Cutter | None:
         if self._tool not in self._cutters:
             self._cutters[self._tool] = self._tools.cutter(self._tool)
@@ -247,6 +267,8 @@ class Making:
             return
         before = len(part.pieces)
         self.findings.look(move, cutter, part, self._tool)
+        if self.milling is not None:
+            part.pieces[before:] = [self.milling.fallen(piece) for piece in part.pieces[before:]]
         for piece in part.pieces[before:]:
             self.findings.parted(move, piece)
 
@@ -254,15 +276,20 @@ class Making:
         part = self.part
         if part is None:
             return
+        pieces = part.pieces
         self._removed += part.removed
-        self._pieces += part.pieces
-        if part.removed:
-            self._last = part.pieces[-1] if part.pieces else part.rest()
-        self.part = None
+        if self.milling is not None:
+            self._removed += self.milling.removed
+        self._pieces += pieces
+        if part.removed or self.milling is not None:
+            self._last = pieces[-1] if pieces else part.rest()
+        self.part = self.milling = None
 
     def report(self) -> PartReport:
         """What became of the stock."""
         left = self.part.volume if self.part is not None else 0.0
+        if self.milling is not None:
+            left = self.milling.left
         self._finish()
         stock = self._stock
         assumed = [each.words for _, each in sorted(self._tools.assumed.items())]

@@ -48,8 +48,19 @@ class TipMove(NamedTuple):
         return self.length / self.speed if self.speed else 0.0
 
 
-Step = TipMove | Block
-"""What the part sees of a program: a move of X and Z, or a block that does something else."""
+Place = tuple[float, float]
+"""What brings X and Z of a block to its place from part zero, mm."""
+
+
+class LiveStep(NamedTuple):
+    """A block that moves with C held, or in a plane of the virtual mill, and where part zero is for it."""
+
+    block: Block
+    place: Place
+
+
+Step = TipMove | LiveStep | Block
+"""What the part sees of a program: a move of X and Z, one of a live tool, or a block that does not move."""
 
 
 class Steps:
@@ -66,8 +77,9 @@ class Steps:
         """The steps of the next blocks."""
         if isinstance(blocks, Series):
             self._moved = True
-            yield from self._of_series(blocks) if not blocks.pattern.modal.c_locked else blocks
-            return
+            if not blocks.pattern.modal.c_locked:
+                yield from self._of_series(blocks)
+                return
         for block in blocks:
             if block.action is not None:
                 self._act(block)
@@ -75,8 +87,8 @@ class Steps:
             elif block.kind in _TURNED and block.travel is None and not block.modal.c_locked:
                 self._moved = True
                 yield _move(block, block.n, block.line, tuple(_points(block, *self._part_zero(block))))
-            else:
-                yield block
+            elif block.travel is None:
+                yield LiveStep(block, self._part_zero(block))
 
     def _act(self, block: Block) -> None:
         modal = block.modal
@@ -86,8 +98,8 @@ class Steps:
         elif isinstance(block.action, Preset) and not self._moved:
             self._zero = modal.preset_x, modal.preset_z
 
-    def _part_zero(self, block: Block) -> tuple[float, float]:
-        """What brings X and Z of a block to its place from part zero: work shift, preset, zero offset."""
+    def _part_zero(self, block: Block) -> Place:
+        """Work shift, preset and zero offset together, without what has only said where zero is."""
         modal = block.modal
         return (
             block.offset_x - modal.tool_x - self._zero[0],

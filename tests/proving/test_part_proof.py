@@ -171,7 +171,7 @@ def test_a_bar_that_is_fed_begins_anew_at_its_stop() -> None:
 def test_a_comment_says_more_than_the_moves() -> None:
     drilled = "T7(1/4 DRILL)\nX[0]Z[.1]\nG95F[.004]Z[-.5]\nG94F[300]Z[1]"
     _, part = proved(text(drilled), bar(20.0, 0.0, -40.0), {})
-    assert part.assumed == ("T7 is taken for a drill (by its comment)",)
+    assert part.assumed == ("T7 is taken for a drill, 0.250 in (by its comment)",)
     assert part.last is not None
     assert part.last.bore is not None
     assert part.last.bore[0][1] == pytest.approx(3.175, abs=0.001)
@@ -189,3 +189,53 @@ def test_no_false_alarm_on_a_worked_example(example: str) -> None:
     _, part = prove_with_part(source, setup, machine, PartSetting())
     assert part is not None
     assert checks(part) == []
+
+
+def test_six_flats_of_a_worked_example_have_their_volume() -> None:
+    machine = load_machine(None)
+    setup = setup_for(machine, tools={21: ToolOffset()}, secondary={})
+    source = Source("SIX", worked("plane-xc-six-flats").read_text(encoding="latin-1"))
+    _, part = prove_with_part(source, setup, machine, PartSetting())
+    assert part is not None
+    assert part.milled
+    # The mill's axis goes round a hexagon of circumradius .38465 in, .1 deep: its .125 leave a hexagon of
+    # this apothem, and at the middle of each side a segment of the bar beyond its outer side.
+    assert part.stock is not None
+    bar_r, apothem = part.stock.radius, (0.38465 * math.cos(math.pi / 6) - 0.0625) * INCH
+    outer = apothem + 0.125 * INCH
+    segment = bar_r**2 * math.acos(outer / bar_r) - outer * math.sqrt(bar_r**2 - outer**2)
+    area = math.pi * bar_r**2 - 2 * math.sqrt(3.0) * apothem**2 - 6.0 * segment
+    assert part.removed == pytest.approx(area * 0.1 * INCH, rel=5e-3)
+    assert part.left == pytest.approx(part.volume - part.removed, rel=1e-3)
+
+
+MILL = {6: ToolShape(ToolKind.END_MILL, tip=8, diameter=6.0, length=15.0)}
+SLOT = "T6\nX[.6]Z[-.4]\nM05\nM15\nM19\nG04F3\nG94F[4]X[.4]\nZ[-.8]\nX[.6]\nG94F[300]X[1]\nM16"
+
+
+@pytest.mark.parametrize(("metric", "diameter"), WAYS)
+def test_a_slot_milled_with_the_spindle_held(metric: bool, diameter: bool) -> None:
+    _, part = proved(text(SLOT, metric=metric, diameter=diameter), bar(25.4, 0.0, -60.0), MILL)
+    assert checks(part) == []
+    depth, width, length = 0.1 * INCH, 6.0, 0.4 * INCH
+    # a flat floor 2.54 under the crown of the bar: the depth at y is less by r - sqrt(r² - y²)
+    r = 12.7
+    strip = (
+        r * r * math.asin(width / 2 / r) + width / 2 * math.sqrt(r * r - width**2 / 4) - width * (r - depth)
+    )
+    assert part.removed > strip * length
+    assert part.removed < strip * (length + width)
+    _, part = proved(text(SLOT.replace("G94F[4]X", "G94F[200]X"), metric=metric, diameter=diameter),
+                     bar(25.4, 0.0, -60.0), MILL)  # fmt: skip
+    assert ("rapid-into-stock", 9) in checks(part)
+
+
+def test_what_is_parted_off_behind_a_slot_weighs_less() -> None:
+    off = SLOT + "\nM05\nM03S900\nT2\nX[.6]Z[.1]\nZ[-1.2]\nG95F[.002]X[-.01]\nG94F[300]X[.6]"
+    _, whole = proved(
+        text("T2\nX[.6]Z[.1]\nZ[-1.2]\nG95F[.002]X[-.01]\nG94F[300]X[.6]"), bar(25.4, 0.0, -60.0)
+    )
+    _, part = proved(text(off), bar(25.4, 0.0, -60.0), {**TOOLS, **MILL})
+    _, slot = proved(text(SLOT), bar(25.4, 0.0, -60.0), MILL)
+    (piece,), (full,) = part.pieces, whole.pieces
+    assert piece.volume == pytest.approx(full.volume - slot.removed, rel=1e-3)
