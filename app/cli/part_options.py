@@ -8,13 +8,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.command_errors import CommandError
+from app.cli.figures import MM_PER_INCH
 from app.cli.program_options import read_source
 
 if TYPE_CHECKING:
     from app.cli.program_options import Circumstances
+    from core.machine.machine_model import ClampingModel
+    from core.part.clamping import Clamping
     from core.part.stock import Stock
     from core.part.stock_spec import StockSpec
     from core.proving.part_proof import PartSetting
+
+
+_LONGEST = 1016.0  # mm
 
 
 def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting:
@@ -22,13 +28,34 @@ def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting
     from core.part.stock_spec import StockError
     from core.proving.part_proof import PartSetting
 
-    setting = PartSetting(nose_radii={n: tool.nose_radius for n, tool in around.setup.tools.items()})
+    setting = PartSetting(
+        nose_radii={n: tool.nose_radius for n, tool in around.setup.tools.items()},
+        clamping=_clamping(args, around.machine.clamping),
+    )
     if args.stock is None:
         return setting
     try:
         return replace(setting, stock=_stock(args, around, setting))
     except StockError as error:
         raise CommandError(f"--stock {error}") from error
+
+
+def _clamping(args: argparse.Namespace, model: ClampingModel) -> Clamping | None:
+    """Chuck or collet of the machine file, with the job's own stick-out. Raises CommandError."""
+    from core.part.clamping import Clamping
+
+    stick_out = model.stick_out if args.stick_out is None else args.stick_out * MM_PER_INCH
+    if args.stick_out is not None and not (model.diameter and 0.0 < stick_out <= _LONGEST):
+        why = (
+            "is not between 0 and 40 in"
+            if model.diameter
+            else "needs [clamping] diameter in the machine file"
+        )
+        raise CommandError(f"--stick-out {args.stick_out:g} {why}")
+    if not stick_out and not model.max_rpm:
+        return None
+    diameter = model.diameter if stick_out else 0.0
+    return Clamping(diameter, stick_out, model.jaws, model.jaw_diameter or model.diameter, model.max_rpm)
 
 
 def _stock(args: argparse.Namespace, around: Circumstances, setting: PartSetting) -> Stock | StockSpec:

@@ -32,6 +32,9 @@ def add_parser(subparsers: SubParsers) -> None:
     parser.add_argument("files", nargs="+", metavar="FILE")
     add_program_options(parser)
     add_ideal_option(parser)
+    parser.add_argument(
+        "--stick-out", type=float, metavar="IN", help="from the front of chuck or collet to Z0, inches"
+    )
     parser.add_argument("--stock", metavar="SPEC", help=f"what the part is made of: {FORMS}")
 
 

@@ -19,6 +19,7 @@ from core.machine import (
 from core.machine.driver_tables import DriverReading, tables_there
 from core.machine.machine_model import (
     Axis,
+    ClampingModel,
     InputModel,
     Interlocks,
     Machine,
@@ -112,6 +113,7 @@ def _machine(reading: Reading, added: DriverReading, kinematics: KinematicsReadi
         spindle=values.model(SpindleModel, "spindle", _SPINDLE_KEYS, rpm_min=slowest, rpm_max=fastest),
         timing=values.model(Timing, "machine", _TIMING_KEYS, collet_open=opens, collet_close=closes),
         interlocks=values.model(Interlocks, "interlocks"),
+        clamping=values.model(ClampingModel, "clamping"),
         max_feed=values.number("limits.max_feed"),
         manual_rapid=values.number("limits.manual_rapid"),
         resolution=values.number("limits.resolution"),

@@ -101,6 +101,17 @@ class Interlocks:
 
 
 @dataclass(frozen=True, slots=True)
+class ClampingModel:
+    """Chuck or collet, mm and rpm; 0: not said. ``stick_out`` is from its front to part zero."""
+
+    diameter: float = 0.0
+    stick_out: float = 0.0
+    jaws: float = 0.0  # how far they stand before the body
+    jaw_diameter: float = 0.0
+    max_rpm: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Machine:
     """The whole machine. ``axes``: slides first, then rotary axes; on a lathe X, Z, C."""
 
@@ -122,6 +133,7 @@ class Machine:
     source: str = ""  # the file it came from
     clearance: float = 0.0  # mm, how far a slide may run on after the last renewal of a jog
     inch: bool = True  # what its builder counts in
+    clamping: ClampingModel = field(default_factory=ClampingModel)
     kind: str = "lathe"  # or "mill"
     c_modulo: bool = True  # C counts 0..<360 where a language asks; else its travel is -360..+360
     c_own_drive: bool = False  # C is no second use of the spindle

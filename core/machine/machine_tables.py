@@ -108,6 +108,13 @@ INTERLOCKS = (
     Field("two_hand_start", _FLAG, default=True),
     Field("guard_stops", _FLAG, default=False),
 )
+CLAMPING = (  # 0: not said, and not checked
+    Field("diameter", _NUMBER, Unit.LENGTH, 0.0, 2000.0, default=0.0),
+    Field("stick_out", _NUMBER, Unit.LENGTH, 0.0, 2000.0, default=0.0),
+    Field("jaws", _NUMBER, Unit.LENGTH, 0.0, 500.0, default=0.0),
+    Field("jaw_diameter", _NUMBER, Unit.LENGTH, 0.0, 2000.0, default=0.0),
+    Field("max_rpm", _NUMBER, Unit.RPM, 0.0, 50000.0, default=0.0),
+)
 OUTPUT = (
     Field("at", _TEXT),
     Field("safe", _CHOICE, choices=(True, False, "keep")),
@@ -142,6 +149,7 @@ def plain_tables(drivers: Sequence[Driver]) -> tuple[tuple[str, tuple[Field, ...
         ("spindle", (*_SPINDLE, Field("driver", _CHOICE, choices=words, default="sim"))),
         ("collet", COLLET),
         ("interlocks", INTERLOCKS),
+        ("clamping", CLAMPING),
     )
 
 
@@ -149,7 +157,18 @@ def top_tables(drivers: Sequence[Driver]) -> tuple[str, ...]:
     """Every table that a file may have, in the order in which its owner is told of them."""
     own = [table for table in tables_of(drivers) if "." not in table.path]
     return (
-        *("machine", "limits", "axis", "c_axis", "spindle", "collet", "interlocks", "io", "m_codes"),
+        *(
+            "machine",
+            "limits",
+            "axis",
+            "c_axis",
+            "spindle",
+            "collet",
+            "clamping",
+            "interlocks",
+            "io",
+            "m_codes",
+        ),
         *(table.path for table in own if table.always),
         "kinematics",
         *(table.path for table in own if not table.always),
@@ -164,7 +183,7 @@ TABLES_OF_A_LATHE: dict[str, tuple[Field, ...]] = {
         Field("close_s", _NUMBER, Unit.SECONDS, 0.0, 10.0, default=0.0),
     ),
 }
-MAY_BE_MISSING = ("limits", "collet", "c_axis", "interlocks", "m_codes")
+MAY_BE_MISSING = ("limits", "collet", "clamping", "c_axis", "interlocks", "m_codes")
 
 # M codes with a meaning of their own; the machine file cannot assign them.
 FIXED_M_CODES = frozenset((0, 1, 2, 3, 4, 5, 8, 9, 12, 13, 19, 30, 31, 89, *range(91, 100)))

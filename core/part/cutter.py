@@ -69,6 +69,13 @@ class Cutter:
                 met = met.joined(_opposite(part, outline, start, end))
         return met if met.depth > _OVERLAP and met.width > _OVERLAP else NOTHING
 
+    def reaches(self, part: TurnedPart, start: Point, end: Point) -> Cut:
+        """What edges and body would meet, left where it is: the outline of a chuck."""
+        met = self._swept(part, start, end, cut=False)
+        for outline in self._body:
+            met = met.joined(self._take(part, outline, self._front(start), self._front(end), cut=False))
+        return met if met.depth > _OVERLAP and met.width > _OVERLAP else NOTHING
+
     def thread(self, part: TurnedPart, start: Point, end: Point, lead: float, turns: float) -> Cut:
         """The form of a thread in the section: the edge stands once a turn on its way.
 

@@ -39,6 +39,12 @@ CHECKS: Mapping[str, Check] = {
         "An outline comes into the contour that the machine file gives under [clamping].",
         "Let the part stick out further, or stop earlier.",
     ),
+    "spindle-overspeed": Check(
+        _ERROR,
+        "The spindle turns faster than chuck or collet may.",
+        "A commanded speed over max_rpm under [clamping] of the machine file.",
+        "Lower S, or limit G96 by G77.",
+    ),
     "larger-than-stock": Check(
         _ERROR,
         "The part is larger than its stock: a contour is cut in the air outside the bar.",

@@ -10,6 +10,7 @@ from itertools import pairwise
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.modal_state import Modal
 from core.language.diagnostics import Diagnostic
+from core.part.clamping import Clamping
 from core.part.cutter import Cutter
 from core.part.polar_field import Taken
 from core.part.stock import Stock
@@ -21,6 +22,7 @@ from core.proving.part_checks import CHECKS
 from core.proving.tip_moves import TipMove
 
 _MOST = 100
+_CHUCK_STEP = 0.05  # mm
 _RAPID = 0.0254  # mm of metal that a rapid may touch
 _NEAR = 2.0  # mm; further from all metal than that is in the air
 _AIR_TIME, _AIR_WAY = 3.0, 5.0  # s, mm
@@ -36,10 +38,16 @@ class PartFindings:
 
     shape: Callable[[int], ToolShape | None]
     stock: Stock | None
+    clamping: Clamping | None = None
     _found: dict[tuple[str, int], Diagnostic] = field(default_factory=dict)
+    _chuck: TurnedPart | None = None
     _before: TipMove | None = None
     _cut_before: bool = False  # the move before has taken metal off
     _left_part: TipMove | None = None  # a feed that led away from the part, and met nothing
+
+    def __post_init__(self) -> None:
+        if self.clamping is not None and self.clamping.diameter and self.stock is not None:
+            self._chuck = TurnedPart(self.clamping.around(self.stock), _CHUCK_STEP)
 
     @property
     def found(self) -> tuple[Diagnostic, ...]:
@@ -56,12 +64,28 @@ class PartFindings:
             self._add(
                 "holder-into-stock", move, f"The holder of T{tool} runs into metal, {_depth(struck, move)}."
             )
+        self._clamped(move, cutter, tool)
         if move.quick:
             self._rapid(move, met)
         else:
             self._feed(move, met, cutter, part)
             self._tool(move, met, self.shape(tool), tool)
         self._before, self._cut_before = move, bool(met) and not move.quick
+
+    def _clamped(self, move: TipMove, cutter: Cutter, tool: int) -> None:
+        """Chuck or collet: what runs into it, and how fast it turns."""
+        if self.clamping is None:
+            return
+        if self._chuck is not None:
+            met = NOTHING
+            for start, end in pairwise(move.points):
+                met = met.joined(cutter.reaches(self._chuck, start, end))
+            if met:
+                self._add("into-chuck", move, f"T{tool} runs into the chuck, {_depth(met, move)}.")
+        highest = self.clamping.max_rpm
+        if highest and abs(move.rpm) > highest:
+            text = f"The spindle turns at {abs(move.rpm):.0f} rpm; the chuck may turn at {highest:.0f}."
+            self._add("spindle-overspeed", move, text)
 
     def _rapid(self, move: TipMove, met: Cut) -> None:
         self._left_part = None

@@ -14,6 +14,7 @@ from core.interpreter.job_setup import Setup
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
 from core.machine.machine_model import Machine
+from core.part.clamping import Clamping
 from core.part.cutter import Cutter, Side
 from core.part.stock import Stock
 from core.part.stock_spec import StockSpec
@@ -33,11 +34,12 @@ from core.proving.tip_moves import LiveStep, Step, Steps, TipMove
 
 @dataclass(frozen=True, slots=True)
 class PartSetting:
-    """What has been said about stock and tools, by T; nose radii (mm) stand in the offsets."""
+    """What has been said about stock, tools (by T) and clamping; nose radii, mm, come from the offsets."""
 
     stock: Stock | StockSpec | None = None
     shapes: Mapping[int, ToolShape] = field(default_factory=dict)
     nose_radii: Mapping[int, float] = field(default_factory=dict)
+    clamping: Clamping | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +95,7 @@ class PartProof:
         stock = self._setting.stock or tools.assumed_stock()
         if isinstance(stock, StockSpec):
             stock = stock.stock(tools.back)
-        making = Making(tools, stock)
+        making = Making(tools, stock, self._setting.clamping)
         for step in steps:
             making.see(step)
         return making.report()
@@ -201,7 +203,7 @@ def _side(shape: ToolShape) -> Side:
 class Making:
     """The part while the program makes it."""
 
-    def __init__(self, tools: Tools, stock: Stock | None) -> None:
+    def __init__(self, tools: Tools, stock: Stock | None, clamping: Clamping | None = None) -> None:
         self._tools, self._stock = tools, stock
         self._cutters: dict[int, Cutter | None] = {}
         self._tool = 0
@@ -211,7 +213,7 @@ class Making:
         self._pieces: list[Piece] = []
         self._last: Piece | None = None  # the last piece that a collet let go or a parting tool cut off
         self._milled = False
-        self.findings = PartFindings(tools.shape, stock)
+        self.findings = PartFindings(tools.shape, stock, clamping)
         self.milling: Milling | None = None  # from the first cut of a live tool on
         self.part = TurnedPart(stock) if stock is not None and not tools.feeds_first else None
 

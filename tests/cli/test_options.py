@@ -63,6 +63,7 @@ COVERED = {
        for option in ("--machine", "--offsets", "--inputs", "--block-delete", "--strict", "--dialect",
                       "--optional-stop", "--json")},
     ("prove", "--ideal"): "test_the_options_of_a_program_act",
+    ("prove", "--stick-out"): "test_a_stick_out_brings_the_chuck_into_the_proof",
     ("prove", "--stock"): "test_the_promised_keys_in_cubic_inches",
     ("expand", "--ideal"): "test_the_options_of_a_program_act",
     ("trace", "--dt"): "tests/cli/test_trace.py",

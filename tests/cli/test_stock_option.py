@@ -96,3 +96,54 @@ def test_a_first_program_with_errors_leaves_nothing(
     told = turndesk("prove", written(tmp_path, PART), "--offsets", offsets, "--stock", f"after:{bad}")
     assert told.status == 2
     assert "leaves no part" in told.err
+
+
+def chuck(tmp_path: Path, *lines: str) -> Path:
+    text = Path("resources/machines/gt75.toml").read_text(encoding="utf-8")
+    return written(tmp_path, text + "\n[clamping]\n" + "\n".join(lines) + "\n", "chuck.toml")
+
+
+def test_a_stick_out_brings_the_chuck_into_the_proof(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
+    path, machine = written(tmp_path, PART), chuck(tmp_path, "diameter = 4.0", "max_rpm = 4000")
+    given = ("prove", path, "--offsets", offsets, "--machine", machine, "--stock", "bar:1", "--json")
+    assert turndesk(*given).status == 0
+    assert turndesk(*given, "--stick-out", ".7").status == 0
+    told = turndesk(*given, "--stick-out", ".4")
+    assert told.status == 1
+    assert {each["check"] for each in told.lines[0]["diagnostics"]} == {"into-chuck"}
+
+
+def test_a_stick_out_of_the_machine_file_counts_without_a_word(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
+    machine = chuck(tmp_path, "diameter = 4.0", "stick_out = 0.4")
+    told = turndesk("prove", written(tmp_path, PART), "--offsets", offsets, "--machine", machine)
+    assert "into-chuck" in told.out + told.err
+
+
+@pytest.mark.parametrize(("value", "says"), [(".5", "needs [clamping] diameter"), ("x", "--stick-out")])
+def test_a_stick_out_without_a_chuck_is_refused(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path, value: str, says: str
+) -> None:
+    told = turndesk("prove", written(tmp_path, PART), "--offsets", offsets, "--stick-out", value)
+    assert told.status == 2
+    assert says in told.err
+
+
+@pytest.mark.parametrize("value", ["0", "-1", "50"])
+def test_a_stick_out_of_no_length_is_refused(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path, value: str
+) -> None:
+    given = (
+        "prove",
+        written(tmp_path, PART),
+        "--offsets",
+        offsets,
+        "--machine",
+        chuck(tmp_path, "diameter = 4.0"),
+    )
+    told = turndesk(*given, f"--stick-out={value}")
+    assert told.status == 2
+    assert "between 0 and 40" in told.err

@@ -15,6 +15,7 @@ from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
+from core.part.clamping import Clamping
 from core.part.stock import Stock, bar, tube
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.part_proof import PartReport, PartSetting, prove_with_part
@@ -239,3 +240,41 @@ def test_what_is_parted_off_behind_a_slot_weighs_less() -> None:
     _, slot = proved(text(SLOT), bar(25.4, 0.0, -60.0), MILL)
     (piece,), (full,) = part.pieces, whole.pieces
     assert piece.volume == pytest.approx(full.volume - slot.removed, rel=1e-3)
+
+
+def chucked(lines: str, clamping: Clamping, shapes: dict[int, ToolShape] = TOOLS) -> PartReport:
+    machine = load_machine(None)
+    setup = setup_for(machine, tools={n: ToolOffset(-12.7, -50.8) for n in range(1, 12)}, secondary={})
+    setting = PartSetting(bar(25.4, 0.0, -80.0), shapes, clamping=clamping)
+    _, part = prove_with_part(Source("PART", text(lines)), setup, machine, setting)
+    assert part is not None
+    return part
+
+
+CHUCK = Clamping(diameter=100.0, stick_out=1.2 * INCH, jaws=10.0, jaw_diameter=60.0)
+PARTED = "T2\nX[.6]Z[.1]\nZ[-1]\nG95F[.002]X[-.01]\nG94F[300]X[.6]\nZ[1]"
+
+
+def test_a_tool_runs_into_the_jaws_where_its_twin_stays_before_them() -> None:
+    assert checks(chucked(PARTED, CHUCK)) == []
+    deeper = PARTED.replace("Z[-1]", "Z[-1.3]")
+    assert ("into-chuck", 5) in checks(chucked(deeper, CHUCK))
+    assert checks(chucked(deeper, Clamping(100.0, 1.5 * INCH, 10.0, 60.0))) == []
+
+
+def test_a_rapid_beside_the_bar_clears_jaws_that_are_small_enough() -> None:
+    beside = "T2\nX[1.0]Z[.1]\nZ[-1.4]\nZ[1]"
+    assert ("into-chuck", 5) in checks(chucked(beside, CHUCK))  # r 25.4 in jaws of r 30
+    assert checks(chucked(beside, Clamping(100.0, 1.2 * INCH, 20.0, 48.0))) == []
+
+
+def test_a_drill_goes_through_the_part_into_no_chuck() -> None:
+    through = "T3\nX[0]Z[.1]\nG95F[.004]Z[-1.8]\nG94F[300]Z[1]"
+    long = {3: ToolShape(ToolKind.DRILL, diameter=6.0, point=118.0, length=60.0, stick_out=80.0)}
+    assert checks(chucked(through, CHUCK, long)) == []
+
+
+def test_the_spindle_turns_no_faster_than_the_chuck_may() -> None:
+    slow, fast = (Clamping(0.0, 0.0, max_rpm=rpm) for rpm in (1499.0, 1500.0))
+    assert ("spindle-overspeed", 4) in checks(chucked(SOUND, slow))
+    assert checks(chucked(SOUND, fast)) == []

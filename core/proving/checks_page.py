@@ -1,0 +1,49 @@
+"""The page of the checks of the part: ``python -m core.proving.checks_page docs/checks.md``."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from core.proving.part_checks import CHECKS, Check
+
+_HEAD = """# What the proof of the part looks for
+
+Written from `core/proving/part_checks.py` by `python -m core.proving.checks_page docs/checks.md`. Each
+finding has its id, line, elementary block and remedy; an error refuses the program. The metal is exact to
+.004 mm (.00016 in) along Z and .0015 mm (.00006 in) in r.
+
+What nobody has said is assumed and told: the stock as a bar just larger than what is cut (a tube where a
+boring tool begins without a drill), a tool by the comment beside its `T` or by its moves, with a slim
+insert and no holder. What an assumption cannot know is not checked: holders and shanks of tools without a
+shape, a chuck without `[clamping]` in the machine file, the first move of a program, which begins wherever
+the slides stand, and all that moves while the collet is open. A bar that is fed begins anew where its stop
+stood.
+"""
+
+
+def page() -> str:
+    """The whole page."""
+    return _HEAD + "\n" + "\n".join(_row(name, check) for name, check in CHECKS.items()) + "\n"
+
+
+def _row(name: str, check: Check) -> str:
+    return "\n".join(_lines(name, check))
+
+
+def _lines(name: str, check: Check) -> Iterator[str]:
+    yield f"**{name}** ({check.severity}): {check.looks_for}  "
+    yield f"Found when: {check.decides}  "
+    yield f"Do: {check.remedy}"
+    yield ""
+
+
+def main(argv: list[str]) -> int:
+    """Write the page to the file that is named."""
+    Path(argv[0]).write_text(page(), encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
