@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 from app.cli.program_options import (
-    Circumstances,
     add_ideal_option,
     add_program_options,
     circumstances,
@@ -20,8 +19,11 @@ from app.cli.program_options import (
 from app.cli.progress_bar import Progress
 from core.part.stock_forms import FORMS
 
+MOST_JOBS = 256
+
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
+    from app.cli.proof_work import ProofJob
     from core.proving.part_proof import PartReport
     from core.proving.proof_report import Report
 
@@ -29,40 +31,77 @@ if TYPE_CHECKING:
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
     parser = subparsers.add_parser("prove", help="prove programs: errors, limits, cycle time; nothing moves")
-    parser.add_argument("files", nargs="+", metavar="FILE")
+    parser.add_argument(
+        "files", nargs="+", metavar="FILE", help="programs, and folders with programs in and below them"
+    )
     add_program_options(parser)
     add_ideal_option(parser)
     parser.add_argument(
         "--stick-out", type=float, metavar="IN", help="from the front of chuck or collet to Z0, inches"
     )
     parser.add_argument("--stock", metavar="SPEC", help=f"what the part is made of: {FORMS}")
+    add_folder_options(parser)
+
+
+def add_folder_options(parser: argparse.ArgumentParser) -> None:
+    """How many programs are proved."""
+    parser.add_argument("--jobs", metavar="N", type=_count, help="worker processes (default: one a core)")
+    parser.add_argument("--no-cache", action="store_true", help="prove anew what was proved before")
+
+
+def _count(word: str) -> int:
+    """A number of workers; argparse tells the sentence of what is none."""
+    if not word.isdecimal() or not 1 <= int(word) <= MOST_JOBS:
+        raise argparse.ArgumentTypeError(f"{word!r} is no number of workers; 1 to {MOST_JOBS} are possible")
+    return int(word)
 
 
 def run(args: argparse.Namespace) -> int:
     """Prove each file; 1 when any has errors, 2 when one cannot be read."""
+    many = _for_workers(args)
+    job = _job(args)
+    if many:
+        from app.cli.folder_proofs import prove_many
+
+        return prove_many(args, job)
+    return max(_status(Path(name), job, args) for name in args.files)
+
+
+def _for_workers(args: argparse.Namespace) -> bool:
+    """Whether workers are to prove and a table is to tell: for a folder, or because an option says so."""
+    many = args.jobs is not None or any(Path(name).is_dir() for name in args.files)
+    if args.no_cache and not many:
+        raise CommandError("--no-cache is for folders and --jobs; one program is always proved anew")
+    return many
+
+
+def _job(args: argparse.Namespace) -> ProofJob:
+    """What the options say about all programs. Raises CommandError."""
+    from app.cli.part_options import part_setting
+    from app.cli.proof_work import ProofJob
+
     around = circumstances(args)
-    return max(_status(Path(name), around, args) for name in args.files)
+    setting = part_setting(args, around)
+    return ProofJob(around.machine, around.setup, setting, args.ideal, args.optional_stop)
 
 
-def _status(path: Path, around: Circumstances, args: argparse.Namespace) -> int:
+def _status(path: Path, job: ProofJob, args: argparse.Namespace) -> int:
     """Prove one file; one that cannot be read does not keep the others from their proof."""
     try:
-        return EXIT_ERRORS if _prove(path, around, args).errors else EXIT_OK
+        return EXIT_ERRORS if _prove(path, job, args).errors else EXIT_OK
     except CommandError as error:
         sys.stderr.write(f"turndesk: {error}\n")
         return EXIT_USAGE
 
 
-def _prove(path: Path, around: Circumstances, args: argparse.Namespace) -> Report:
-    from app.cli.part_options import part_setting
+def _prove(path: Path, job: ProofJob, args: argparse.Namespace) -> Report:
     from app.cli.proof_json import report_json, stops_of
     from core.proving.part_proof import prove_with_part
 
     source = read_source(path, args)
-    setting = part_setting(args, around)
     with Progress(f"proving {path.name}") as progress:
         report, part = prove_with_part(
-            source, around.setup, around.machine, setting, progress.reach, ideal=args.ideal
+            source, job.setup, job.machine, job.setting, progress.reach, ideal=job.ideal
         )
     if args.json:
         found = report_json(str(path), report, part, optional_stop=args.optional_stop)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from app.cli.command_errors import CommandError
@@ -49,6 +50,17 @@ def control_limits(machine: Machine) -> ControlLimits:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class InputStates:
+    """Answers for inputs as they are named; one that nobody names is open. Can be sent to another process."""
+
+    states: Mapping[str, bool]
+
+    def __call__(self, terminal: str) -> bool:
+        """Whether the input is closed."""
+        return self.states.get(terminal, False)
+
+
 def setup_for(
     machine: Machine,
     *,
@@ -62,7 +74,6 @@ def setup_for(
     """Circumstances of a pass after power-up, from the machine's home; inputs that nobody names are open."""
     from app.compose.kinematics_chain import kinematics_of
 
-    states = dict(inputs or {})
     return Setup(
         start=(0.0,) * len(machine.axes),
         kinematics=kinematics_of(machine),
@@ -74,5 +85,5 @@ def setup_for(
         strict=strict,
         metric=not machine.inch,
         last_rapid=machine.manual_rapid,
-        inputs=lambda terminal: states.get(terminal, False),
+        inputs=InputStates(dict(inputs or {})),
     )

@@ -5,7 +5,7 @@ All moves are gathered first, because stock and tools that nobody has described 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from core.interpreter.actions import Collet, ToolChange
@@ -46,6 +46,7 @@ class PartSetting:
 class PartReport:
     """What became of the stock: mm and mm³. ``last`` is the last part that came off, or what the chuck holds.
 
+    ``shapes`` are the tools by T, described or assumed, None where nothing is known that would cut.
     ``assumed`` are sentences, one for each thing that nobody has said.
     """
 
@@ -58,17 +59,28 @@ class PartReport:
     pieces: tuple[Piece, ...]
     assumed: tuple[str, ...]
     findings: tuple[Diagnostic, ...]
+    shapes: Mapping[int, ToolShape | None] = field(default_factory=dict)
 
 
 def prove_with_part(
     program: Source | ReadProgram, setup: Setup, machine: Machine, setting: PartSetting,
     progress: Progress | None = None, *, ideal: bool = False,
+    seen: Callable[[MotionSpan | RestSpan], None] | None = None,
 ) -> tuple[Report, PartReport | None]:  # fmt: skip
-    """The proof of a program with the findings of its part among the others; no part on a mill."""
+    """The proof of a program with the findings of its part among the others; no part on a mill.
+
+    ``seen`` is given each span, as ``prove`` gives it.
+    """
     if machine.kind != "lathe":
-        return prove(program, setup, machine, progress, ideal=ideal), None
+        return prove(program, setup, machine, progress, ideal=ideal, seen=seen), None
     gathered = PartProof(setting)
-    report = prove(program, setup, machine, progress, ideal=ideal, seen=gathered.see)
+
+    def see(span: MotionSpan | RestSpan) -> None:
+        gathered.see(span)
+        if seen is not None:
+            seen(span)
+
+    report = prove(program, setup, machine, progress, ideal=ideal, seen=see)
     part = gathered.report()
     return replace(report, diagnostics=in_order((*report.diagnostics, *part.findings))), part
 
@@ -306,4 +318,5 @@ class Making:
             pieces=tuple(self._pieces),
             assumed=tuple(assumed),
             findings=self.findings.found,
+            shapes={n: self._tools.shape(n) for n, use in self._tools.uses.items() if use.moves},
         )

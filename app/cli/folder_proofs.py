@@ -1,0 +1,137 @@
+"""``turndesk prove DIR``: many programs on all cores, told in the order of names."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from collections.abc import Iterator
+from concurrent.futures import BrokenExecutor, Executor, Future
+from dataclasses import dataclass
+
+from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
+from app.cli.program_files import ProgramFiles, program_files
+from app.cli.program_options import read_source
+from app.cli.progress_bar import Progress
+from app.cli.proof_cache import ProofCache
+from app.cli.proof_pool import KILLED, Proving, Workers, cores
+from app.cli.proof_table import table
+from app.cli.proof_work import OtherVersionError, Proof, ProofJob, proof_of
+from core.language.source import Source
+
+
+def prove_many(args: argparse.Namespace, job: ProofJob) -> int:
+    """Prove all programs; 1 when any has errors, 2 when one cannot be read."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    files = program_files(args.files)
+    workers = Workers(args.jobs if args.jobs is not None else cores())
+    run = _Run(args, job, files)
+    run.prove(workers)
+    return run.told()
+
+
+@dataclass(frozen=True, slots=True)
+class _Unit:
+    """One program to prove: which it is in the order of names, and where its proof will be kept."""
+
+    index: int
+    source: Source
+    key: str
+
+
+class _Run:
+    """One call: what is proved, and what has been told of it."""
+
+    def __init__(self, args: argparse.Namespace, job: ProofJob, files: ProgramFiles) -> None:
+        from app.desk.data_folder import data_folder
+
+        self._args, self._job, self._files = args, job, files
+        self._cache = None if args.no_cache else ProofCache(data_folder() / "proofs", job)
+        self._proofs: dict[int, Proof] = {}
+        self._told = 0
+        self._progress = Progress("proving", len(files.paths))
+
+    def prove(self, workers: Workers) -> None:
+        """Go through all programs; what has been proved is kept even when it ends in the middle."""
+        proving: Proving[_Unit, Proof] = Proving(workers, self._submit)
+        results = proving.results(self._units())
+        try:
+            with self._progress:
+                for unit, made in results:
+                    self._add(unit.index, self._kept(unit, made))
+        finally:
+            results.close()
+            if self._cache is not None:
+                self._cache.trim()
+
+    def told(self) -> int:
+        """The table or what is left to say, and the exit status."""
+        rows = [(path, self._proofs[k]) for k, path in enumerate(self._files.paths)]
+        others = self._files.others
+        if not self._args.json:
+            sys.stdout.write(table(rows, others))
+        elif others:
+            sys.stderr.write(f"turndesk: {others} other file{'s' * (others > 1)} left out\n")
+        return max(_status(proof) for _, proof in rows)
+
+    def _submit(self, executor: Executor, unit: _Unit) -> Future[Proof]:
+        return executor.submit(proof_of, self._job.packed, "", unit.source)
+
+    def _units(self) -> Iterator[_Unit]:
+        """The programs that no proof is kept of, one after the other as workers are ready for them."""
+        for index, path in enumerate(self._files.paths):
+            try:
+                source = read_source(path, self._args)
+            except CommandError as error:
+                self._add(index, Proof({}, str(error)))
+                continue
+            key = self._cache.key(source) if self._cache is not None else ""
+            found = self._cache.find(key) if self._cache is not None else None
+            if found is not None:
+                self._add(index, found)
+            else:
+                yield _Unit(index, source, key)
+
+    def _kept(self, unit: _Unit, made: Proof | BaseException) -> Proof:
+        if isinstance(made, BaseException):
+            return Proof({}, f"{self._files.paths[unit.index]}: {_why(made)}")
+        if self._cache is not None:
+            self._cache.keep(unit.key, made)
+        return made
+
+    def _add(self, index: int, proof: Proof) -> None:
+        if proof.report:
+            proof.report["file"] = str(self._files.paths[index])
+        self._proofs[index] = proof
+        while self._told in self._proofs:
+            self._tell(self._proofs[self._told])
+            self._told += 1
+        self._progress.reach(len(self._proofs))
+
+    def _tell(self, proof: Proof) -> None:
+        """In the order of names, as soon as all before it are there."""
+        if proof.fault:
+            sys.stderr.write(f"turndesk: {proof.fault}\n")
+        elif self._args.json:
+            sys.stdout.write(json.dumps(proof.report) + "\n")
+            sys.stdout.flush()
+
+
+def _why(error: BaseException) -> str:
+    """What has kept a program from its proof."""
+    if isinstance(error, BrokenExecutor):
+        return KILLED
+    if isinstance(error, OtherVersionError):
+        return "the worker has another version of TurnDesk; install the same there"
+    from app.cli.crash_report import keep_crash
+
+    where = keep_crash(type(error), error, error.__traceback__)
+    what = str(error).splitlines()[0] if str(error) else type(error).__name__
+    return f"a fault in TurnDesk itself ({what}); please report it with {where}"
+
+
+def _status(proof: Proof) -> int:
+    if proof.fault:
+        return EXIT_USAGE
+    return EXIT_ERRORS if proof.count("error") else EXIT_OK

@@ -1,0 +1,303 @@
+"""``prove DIR``: which files count, what is kept, workers that are killed, and what is refused."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import json
+import os
+import signal
+import subprocess
+import sys
+from concurrent.futures import BrokenExecutor, Executor, Future
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.cli.proof_cache import ProofCache, plain
+from app.cli.proof_pool import KILLED, Proving, Workers
+from app.cli.proof_work import Proof, ProofJob
+from app.compose.machine_setup import read_machine, setup_for
+from core.language.source import Source
+from core.proving.part_proof import PartSetting
+from tests.benchmarks.bench_folder import program
+from tests.cli.conftest import Turndesk
+
+GOOD = "G90G94F300\nM03S1000\nT1\nX.5Z.1\nG95F.004Z-.2\nG94F300Z1\nM30\n"
+BAD = "G90G94F300\nQ3\nM30\n"
+
+
+@pytest.fixture
+def parts(tmp_path: Path) -> Path:
+    """Two sound programs and one with an error, one of them below, and two files that are none."""
+    folder = tmp_path / "parts"
+    (folder / "below" / ".git").mkdir(parents=True)
+    (folder / "b.nc").write_text(GOOD)
+    (folder / "A").write_text(GOOD.replace("-.2", "-.3"))
+    (folder / "below" / "c.TAP").write_text(BAD)
+    (folder / "part.pdf").write_text("a drawing")
+    (folder / ".hidden.nc").write_text(BAD)
+    (folder / "below" / ".git" / "head.nc").write_text(BAD)
+    return folder
+
+
+def names(lines: list[dict[str, Any]], folder: Path) -> list[str]:
+    return [str(Path(line["file"]).relative_to(folder)) for line in lines]
+
+
+def test_the_programs_of_a_folder_one_object_a_line_in_the_order_of_names(
+    turndesk: Turndesk, parts: Path, offsets: Path
+) -> None:
+    told = turndesk("prove", parts, "--offsets", offsets, "--json")
+    assert names(told.lines, parts) == ["A", "b.nc", "below/c.TAP"]
+    assert told.status == 1
+    assert told.err == "turndesk: 2 other files left out\n"
+    one = turndesk("prove", parts / "b.nc", "--offsets", offsets, "--json")
+    assert told.lines[1] == one.lines[0]
+
+
+def test_the_table_at_the_end(turndesk: Turndesk, parts: Path, offsets: Path) -> None:
+    rows = turndesk("prove", parts, "--offsets", offsets).out.splitlines()
+    assert rows[0].split() == ["verdict", "errors", "warnings", "cycle", "s", "removed", "program"]
+    assert rows[2].split()[0:3] == ["proved", "0", "0"]
+    assert rows[3].split()[0:2] == ["errors", "1"]
+    assert rows[4].strip().startswith("line 2: ")
+    assert rows[5] == "3 programs: 2 proved, 1 with errors, 2 other files left out"
+    assert rows[6].startswith("slowest to prove: ")
+
+
+def test_files_and_folders_mixed_are_proved_once_each(turndesk: Turndesk, parts: Path, offsets: Path) -> None:
+    odd = parts / "part.pdf"
+    odd.write_text(GOOD)
+    told = turndesk("prove", odd, parts, parts / "b.nc", "--offsets", offsets, "--json", "--jobs", 1)
+    assert names(told.lines, parts) == ["A", "b.nc", "below/c.TAP", "part.pdf"]
+
+
+def test_a_file_that_cannot_be_read_keeps_no_other_from_its_proof(
+    turndesk: Turndesk, parts: Path, offsets: Path
+) -> None:
+    (parts / "b.nc").write_bytes(b"\0\1\2")
+    told = turndesk("prove", parts, "--offsets", offsets, "--json")
+    assert (told.status, names(told.lines, parts)) == (2, ["A", "below/c.TAP"])
+    assert "b.nc holds zero bytes" in told.err
+    assert "not proved" in turndesk("prove", parts, "--offsets", offsets).out
+
+
+# --- what is kept
+
+
+def kept(home: Path) -> list[Path]:
+    return sorted(path for path in (home / "proofs").glob("??/*"))
+
+
+def test_the_second_time_nothing_is_proved(
+    turndesk: Turndesk, parts: Path, offsets: Path, home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = turndesk("prove", parts, "--offsets", offsets, "--json")
+    assert len(kept(home)) == 3
+    monkeypatch.setattr(Workers, "open", lambda *_: pytest.fail("a worker was started"))
+    assert turndesk("prove", parts, "--offsets", offsets, "--json") == first
+
+
+@pytest.mark.parametrize("more", [
+    ("--machine", "sinumerik-linear"), ("--block-delete",), ("--strict",), ("--ideal",),
+    ("--optional-stop",), ("--stock", "bar:2"), ("--offsets", "{other}"), ("--inputs", "{inputs}"),
+])  # fmt: skip
+def test_what_a_proof_depends_on_is_proved_anew(
+    turndesk: Turndesk, parts: Path, offsets: Path, home: Path, tmp_path: Path, more: tuple[str, ...]
+) -> None:
+    other, inputs = tmp_path / "other.toml", tmp_path / "inputs.toml"
+    other.write_text("[tool.1]\nx = .01\nz = 0.0\n".replace("= .", "= 0."))
+    inputs.write_text("[inputs]\n10 = true\n")
+    given = () if "--offsets" in more else ("--offsets", offsets)
+    turndesk("prove", parts, "--offsets", offsets, "--json")
+    turndesk("prove", parts, *given, *(word.format(other=other, inputs=inputs) for word in more), "--json")
+    assert len(kept(home)) == 6
+
+
+def test_another_text_is_proved_anew_and_an_old_text_is_known(
+    turndesk: Turndesk, parts: Path, offsets: Path, home: Path
+) -> None:
+    for depth in ("-.2", "-.4", "-.2"):
+        (parts / "b.nc").write_text(GOOD.replace("-.2", depth))
+        turndesk("prove", parts, "--offsets", offsets, "--json")
+    assert len(kept(home)) == 4
+
+
+def test_no_cache_neither_keeps_nor_looks(turndesk: Turndesk, parts: Path, offsets: Path, home: Path) -> None:
+    turndesk("prove", parts, "--offsets", offsets, "--json", "--no-cache")
+    assert kept(home) == []
+
+
+def test_a_damaged_proof_is_made_again(turndesk: Turndesk, parts: Path, offsets: Path, home: Path) -> None:
+    first = turndesk("prove", parts, "--offsets", offsets, "--json")
+    for path, rest in zip(kept(home), (b"", b"rubbish", kept(home)[2].read_bytes()[:-20]), strict=True):
+        path.write_bytes(rest)
+    assert turndesk("prove", parts, "--offsets", offsets, "--json") == first
+
+
+@pytest.fixture
+def job() -> ProofJob:
+    machine = read_machine(None)
+    return ProofJob(machine, setup_for(machine, tools={}, secondary={}), PartSetting())
+
+
+def test_the_oldest_go_when_there_are_too_many(tmp_path: Path, job: ProofJob) -> None:
+    cache = ProofCache(tmp_path, job, largest=2000)
+    keys = [cache.key(Source(f"{n}.nc", GOOD)) for n in range(40)]
+    for age, key in enumerate(keys):
+        cache.keep(key, Proof({"file": os.urandom(40).hex(), "diagnostics": []}))
+        os.utime(tmp_path / key[:2] / key[2:], (1000.0 - age, 1000.0 - age))
+    aside = tmp_path / keys[0][:2] / "left.1.part"
+    aside.write_text("half")
+    os.utime(aside, (1.0, 1.0))
+    cache.trim()
+    sizes = [path.stat().st_size for path in tmp_path.glob("??/*")]
+    assert 1000 < sum(sizes) <= 1600
+    assert [cache.find(key) is not None for key in (keys[0], keys[-1])] == [True, False]
+    assert not aside.exists()
+
+
+def test_a_full_disk_is_told_once_and_proving_goes_on(
+    turndesk: Turndesk, parts: Path, offsets: Path, home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(_self: Path, _data: bytes) -> int:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    told = turndesk("prove", parts, "--offsets", offsets, "--json")
+    assert (told.status, len(told.lines)) == (1, 3)
+    assert told.err.count("proofs are not kept") == 1
+    assert "No space left" in told.err
+    assert kept(home) == []
+
+
+def test_only_what_has_a_lasting_text_is_hashed() -> None:
+    assert plain({"b": frozenset({2, 1}), "a": (0.1, None)}) == "{'a':[0.1,None],'b':<1,2>}"
+    with pytest.raises(TypeError, match="function"):
+        plain(plain)
+
+
+# --- workers that are killed
+
+
+def killing(number: int) -> int:
+    """The square of a number; 13 kills whoever reckons it."""
+    if number == 13:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number * number
+
+
+def _submit(executor: Executor, number: int) -> Future[int]:
+    return executor.submit(killing, number)
+
+
+def test_what_kills_its_worker_twice_is_told_and_the_rest_goes_on() -> None:
+    made = dict(Proving(Workers(2), _submit).results(iter(range(30))))
+    assert isinstance(made.pop(13), BrokenExecutor)
+    assert made == {n: n * n for n in range(30) if n != 13}
+
+
+def test_a_worker_that_is_killed_once_loses_nothing(tmp_path: Path, offsets: Path) -> None:
+    """As ``kill -9`` by another hand, in the middle of a folder."""
+    for number in range(40):
+        (tmp_path / f"{number:02d}.nc").write_text(program(number))
+    command = [sys.executable, "-m", "app.cli.main", "prove", str(tmp_path), "--json", "--no-cache",
+               "--offsets", str(offsets)]  # fmt: skip
+    around = {**os.environ, "TURNDESK_HOME": str(tmp_path / "home")}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=around) as proving:
+        assert proving.stdout is not None
+        lines = [proving.stdout.readline()]
+        for worker in _workers(proving.pid)[:1]:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(worker, signal.SIGKILL)
+        lines += proving.stdout.readlines()
+    assert [Path(json.loads(line)["file"]).stem for line in lines] == [f"{n:02d}" for n in range(40)]
+    assert proving.returncode == 0
+
+
+def _children(process: int) -> list[int]:
+    return [int(n) for n in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+
+
+def _workers(process: int) -> list[int]:
+    """The workers are children of the process that they are forked from."""
+    return [worker for child in _children(process) for worker in _children(child)]
+
+
+def test_ctrl_c_keeps_what_is_done_and_the_next_run_goes_on(tmp_path: Path, offsets: Path) -> None:
+    folder, home = tmp_path / "parts", tmp_path / "home"
+    folder.mkdir()
+    for number in range(60):
+        (folder / f"{number:02d}.nc").write_text(program(number))
+    command = [
+        sys.executable,
+        "-m",
+        "app.cli.main",
+        "prove",
+        str(folder),
+        "--json",
+        "--offsets",
+        str(offsets),
+    ]
+    around = {**os.environ, "TURNDESK_HOME": str(home)}
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=around, start_new_session=True
+    ) as proving:
+        assert proving.stdout is not None
+        assert proving.stderr is not None
+        proving.stdout.readline()
+        os.killpg(proving.pid, signal.SIGINT)
+        rest, said = proving.stdout.readlines(), proving.stderr.read()
+    assert (proving.returncode, said) == (130, "turndesk: interrupted\n")
+    assert len(kept(home)) >= len(rest) + 1
+    assert len(kept(home)) < 60
+
+
+# --- what is refused
+
+
+@pytest.mark.parametrize("number", ["0", "-1", "two", "1.5", "1000", ""])
+def test_no_number_of_workers(turndesk: Turndesk, parts: Path, number: str) -> None:
+    told = turndesk("prove", parts, f"--jobs={number}")
+    assert told.status == 2
+    assert "no number of workers" in told.err
+    assert told.err.count("\n") == 1
+
+
+def test_an_empty_folder_and_one_that_is_not_there(turndesk: Turndesk, tmp_path: Path) -> None:
+    (tmp_path / "empty").mkdir()
+    told = turndesk("prove", tmp_path / "empty")
+    assert (told.status, "holds no programs" in told.err) == (2, True)
+    told = turndesk("prove", tmp_path / "nowhere", "--jobs", 1)
+    assert (told.status, "nowhere" in told.err) == (2, True)
+
+
+def test_no_cache_of_one_program_is_refused(turndesk: Turndesk, parts: Path) -> None:
+    told = turndesk("prove", parts / "b.nc", "--no-cache")
+    assert (told.status, "--no-cache is for folders" in told.err) == (2, True)
+
+
+def test_broken_offsets_end_it_before_anything_is_proved(
+    turndesk: Turndesk, parts: Path, tmp_path: Path
+) -> None:
+    broken = tmp_path / "broken.toml"
+    broken.write_text("[tool.1]\nx = true\n")
+    told = turndesk("prove", parts, "--offsets", broken)
+    assert (told.status, told.out, told.err.count("\n")) == (2, "", 1)
+
+
+def test_a_fault_of_ours_is_told_with_its_program(
+    turndesk: Turndesk, parts: Path, offsets: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def faulty(_executor: Executor, *_: object) -> Future[Proof]:
+        future: Future[Proof] = Future()
+        future.set_exception(ZeroDivisionError("made for this test"))
+        return future
+
+    monkeypatch.setattr("concurrent.futures.ProcessPoolExecutor.submit", faulty)
+    told = turndesk("prove", parts, "--offsets", offsets, "--json")
+    assert told.status == 2
+    assert told.err.count("a fault in TurnDesk itself (made for this test)") == 3
+    assert KILLED not in told.err
