@@ -131,12 +131,11 @@ class MilledPart:
         others go on in steps that leave .001 mm.
         """
         met = NOTHING
-        strokes = list(self._strokes(path, radius, height))
-        self._refine(strokes, radius)
+        runs = list(self._runs(path, radius, height))
+        self._refine(runs, radius)
         for rise, r in _cone(radius, point):
-            for stroke in strokes:
-                lifted = stroke._replace(end=stroke.end + rise)
-                met = self._take(self._radial(lifted, r, length - rise, height), met)
+            for run in runs:
+                met = self._take(self._radial(_lifted(run, rise), r, length - rise, height), met)
         return met
 
     def meets_radial(
@@ -148,40 +147,57 @@ class MilledPart:
         point: float = 0.0,
     ) -> bool:
         """Whether that mill would meet metal on its way; nothing is taken off."""
-        strokes = [s._replace(end=s.end + _NEAR) for s in self._strokes(path, radius, height)]
+        runs = [_lifted(run, _NEAR) for run in self._runs(path, radius, height)]
 
         def met(wide: bool) -> bool:
             return any(
-                self._met(self._radial(s._replace(end=s.end + rise), r, length - rise, height, wide=wide))
+                self._met(self._radial(_lifted(run, rise), r, length - rise, height, wide=wide))
                 for rise, r in _cone(radius - _NEAR, point)
-                for s in strokes
+                for run in runs
             )
 
         if not met(wide=True):
             return False
-        self._refine(strokes, radius - _NEAR)
+        self._refine(runs, radius - _NEAR)
         return met(wide=False)
 
     def _radial(
-        self, stroke: Stroke, radius: float, length: float, height: float, *, wide: bool = False
+        self, run: list[Stroke], radius: float, length: float, height: float, *, wide: bool = False
     ) -> Iterator[Reach]:
-        """What a stroke covers at the middles of the columns, or ``wide`` anywhere in them."""
+        """What a run of strokes covers at the middles of the columns, or ``wide`` anywhere in them."""
         field = self.field
-        back, front = (field.edges[:-1], field.edges[1:]) if wide else (field.middles, field.middles)
-        off = np.maximum(stroke.back - front, back - stroke.front)
-        there = np.flatnonzero(off < radius)
-        if not len(there):
+        columns = field.between(min(s.back for s in run) - radius, max(s.front for s in run) + radius)
+        turned = [nearest_turn(field.angles - s.angle, s.way) for s in run]
+        widest = _widest(min(s.end for s in run), radius + abs(height))
+        rays = np.flatnonzero(np.min(np.abs(turned), axis=0) <= widest)
+        if columns.stop <= columns.start or not len(rays):
             return
-        columns = slice(int(there[0]), int(there[-1]) + 1)
-        half = np.sqrt(np.maximum(radius * radius - np.maximum(off[columns], 0.0) ** 2, 0.0))
-        turned = nearest_turn(field.angles - stroke.angle, stroke.way)
-        rays = np.flatnonzero(np.abs(turned) <= _widest(stroke.end, radius + abs(height)))
-        low, high = radial_mill(turned[rays], half, stroke.end, length, height)
+        back, front = field.edges[columns], field.edges[columns.start + 1 : columns.stop + 1]
+        if not wide:
+            back = front = 0.5 * (back + front)
+        low, high = np.full((len(back), len(rays)), np.inf), np.full((len(back), len(rays)), -np.inf)
+        for stroke, angles in zip(run, turned, strict=True):
+            off = np.maximum(np.maximum(stroke.back - front, back - stroke.front), 0.0)
+            half = np.sqrt(np.maximum(radius * radius - off * off, 0.0))
+            near, far = radial_mill(angles[rays], half, stroke.end, length, height)
+            # Strokes of a run overlap: what they cover of a ray is one interval.
+            np.minimum(low, near, out=low)
+            np.maximum(high, far, out=high)
         yield Reach(columns, rays, low, high)
 
-    def _strokes(self, path: FloatArray, radius: float, height: float) -> Iterator[Stroke]:
+    def _runs(self, path: FloatArray, radius: float, height: float) -> Iterator[list[Stroke]]:
+        """Strokes one after the other that do not go on by more than the mill's radius."""
+        outside = float(self.field.high.max(initial=radius))
+        run: list[Stroke] = []
+        for stroke in self._strokes(path, radius, height, outside):
+            if run and not _overlap(run, stroke, radius, outside):
+                yield run
+                run = []
+            run.append(stroke)
+        yield run
+
+    def _strokes(self, path: FloatArray, radius: float, height: float, outside: float) -> Iterator[Stroke]:
         path = _lines(path) * np.array([1.0, 1.0, math.pi / 180.0])
-        outside = float(self.field.outermost.max(initial=0.0))
         spacing = math.sqrt(8.0 * radius * _SCALLOP)
         for start, end in itertools.pairwise(path):
             dr, dz, dc = (end - start).tolist()
@@ -195,9 +211,9 @@ class MilledPart:
                 back, front = sorted((float(start[1]), float(end[1])))
                 yield Stroke(float(min(start[0], end[0])), back, front, float(start[2]), dc)
 
-    def _refine(self, strokes: list[Stroke], radius: float) -> None:
+    def _refine(self, runs: list[list[Stroke]], radius: float) -> None:
         """Divide the columns at both ends of a radial path, where the mill's round stands across them."""
-        back, front = min(s.back for s in strokes), max(s.front for s in strokes)
+        back, front = min(s.back for run in runs for s in run), max(s.front for run in runs for s in run)
         round_ = radius * np.sin(np.linspace(0.0, 0.5 * math.pi, 25))
         self.field.divide(np.concatenate((back - round_, front + round_)))
 
@@ -271,6 +287,18 @@ def _cone(radius: float, point: float) -> Iterator[tuple[float, float]]:
     for k in range(count):
         yield point * k / count, radius * (k + 0.5) / count
     yield point, radius
+
+
+def _lifted(run: list[Stroke], rise: float) -> list[Stroke]:
+    return [stroke._replace(end=stroke.end + rise) for stroke in run] if rise else run
+
+
+def _overlap(run: list[Stroke], stroke: Stroke, radius: float, outside: float) -> bool:
+    """Whether a stroke still lies within the mill's radius of the first one of a run, all of it."""
+    first = run[0]
+    along = max(stroke.front, first.front) - min(stroke.back, first.back)
+    turned = outside * (abs(stroke.angle - first.angle) + max(abs(stroke.way), abs(first.way)))
+    return max(along, turned, abs(stroke.end - first.end)) <= radius
 
 
 def _spots(start: FloatArray, end: FloatArray, count: float) -> Iterator[Stroke]:

@@ -94,6 +94,12 @@ class PolarField:
         """Greatest radius of each column, 0 where there is no metal."""
         return np.asarray(np.where(self.high > self.low, self.high, 0.0).max(axis=(0, 2)))
 
+    def between(self, back: float, front: float) -> slice:
+        """The columns that lie between these Z, or reach there."""
+        first = int(np.searchsorted(self.edges, back, side="right")) - 1
+        last = int(np.searchsorted(self.edges, front, side="left"))
+        return slice(max(first, 0), min(last, len(self.edges) - 1))
+
     def copied(self) -> PolarField:
         """A field of its own with the same metal."""
         return PolarField(self.edges.copy(), self.low.copy(), self.high.copy(), self._most)

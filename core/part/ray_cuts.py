@@ -107,8 +107,12 @@ def radial_mill(
     and how far it reaches from there outwards; ``height`` how far its axis passes the part's, mm.
     """
     low, high = clipped(np.cos(turned), end, end + length)
-    low1, high1 = clipped(np.sin(turned), height - half[:, None], height + half[:, None])
-    low, high = np.maximum(low, low1), np.minimum(high, high1)
+    if height:
+        low1, high1 = clipped(np.sin(turned), height - half[:, None], height + half[:, None])
+        low, high = np.maximum(low, low1), np.minimum(high, high1)
+    else:
+        low = np.broadcast_to(low, (len(half), len(turned)))
+        high = np.minimum(high, half[:, None] / np.maximum(np.abs(np.sin(turned)), _TINY))
     return _cleaned(low, high, half[:, None] > 0.0)
 
 
