@@ -13,13 +13,8 @@ PlainMove = tuple[float | None, float | None, float | None, int, bool]
 """A line of G00 or G01, X, Z and F and no more: X, Z, F as written, 0 or 1 for the code (-1: none), and
 whether one of the numbers has a fifth decimal. Most lines of a long program."""
 
-_ARC, _LOCK, _MODE, _FEED, _LIMIT = (
-    Acts.ARC,
-    Acts.LOCK,
-    Acts.MODE,
-    FWord.FEED,
-    SWord.LIMIT,
-)  # asked of every line
+_ARC, _LOCK, _MODE = Acts.ARC, Acts.LOCK, Acts.MODE  # asked of every line
+_FEED, _LIMIT = FWord.FEED, SWord.LIMIT
 _C_WORDS = frozenset({"C", "CA", "CI"})
 UNREADABLE = "unreadable"
 PLANE = "plane"
@@ -47,37 +42,16 @@ class Statement:
     plane: PlaneLine | None = None  # a line of plane switching
     f_is_feed: bool = True  # no code on it gives F another meaning
     s_is_limit: bool = False  # S belongs to G76 or G77
-
-    @property
-    def moves(self) -> bool:
-        """Whether the line asks the slides to move."""
-        return self.entry.acts is _ARC or (self.one_shot is None and ("X" in self.words or "Z" in self.words))
-
-    @property
-    def turns(self) -> bool:
-        """Whether the line holds C, which turns the spindle where that is locked."""
-        return self.one_shot is None and not self.flow and not _C_WORDS.isdisjoint(self.words)
-
-    @property
-    def locks(self) -> bool:
-        """Whether the line makes the spindle the axis C."""
-        m_code = self.m_code
-        return self.entry.acts is _LOCK or (m_code is not None and m_code.acts is _LOCK)
+    moves: bool = False  # it asks the slides to move
+    turns: bool = False  # it holds C, which turns the spindle where that is locked
+    locks: bool = False  # it makes the spindle the axis C
+    calls: bool = False  # a subroutine, on condition or not
+    asks: bool = False  # an input, whether to call
 
     @property
     def ends_program(self) -> bool:
         """Whether the line holds M30 or M02."""
         return self.m_code is not None and self.m_code.ends_program
-
-    @property
-    def calls(self) -> bool:
-        """Whether the line calls a subroutine, on condition or not."""
-        return bool(self.flow) and self.flow in FLOW_CODES and FLOW_CODES[self.flow].calls
-
-    @property
-    def asks(self) -> bool:
-        """Whether the line asks an input whether to call."""
-        return bool(self.flow) and self.flow in FLOW_CODES and FLOW_CODES[self.flow].asks
 
     @property
     def contour_cycle(self) -> bool:
@@ -139,10 +113,12 @@ def statement(line: Line) -> Statement:
         message = f"{what} looks like plane switching; (~PLXC) and (~PLZC) stand alone on a line."
         raise program_error(line.number, line.comment_column, "plane-entry", message, "Write it alone.")
     _sort(made, line)
+    words = made.words
+    made.moves = made.entry.acts is _ARC or (made.one_shot is None and ("X" in words or "Z" in words))
     if line.comment is None and not made.m_word and _SIMPLE.issuperset(made.words):
         made.simple = made.moves and _SIMPLE_MODAL.issuperset(made.modal)
     if not made.simple:
-        made.flow = _flow(made)
+        _look_for_rarer(made)
         _name_parts(made, line)
     _check_words(made, line)
     return made
@@ -154,6 +130,7 @@ def unreadable(line: Line) -> Statement:
     if not any(word.letter == "G" and word.value in {4, 10, 92} for word in line.words):
         words = {word.letter: word for word in line.words if word.letter in {"X", "Z"}}
     made = Statement(line.number, line.text, words, flow=UNREADABLE, block_delete=line.block_delete)
+    made.moves = bool(words)
     made.modal = tuple(code for code in (90, 91) if any(word[:2] == ("G", code) for word in line.words))
     return made
 
@@ -205,6 +182,15 @@ def _sort_g(made: Statement, word: Word, modal: list[Word]) -> None:
         made.f_is_feed = False
     if entry.s is _LIMIT:
         made.s_is_limit = True
+
+
+def _look_for_rarer(made: Statement) -> None:
+    """What a line does besides moving the slides."""
+    made.flow, m_code = _flow(made), made.m_code
+    made.turns = made.one_shot is None and not made.flow and not _C_WORDS.isdisjoint(made.words)
+    made.locks = made.entry.acts is _LOCK or (m_code is not None and m_code.acts is _LOCK)
+    if made.flow:
+        made.calls, made.asks = FLOW_CODES[made.flow].calls, FLOW_CODES[made.flow].asks
 
 
 def _flow(made: Statement) -> str:

@@ -15,6 +15,8 @@ _FASTEST_SURFACE = 100_000.0  # mm/s; ten times what any tool stands
 
 def spindle_modes(state: State, made: Statement) -> None:
     """G96, G97, G76 and G77 of a line; S next to G76 or G77 is theirs."""
+    if not made.modal:
+        return
     modal = state.modal
     if 96 in made.modal and not modal.css:
         state.adopt(state.modal._replace(css=True))
