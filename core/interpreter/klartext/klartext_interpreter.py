@@ -19,18 +19,7 @@ from core.interpreter.klartext.plane_functions import plane
 from core.interpreter.klartext.tool_call import tool_call
 from core.interpreter.modal_state import Modal
 from core.language.diagnostics import ProgramError
-from core.language.klartext.klartext_nodes import (
-    Assign,
-    Call,
-    Codes,
-    Datum,
-    KlartextLine,
-    Label,
-    Move,
-    Plane,
-    Stop,
-    ToolCall,
-)
+from core.language.klartext import klartext_nodes as nodes
 
 MOST_Q = 999_999_999.999999
 
@@ -80,7 +69,7 @@ class Interpreter(Interpretation):
             self._state.line, self._state.text = flow.end + 1, self._program.text(lines[flow.end])
             yield m_functions.end(self._state)
 
-    def _guarded(self, line: KlartextLine) -> Iterator[Block]:
+    def _guarded(self, line: nodes.KlartextLine) -> Iterator[Block]:
         """The blocks of a line; an error of it is kept and ends them."""
         if line.skip and self._state.setup.block_delete:
             return
@@ -93,33 +82,33 @@ class Interpreter(Interpretation):
             self._log.add(problem.diagnostic)
             self._stopped = True
 
-    def _line(self, line: KlartextLine) -> Iterator[Block]:
+    def _line(self, line: nodes.KlartextLine) -> Iterator[Block]:
         state, node = self._state, line.node
         state.line, state.text = line.number, self._program.text(line)
         match node:
-            case Move() | Codes():
+            case nodes.Move() | nodes.Codes():
                 yield from self._with_codes(node, line.comment or "")
-            case Plane():
+            case nodes.Plane():
                 yield from plane(state, node)
-            case ToolCall():
+            case nodes.ToolCall():
                 yield from tool_call(state, node, self._tools)
-            case Datum():
+            case nodes.Datum():
                 _datum(state, node)
-            case Label():
+            case nodes.Label():
                 self._flow.label(node)
-            case Call():
+            case nodes.Call():
                 self._flow.call(line.number, node)
-            case Assign():
+            case nodes.Assign():
                 state.q[node.q] = word_values.number(state, node.value, f"Q{node.q}", MOST_Q)
-            case Stop():
+            case nodes.Stop():
                 yield state.action(ProgramStop(optional=False, message=line.comment or ""))
 
-    def _with_codes(self, node: Move | Codes, comment: str) -> Iterator[Block]:
+    def _with_codes(self, node: nodes.Move | nodes.Codes, comment: str) -> Iterator[Block]:
         """The M functions of a block, and between them its move where it has one."""
         state = self._state
         m_functions.check(state, node.codes)
         yield from m_functions.before(state, node.codes)
-        if isinstance(node, Move):
+        if isinstance(node, nodes.Move):
             machine = any(code.number == m_functions.M91 for code in node.codes)
             yield from move(state, node, machine=machine)
         for block in m_functions.behind(state, node.codes, comment):
@@ -128,7 +117,7 @@ class Interpreter(Interpretation):
                 self._flow.at = len(self._program.lines)  # behind END PGM: nothing ends twice
 
 
-def _datum(state: State, node: Datum) -> None:
+def _datum(state: State, node: nodes.Datum) -> None:
     """TRANS DATUM and cycle 7: in the workpiece's system, within the plane while one is in force."""
     if node.reset:
         state.datum = state.shift = ORIGIN

@@ -4,14 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from core.interpreter.actions import (
-    Coolant,
-    Output,
-    ProgramEnd,
-    ProgramStop,
-    SpindleRun,
-    SpindleStop,
-)
+from core.interpreter import actions
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext import word_values
 from core.interpreter.klartext.klartext_state import State
@@ -77,9 +70,9 @@ def behind(state: State, codes: Sequence[MCode], comment: str) -> Iterator[Block
         if output is not None and not output[1]:
             yield _output(state, *output)
         if code.number in {0, 1}:
-            yield state.action(ProgramStop(optional=code.number == 1, message=comment))
+            yield state.action(actions.ProgramStop(optional=code.number == 1, message=comment))
         if code.number == 6:
-            yield state.action(ProgramStop(optional=False, message=f"TOOL {state.modal.tool}"))
+            yield state.action(actions.ProgramStop(optional=False, message=f"TOOL {state.modal.tool}"))
         if code.number in {2, 30}:
             yield end(state)
 
@@ -89,7 +82,7 @@ def end(state: State) -> Block:
     state.m128 = False
     state.set_plane(None)
     state.modal = state.modal._replace(spindle=0, coolant=False, outputs=frozenset())
-    return state.action(ProgramEnd(reset=True))
+    return state.action(actions.ProgramEnd(reset=True))
 
 
 def _start(state: State, code: MCode) -> Block:
@@ -97,23 +90,23 @@ def _start(state: State, code: MCode) -> Block:
         why = f"M{code.number} starts the spindle, and no TOOL CALL has given S."
         raise state.refuse(code.column, WRONG_RPM, why, "Write S behind TOOL CALL.")
     state.modal = state.modal._replace(spindle=_TURNS[code.number])
-    return state.action(SpindleRun(state.modal.rpm * state.modal.spindle))
+    return state.action(actions.SpindleRun(state.modal.rpm * state.modal.spindle))
 
 
 def _stop(state: State) -> Block:
     state.modal = state.modal._replace(spindle=0)
-    return state.action(SpindleStop())
+    return state.action(actions.SpindleStop())
 
 
 def _coolant(state: State, *, on: bool) -> Block:
     state.modal = state.modal._replace(coolant=on)
-    return state.action(Coolant(on))
+    return state.action(actions.Coolant(on))
 
 
 def _output(state: State, name: str, on: bool) -> Block:
     outputs = state.modal.outputs | {name} if on else state.modal.outputs - {name}
     state.modal = state.modal._replace(outputs=outputs)
-    return state.action(Output(name, on))
+    return state.action(actions.Output(name, on))
 
 
 def _away(state: State, code: MCode) -> Iterator[Block]:

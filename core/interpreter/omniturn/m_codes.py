@@ -4,16 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from core.interpreter.actions import (
-    Action,
-    Collet,
-    Coolant,
-    Output,
-    ProgramEnd,
-    ProgramStop,
-    RepeatOff,
-    WaitInput,
-)
+from core.interpreter import actions
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.omniturn.carry_over import after_end
 from core.interpreter.omniturn.code_table import Acts, carry_out
@@ -45,7 +36,7 @@ def after_motion(state: State, made: Statement) -> Iterator[Block]:
 def coolant(state: State, made: Statement) -> Iterator[Block]:
     """The block of M08 or M09: coolant on, off."""
     state.adopt(state.modal._replace(coolant=made.m == 8))
-    yield _done(state, made, Coolant(on=made.m == 8))
+    yield _done(state, made, actions.Coolant(on=made.m == 8))
 
 
 def collet(state: State, made: Statement) -> Iterator[Block]:
@@ -55,23 +46,23 @@ def collet(state: State, made: Statement) -> Iterator[Block]:
         text = "M13 opens the collet while the spindle turns."
         raise made.refuse("M", "unclamp-turning", text, "Stop it with M05 first.")
     state.adopt(state.modal._replace(collet_closed=not opens))
-    yield _done(state, made, Collet(closed=not opens))
+    yield _done(state, made, actions.Collet(closed=not opens))
 
 
 def wait_for_input(state: State, made: Statement) -> Iterator[Block]:
     """The block of M91 to M94: wait until the terminal is open or closed."""
     assert made.m_code is not None
-    yield _done(state, made, WaitInput(*made.m_code.terminal))
+    yield _done(state, made, actions.WaitInput(*made.m_code.terminal))
 
 
 def program_stop(state: State, made: Statement) -> Iterator[Block]:
     """The block of M00 or M01, with the comment that the operator is shown."""
-    yield _done(state, made, ProgramStop(optional=made.m == 1, message=(made.comment or "").strip()))
+    yield _done(state, made, actions.ProgramStop(optional=made.m == 1, message=(made.comment or "").strip()))
 
 
 def repeat_off(state: State, made: Statement) -> Iterator[Block]:
     """The block of M31: cancels Cycle Repeat."""
-    yield _done(state, made, RepeatOff())
+    yield _done(state, made, actions.RepeatOff())
 
 
 def program_end(state: State, made: Statement) -> Iterator[Block]:
@@ -79,7 +70,7 @@ def program_end(state: State, made: Statement) -> Iterator[Block]:
     reset = made.m == 30
     warn_of_short_dwell(state)
     state.stay(after_end(state.modal, abs(state.rpm_at(state.x)), reset=reset))
-    yield _done(state, made, ProgramEnd(reset=reset))
+    yield _done(state, made, actions.ProgramEnd(reset=reset))
 
 
 def check_m_codes(state: State, lines: tuple[Statement, ...]) -> None:
@@ -100,7 +91,7 @@ def _unknown(state: State, made: Statement) -> Diagnostic:
     return refusal(made.line, column, "m-unknown", text, hint)
 
 
-def _done(state: State, made: Statement, action: Action) -> Block:
+def _done(state: State, made: Statement, action: actions.Action) -> Block:
     return state.action(made.line, made.part("m"), action)
 
 
@@ -113,4 +104,4 @@ def _machine_output(state: State, made: Statement, *, on: bool) -> Iterator[Bloc
     if wanted is on:
         outputs = state.modal.outputs | {name} if on else state.modal.outputs - {name}
         state.adopt(state.modal._replace(outputs=outputs))
-        yield _done(state, made, Output(name, on))
+        yield _done(state, made, actions.Output(name, on))

@@ -2,114 +2,93 @@
 
 from __future__ import annotations
 
-from core.language.klartext.klartext_nodes import (
-    Assign,
-    AxisWord,
-    Begin,
-    BlankForm,
-    Call,
-    Codes,
-    Datum,
-    End,
-    Feed,
-    Heading,
-    KlartextLine,
-    Label,
-    MCode,
-    Move,
-    Node,
-    Plane,
-    Positioning,
-    Retract,
-    Stop,
-    ToolCall,
-    Value,
-)
+from core.language.klartext import klartext_nodes as nodes
 
 _FEEDS = {"max": "FMAX", "auto": "F AUTO"}
 
 
-def written(line: KlartextLine) -> str:
+def written(line: nodes.KlartextLine) -> str:
     """The block of a line without its number and comment; empty where there is none."""
     return "" if line.node is None else _block(line.node)
 
 
-def _block(node: Node) -> str:
+def _block(node: nodes.Node) -> str:
     match node:
-        case Move():
+        case nodes.Move():
             r0 = "R0" if node.r0 else ""
             return _joined("L", _axes(node.axes), r0, _feed(node.feed), _codes(node.codes))
-        case Plane():
+        case nodes.Plane():
             return _joined("PLANE", node.form, _axes(node.words), _positioning(node.positioning))
-        case Codes():
+        case nodes.Codes():
             return _codes(node.codes)
-        case ToolCall():
+        case nodes.ToolCall():
             return _tool_call(node)
-        case Datum():
+        case nodes.Datum():
             return _datum(node)
         case _:
             return _short(node)
 
 
-def _short(node: Begin | End | BlankForm | Label | Call | Assign | Stop | Heading) -> str:
+def _short(node: nodes.Node) -> str:
+    made = ""
     match node:
-        case Begin() | End():
+        case nodes.Begin() | nodes.End():
             made = f"{type(node).__name__.upper()} PGM {node.name} {'INCH' if node.inch else 'MM'}"
-        case BlankForm():
+        case nodes.BlankForm():
             made = _joined(f"BLK FORM 0.{node.part}", node.tool_axis, _axes(node.corner))
-        case Label():
+        case nodes.Label():
             made = f"LBL {name_text(node.name)}"
-        case Call():
+        case nodes.Call():
             repeat = "" if node.repeat is None else f"REP {node.repeat}"
             made = _joined("CALL LBL", name_text(node.name), repeat)
-        case Assign():
+        case nodes.Assign():
             made = _joined("FN 0:" if node.spelled else "", f"Q{node.q} = {_value(node.value)}")
-        case Stop():
+        case nodes.Stop():
             made = "STOP"
-        case Heading():
+        case nodes.Heading():
             made = f"* - {node.text}"
     return made
 
 
-def _tool_call(node: ToolCall) -> str:
+def _tool_call(node: nodes.ToolCall) -> str:
     words = (("S", node.speed), ("F", node.feed), ("DL", node.length), ("DR", node.radius))
     tool = "" if node.tool is None else name_text(node.tool)
     shown = [f"{word}{_value(value, plus=word[0] == 'D')}" for word, value in words if value is not None]
     return _joined("TOOL CALL", tool, node.tool_axis, *shown)
 
 
-def _datum(node: Datum) -> str:
+def _datum(node: nodes.Datum) -> str:
     if node.cycle is not None:
         return _joined(f"CYCL DEF 7.{node.cycle}", node.text, _axes(node.axes))
     return "TRANS DATUM RESET" if node.reset else _joined("TRANS DATUM AXIS", _axes(node.axes))
 
 
-def _positioning(made: Positioning) -> str:
+def _positioning(made: nodes.Positioning) -> str:
     distance = "" if made.distance is None else f"DIST{_value(made.distance, plus=False)}"
     return _joined(made.way, distance, _retract(made.retract), _feed(made.feed), made.side, made.rotation)
 
 
-def _codes(codes: tuple[MCode, ...]) -> str:
+def _codes(codes: tuple[nodes.MCode, ...]) -> str:
     return " ".join(_joined(f"M{code.number}", _retract(code.retract), _feed(code.feed)) for code in codes)
 
 
-def _axes(words: tuple[AxisWord, ...]) -> str:
+def _axes(words: tuple[nodes.AxisWord, ...]) -> str:
     return " ".join(f"{'I' if word.incremental else ''}{word.axis}{_value(word.value)}" for word in words)
 
 
-def _feed(feed: Feed | None) -> str:
+def _feed(feed: nodes.Feed | None) -> str:
     if feed is None:
         return ""
     return _FEEDS[feed.kind] if feed.value is None else f"F{_value(feed.value, plus=False)}"
 
 
-def _retract(way: Retract | None) -> str:
+def _retract(way: nodes.Retract | None) -> str:
     if way is None:
         return ""
     return "MB MAX" if way.distance is None else f"MB{_value(way.distance, plus=False)}"
 
 
-def _value(value: Value, *, plus: bool = True) -> str:
+def _value(value: nodes.Value, *, plus: bool = True) -> str:
     if value.q is not None:
         return f"{'-' if value.negative else '+' if plus else ''}Q{value.q}"
     return f"{value.number:{'+' if plus else ''}.9f}".rstrip("0").rstrip(".")
