@@ -3,38 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
+from core.geometry.rotary_axes import PivotMove
+from core.geometry.virtual_mill import PlaneMove
+
 FloatArray = npt.NDArray[np.float64]
 
 
-class CurvedMove(Protocol):
-    """A way on which the axes do not run in proportion; fractions of it run from 0 to 1."""
+CurvedMove = PivotMove | PlaneMove
+"""A way on which the axes do not run in proportion, unless it is ``straight`` after all.
 
-    @property
-    def length(self) -> float:
-        """What the feed counts, mm; degrees where only rotary axes are meant."""
-        ...
-
-    @property
-    def straight(self) -> bool:
-        """Whether the axes run in proportion after all."""
-        ...
-
-    def machine(self, share: FloatArray) -> FloatArray:
-        """Machine positions (k, axes) at fractions (k,), without a jump."""
-        ...
-
-    def part(self, points: FloatArray) -> FloatArray:
-        """Where the tool is on the part (k, 3), mm, at machine positions (k, axes)."""
-        ...
-
-    def nearest(self) -> float:
-        """Fraction at which the axes turn most for the way, so that it is looked at for sure."""
-        ...
+Both tell ``length`` (what the feed counts: mm, or degrees where only rotary axes are meant), ``machine``
+positions (k, axes) at fractions (k,) from 0 to 1, without a jump, where the tool is on the ``part`` (k, 3) at
+machine positions, and the fraction ``nearest`` to where the axes turn most for the way.
+"""
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,6 @@ from core.interpreter.restart.cut_record import (
     SIDE,
     STILL,
     THREAD,
-    Bools,
     CutRecord,
     Floats,
 )
@@ -223,7 +222,9 @@ class _Search:
         elif self.within:
             first = self.row
         rows = self._with_this_tool(first)
-        passes = np.flatnonzero(((self.cut.how[rows] & FEED) == 0) & self._comes_past(rows, level))
+        cut = self.cut
+        past = (cut.z[rows] > level) & (cut.z0[rows] <= level)
+        passes = np.flatnonzero(((cut.how[rows] & FEED) == 0) & past)
         if not len(passes):
             return None
         crossing = first + int(passes[0])
@@ -249,9 +250,6 @@ class _Search:
         other = (cut.tool[far] != cut.tool[self.row]) | (cut.bar[far] != cut.bar[self.row])
         ends = np.flatnonzero(other)
         return slice(first, first + (int(ends[0]) if len(ends) else len(other)))
-
-    def _comes_past(self, rows: slice, level: float) -> Bools:
-        return (self.cut.z[rows] > level) & (self.cut.z0[rows] <= level)
 
     def _in_the_way(self, rows: slice, level: float) -> bool:
         """Whether a cut among these rows comes up to this Z, or goes along X at it."""

@@ -109,7 +109,7 @@ class StateRebuild:
             if lost:
                 return f"Line {line} is no place to go on: {lost}"
         walk, known = walks[0], self._other is None or _same_state(*walks)
-        why = self._why_not_here(line, walk, known=known)
+        why = self._why_not(line, walk, known=known)
         return why or self._found(line, walk, visit, broken)
 
     def _walk_from(self, walk: PassToLine, anchor: int) -> PassToLine:
@@ -172,7 +172,7 @@ class StateRebuild:
             other = self._other
             if other is not None and not other.failed and _same_state(self._walk, other):
                 self._other = None
-        return self._why_not(line)
+        return self._why_not(line, self._walk, known=self._other is None)
 
     def _stop(self, line: int) -> int:
         """Where both passes are compared next: behind each line while little is known, at each input."""
@@ -209,10 +209,7 @@ class StateRebuild:
             self._program, replace(self._setup, begin=begin, inputs=lambda _terminal: True)
         )
 
-    def _why_not(self, line: int) -> str:
-        return self._why_not_here(line, self._walk, known=self._other is None)
-
-    def _why_not_here(self, line: int, walk: PassToLine, *, known: bool) -> str:
+    def _why_not(self, line: int, walk: PassToLine, *, known: bool) -> str:
         reasons = (
             (walk.failed, f"The program has errors before line {line}."),
             (self._ended, f"The program ends on line {self._ended}, before line {line}."),

@@ -104,10 +104,7 @@ class Corners:
             cut, between, rest = self._elements(held.corner, first, last)
         except NoCornerError:
             text = f"lines {block.line} and {after.line} run in one direction: there is no corner to cut."
-            found = held.corner.made.refuse(
-                held.corner.word, "corner-straight", text, "Take it out."
-            ).diagnostic
-            self._log.warn(found.line, found.column, found.code, found.message, found.hint)
+            self._log.add(held.corner.made.warning(held.corner.word, "corner-straight", text, "Take it out."))
             yield from (block, *held.between)
             yield from self.take(after, corner)
             return

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
-from core.language.diagnostics import ProgramError
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.sinumerik import sinumerik_words as known
 from core.language.sinumerik.sinumerik_alarms import ONE_GROUP, TWICE, fault
 from core.language.sinumerik.sinumerik_words import Line, Word
@@ -54,6 +54,10 @@ class Statement:
         line, column = self.line, word.column if word else 1
         axis = word.name if word and word.name in known.AXES else ""
         return ProgramError(fault(line.number, column, code, line.block, text, hint, axis=axis))
+
+    def warning(self, word: Word | None, code: str, text: str, hint: str) -> Diagnostic:
+        """The same that is no error."""
+        return replace(self.refuse(word, code, text, hint).diagnostic, severity=Severity.WARNING)
 
 
 def statement(line: Line) -> Statement:

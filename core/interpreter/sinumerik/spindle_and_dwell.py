@@ -55,8 +55,7 @@ def _warn_of_minutes(state: State, made: Statement) -> None:
     """Some controls read F as mm a revolution from G96 on; this one goes by G94 and G95 alone."""
     text = "G96 is in force and F counts in mm/min (G94)."
     hint = "Write G95 where F is meant as mm a revolution."
-    found = made.refuse(made.g["kind of spindle speed"], "g96-by-minute", text, hint).diagnostic
-    state.log.warn(found.line, found.column, found.code, found.message, found.hint)
+    state.log.add(made.warning(made.g["kind of spindle speed"], "g96-by-minute", text, hint))
 
 
 def _limit(state: State, made: Statement) -> None:

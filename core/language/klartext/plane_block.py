@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
+from collections.abc import Callable
 
 from core.language.klartext.klartext_faults import syntax, unsupported
 from core.language.klartext.klartext_nodes import AxisWord, Plane, Positioning
@@ -38,14 +39,6 @@ def _axial(cursor: Cursor) -> tuple[AxisWord, ...]:
     return words
 
 
-def _points(cursor: Cursor) -> tuple[AxisWord, ...]:
-    return _all_of(cursor, POINT_WORDS, _named(cursor, _POINT))
-
-
-def _spatial(cursor: Cursor) -> tuple[AxisWord, ...]:
-    return _all_of(cursor, SPATIAL_WORDS, _named(cursor, _SPATIAL))
-
-
 def _relative(cursor: Cursor) -> tuple[AxisWord, ...]:
     words = _named(cursor, _SPATIAL)
     if len(words) != 1:
@@ -55,7 +48,12 @@ def _relative(cursor: Cursor) -> tuple[AxisWord, ...]:
     return words
 
 
-_WORDS = {"AXIAL": _axial, "POINTS": _points, "SPATIAL": _spatial, "RELATIV": _relative}
+_WORDS: dict[str, Callable[[Cursor], tuple[AxisWord, ...]]] = {
+    "AXIAL": _axial,
+    "POINTS": lambda cursor: _all_of(cursor, POINT_WORDS, _named(cursor, _POINT)),
+    "SPATIAL": lambda cursor: _all_of(cursor, SPATIAL_WORDS, _named(cursor, _SPATIAL)),
+    "RELATIV": _relative,
+}
 
 
 def _named(cursor: Cursor, pattern: re.Pattern[str]) -> tuple[AxisWord, ...]:

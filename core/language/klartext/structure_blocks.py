@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 
-from core.language.diagnostics import ProgramError
 from core.language.klartext.klartext_faults import syntax, unsupported
 from core.language.klartext.klartext_nodes import (
     Assign,
@@ -84,16 +83,12 @@ def tool_call(cursor: Cursor) -> ToolCall:
         at = cursor.column
         match = cursor.take(_TOOL_WORD)
         if match is None:
-            raise _strange_word(cursor)
+            raise cursor.expected("No word of TOOL CALL", "It takes a tool, its axis, S, F, DL and DR.")
         name = match.group(1)
         if name in words:
             raise doubled(cursor, at, name)
         words[name] = cursor.value(name)
     return ToolCall(tool, axis, words.get("S"), words.get("F"), words.get("DL"), words.get("DR"), column)
-
-
-def _strange_word(cursor: Cursor) -> ProgramError:
-    return cursor.expected("No word of TOOL CALL", "It takes a tool, its axis, S, F, DL and DR.")
 
 
 # --- datum shifts, labels, calls and Q parameters

@@ -119,7 +119,7 @@ def _without_comment(
         first = first or start + 1
         end = text.find(")", start)
         if end < 0:
-            errors.append(word_faults.open_comment(number, start + 1))
+            errors.append(word_faults.slip(number, start + 1, "comment-open"))
             end = len(text)
         comments.append(text[start + 1 : end])
         at = end + 1
@@ -193,14 +193,14 @@ class _Scanner:
         text = self._code.text
         exponent = _EXPONENT.match(text, at)
         if exponent is not None:
-            self._errors.append(word_faults.exponent(self._number, self._column(at)))
+            self._errors.append(word_faults.slip(self._number, self._column(at), "exponent"))
             return exponent.end()
         if text[at : at + 1] == "O" and (not self._thread or text[at + 1 : at + 2] in _NUMBER_SIGNS):
             return self._letter_o(at)
         return at
 
     def _letter_o(self, at: int) -> int:
-        self._errors.append(word_faults.letter_o(self._number, self._column(at)))
+        self._errors.append(word_faults.slip(self._number, self._column(at), "letter-o"))
         match = _ZERO_LETTER.match(self._code.text, at)
         return match.end() if match else at + 1
 

@@ -21,6 +21,13 @@ _AFTER_NUMBER = {
     "-": ("sign-inside", "A sign stands inside a number.", "Split it into two words."),
 }
 
+_SLIPS = {
+    "comment-open": ("The comment has no closing parenthesis.", "Add ')'."),
+    # X1E5, and E005 where a print of F.005 was read.
+    "exponent": ("Numbers have no exponent here.", "Write the number out; a feed is F."),
+    "letter-o": ("The letter O stands where a zero belongs.", "Write 0."),  # GO2, MO5, XO
+}
+
 
 def too_long(line: int, length: int) -> Diagnostic:
     """More on one line than a program line can hold."""
@@ -34,21 +41,9 @@ def text_outside(line: int, column: int, text: str) -> Diagnostic:
     return refusal(line, column, "text-outside", message, f"Write ({shown}).")
 
 
-def open_comment(line: int, column: int) -> Diagnostic:
-    """A parenthesis without its partner."""
-    return refusal(line, column, "comment-open", "The comment has no closing parenthesis.", "Add ')'.")
-
-
-def exponent(line: int, column: int) -> Diagnostic:
-    """``X1E5``, and ``E005`` where a print of ``F.005`` was read."""
-    return refusal(
-        line, column, "exponent", "Numbers have no exponent here.", "Write the number out; a feed is F."
-    )
-
-
-def letter_o(line: int, column: int) -> Diagnostic:
-    """``GO2``, ``MO5``, ``XO``."""
-    return refusal(line, column, "letter-o", "The letter O stands where a zero belongs.", "Write 0.")
+def slip(line: int, column: int, code: str) -> Diagnostic:
+    """What has one sentence wherever it stands."""
+    return refusal(line, column, code, *_SLIPS[code])
 
 
 def no_number(line: int, column: int, letter: str, follower: str) -> Diagnostic:

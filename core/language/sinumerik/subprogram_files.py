@@ -37,11 +37,8 @@ def sections(source: Source) -> list[Section]:
     ends = [i for i, _ in heads[1:]] + [len(source.lines)]
     found = [Section(name, range(i + 1, end)) for (i, name), end in zip(heads, ends, strict=True)]
     before = range(heads[0][0])
-    return [Section("", before), *found] if _holds_code(source, before) else found
-
-
-def _holds_code(source: Source, lines: range) -> bool:
-    return any(source.lines[i].split(";", 1)[0].strip() for i in lines)
+    holds_code = any(source.lines[i].split(";", 1)[0].strip() for i in before)
+    return [Section("", before), *found] if holds_code else found
 
 
 def with_subprograms(source: Source, folders: Sequence[Path]) -> Source:
