@@ -7,7 +7,7 @@ import json
 import os
 import sys
 from collections.abc import Iterator
-from concurrent.futures import BrokenExecutor, Executor, Future
+from concurrent.futures import CancelledError, Executor, Future
 from dataclasses import dataclass
 
 from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
@@ -15,9 +15,9 @@ from app.cli.program_files import ProgramFiles, program_files
 from app.cli.program_options import read_source
 from app.cli.progress_bar import Progress
 from app.cli.proof_cache import ProofCache
-from app.cli.proof_pool import KILLED, Proving, Workers, cores
+from app.cli.proof_pool import KILLED, Proving, Workers, WorkerSource, cores
 from app.cli.proof_table import table
-from app.cli.proof_work import OtherVersionError, Proof, ProofJob, proof_of
+from app.cli.proof_work import OtherVersionError, Proof, ProofJob, code_version, proof_of
 from core.language.source import Source
 
 
@@ -25,10 +25,17 @@ def prove_many(args: argparse.Namespace, job: ProofJob) -> int:
     """Prove all programs; 1 when any has errors, 2 when one cannot be read."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     files = program_files(args.files)
-    workers = Workers(args.jobs if args.jobs is not None else cores())
-    run = _Run(args, job, files)
-    run.prove(workers)
+    run = _Run(args, job, files, _workers(args))
+    run.prove()
     return run.told()
+
+
+def _workers(args: argparse.Namespace) -> WorkerSource:
+    if args.scheduler is None:
+        return Workers(args.jobs if args.jobs is not None else cores())
+    from app.cli.proof_scheduler import Scheduler
+
+    return Scheduler(args.scheduler)
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,23 +50,30 @@ class _Unit:
 class _Run:
     """One call: what is proved, and what has been told of it."""
 
-    def __init__(self, args: argparse.Namespace, job: ProofJob, files: ProgramFiles) -> None:
+    def __init__(
+        self, args: argparse.Namespace, job: ProofJob, files: ProgramFiles, workers: WorkerSource
+    ) -> None:
         from app.desk.data_folder import data_folder
 
-        self._args, self._job, self._files = args, job, files
+        self._args, self._job, self._files, self._workers = args, job, files, workers
+        self._version = code_version() if args.scheduler is not None else ""  # our own workers have ours
         self._cache = None if args.no_cache else ProofCache(data_folder() / "proofs", job)
         self._proofs: dict[int, Proof] = {}
         self._told = 0
         self._progress = Progress("proving", len(files.paths))
 
-    def prove(self, workers: Workers) -> None:
+    def prove(self) -> None:
         """Go through all programs; what has been proved is kept even when it ends in the middle."""
-        proving: Proving[_Unit, Proof] = Proving(workers, self._submit)
+        proving: Proving[_Unit, Proof] = Proving(self._workers, self._submit)
         results = proving.results(self._units())
         try:
             with self._progress:
                 for unit, made in results:
                     self._add(unit.index, self._kept(unit, made))
+        except CancelledError as error:
+            raise CommandError(
+                f"--scheduler {self._args.scheduler} has gone; what it has proved is kept, start again"
+            ) from error
         finally:
             results.close()
             if self._cache is not None:
@@ -76,7 +90,7 @@ class _Run:
         return max(_status(proof) for _, proof in rows)
 
     def _submit(self, executor: Executor, unit: _Unit) -> Future[Proof]:
-        return executor.submit(proof_of, self._job.packed, "", unit.source)
+        return executor.submit(proof_of, self._job.packed, self._version, unit.source)
 
     def _units(self) -> Iterator[_Unit]:
         """The programs that no proof is kept of, one after the other as workers are ready for them."""
@@ -95,10 +109,24 @@ class _Run:
 
     def _kept(self, unit: _Unit, made: Proof | BaseException) -> Proof:
         if isinstance(made, BaseException):
-            return Proof({}, f"{self._files.paths[unit.index]}: {_why(made)}")
+            return Proof({}, f"{self._files.paths[unit.index]}: {self._why(made)}")
         if self._cache is not None:
             self._cache.keep(unit.key, made)
         return made
+
+    def _why(self, error: BaseException) -> str:
+        """What has kept a program from its proof."""
+        if isinstance(error, self._workers.killed):
+            return KILLED
+        if isinstance(error, OtherVersionError):
+            return "the worker has another version of TurnDesk; install the same there"
+        if isinstance(error, ModuleNotFoundError) and self._version:
+            return f"the worker has no TurnDesk ({error}); install it there"
+        from app.cli.crash_report import keep_crash
+
+        where = keep_crash(type(error), error, error.__traceback__)
+        what = str(error).splitlines()[0] if str(error) else type(error).__name__
+        return f"a fault in TurnDesk itself ({what}); please report it with {where}"
 
     def _add(self, index: int, proof: Proof) -> None:
         if proof.report:
@@ -116,19 +144,6 @@ class _Run:
         elif self._args.json:
             sys.stdout.write(json.dumps(proof.report) + "\n")
             sys.stdout.flush()
-
-
-def _why(error: BaseException) -> str:
-    """What has kept a program from its proof."""
-    if isinstance(error, BrokenExecutor):
-        return KILLED
-    if isinstance(error, OtherVersionError):
-        return "the worker has another version of TurnDesk; install the same there"
-    from app.cli.crash_report import keep_crash
-
-    where = keep_crash(type(error), error, error.__traceback__)
-    what = str(error).splitlines()[0] if str(error) else type(error).__name__
-    return f"a fault in TurnDesk itself ({what}); please report it with {where}"
 
 
 def _status(proof: Proof) -> int:

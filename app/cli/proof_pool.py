@@ -10,7 +10,7 @@ import sys
 from collections import deque
 from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
-from typing import Generic, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 Unit = TypeVar("Unit")
 Made = TypeVar("Made")
@@ -33,11 +33,28 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
+class WorkerSource(Protocol):
+    """Where workers come from; ``killed`` is the exception that a unit ends with which kills its worker."""
+
+    killed: type[BaseException]
+
+    @property
+    def ahead(self) -> int:
+        """How many units may be under way."""
+
+    def open(self, jobs: int | None = None, /) -> Executor:
+        """Workers, as many as there are or so many."""
+
+    def stop(self) -> None:
+        """End what is under way."""
+
+
 class Workers:
     """Processes of this computer. ``work`` is a function of a module, and its arguments can be sent."""
 
     def __init__(self, jobs: int) -> None:
         self.jobs = jobs
+        self.killed: type[BaseException] = BrokenExecutor
         self.ahead = jobs + _AHEAD
         self._before = set(multiprocessing.active_children())
         method = "forkserver" if sys.platform == "linux" else "spawn"
@@ -68,7 +85,7 @@ class Proving(Generic[Unit, Made]):
     at a time in a worker of its own: what kills that one too is the cause.
     """
 
-    def __init__(self, workers: Workers, submit: Callable[[Executor, Unit], Future[Made]]) -> None:
+    def __init__(self, workers: WorkerSource, submit: Callable[[Executor, Unit], Future[Made]]) -> None:
         self._workers, self._submit = workers, submit
         self._running: dict[Future[Made], Unit] = {}
         self._again: deque[Unit] = deque()
@@ -95,10 +112,11 @@ class Proving(Generic[Unit, Made]):
                     yield from self._one_by_one()
             done = True
         finally:
+            for future in self._running:
+                future.cancel()
             if executor is not None:
-                executor.shutdown(wait=done, cancel_futures=True)
-            if not done:
-                self._workers.stop()
+                executor.shutdown(wait=done)
+            self._workers.stop()
 
     def _give(self, executor: Executor, unit: Unit) -> None:
         try:

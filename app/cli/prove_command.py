@@ -46,6 +46,9 @@ def add_parser(subparsers: SubParsers) -> None:
 def add_folder_options(parser: argparse.ArgumentParser) -> None:
     """How many programs are proved."""
     parser.add_argument("--jobs", metavar="N", type=_count, help="worker processes (default: one a core)")
+    parser.add_argument(
+        "--scheduler", metavar="HOST:PORT", help="prove on the workers of a dask.distributed scheduler"
+    )
     parser.add_argument("--no-cache", action="store_true", help="prove anew what was proved before")
 
 
@@ -69,9 +72,12 @@ def run(args: argparse.Namespace) -> int:
 
 def _for_workers(args: argparse.Namespace) -> bool:
     """Whether workers are to prove and a table is to tell: for a folder, or because an option says so."""
-    many = args.jobs is not None or any(Path(name).is_dir() for name in args.files)
+    given = args.jobs is not None or args.scheduler is not None
+    many = given or any(Path(name).is_dir() for name in args.files)
     if args.no_cache and not many:
         raise CommandError("--no-cache is for folders and --jobs; one program is always proved anew")
+    if args.jobs is not None and args.scheduler is not None:
+        raise CommandError("--jobs and --scheduler exclude each other: the scheduler has its own workers")
     return many
 
 

@@ -66,6 +66,7 @@ COVERED = {
     ("prove", "--stick-out"): "test_a_stick_out_brings_the_chuck_into_the_proof",
     ("prove", "--stock"): "test_the_promised_keys_in_cubic_inches",
     ("prove", "--jobs"): "test_files_and_folders_mixed_are_proved_once_each",
+    ("prove", "--scheduler"): "tests/cli/test_scheduler.py",
     ("prove", "--no-cache"): "test_no_cache_neither_keeps_nor_looks",
     ("expand", "--ideal"): "test_the_options_of_a_program_act",
     ("trace", "--dt"): "tests/cli/test_trace.py",

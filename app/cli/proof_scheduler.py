@@ -1,0 +1,52 @@
+"""``prove --scheduler``: the same units of work, given to a dask.distributed scheduler and its workers.
+
+TurnDesk itself must be installed where the workers run, in the same version; programs and machine are sent.
+"""
+
+from __future__ import annotations
+
+import logging
+import re
+import sys
+from concurrent.futures import Executor
+
+from app.cli.command_errors import CommandError
+
+_ADDRESS = re.compile(r"(?:tcp://|tls://)?(\[[0-9A-Fa-f:]+\]|[\w.-]+):(\d{1,5})")
+_ANSWER = 10.0  # s to wait for the scheduler
+_AHEAD = 256  # units that the scheduler has at once; workers may join while they are proved
+
+
+class Scheduler:
+    """Workers of a scheduler. Raises CommandError when it cannot be reached."""
+
+    ahead = _AHEAD
+
+    def __init__(self, address: str) -> None:
+        if not (found := _ADDRESS.fullmatch(address)) or int(found[2]) > 65535:
+            raise CommandError(f"--scheduler {address} is no HOST:PORT; write it as 192.168.1.20:8786")
+        try:
+            import distributed
+        except ImportError as error:
+            raise CommandError(
+                "--scheduler needs dask.distributed, which is not installed; install turndesk[scheduler]"
+            ) from error
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what it has to say is told by us
+        self.killed: type[BaseException] = distributed.scheduler.KilledWorker
+        try:
+            self._client = distributed.Client(address, timeout=_ANSWER)
+        except OSError as error:
+            raise CommandError(
+                f"--scheduler {address}: nothing answers there; start it, or correct the address"
+            ) from error
+        if not self._client.ncores():
+            sys.stderr.write(f"turndesk: {address} has no workers yet; waiting for one\n")
+
+    def open(self, _jobs: int | None = None) -> Executor:
+        """All workers that the scheduler has and gets."""
+        executor: Executor = self._client.get_executor(pure=False)
+        return executor
+
+    def stop(self) -> None:
+        """Take back what is not proved yet, and leave the scheduler."""
+        self._client.close()

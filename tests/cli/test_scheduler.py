@@ -1,0 +1,122 @@
+"""``prove --scheduler``: a real scheduler with two workers on loopback, one of them killed; and refusals."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from app.cli import proof_work
+from app.cli.proof_work import OtherVersionError, proof_of
+from core.language.source import Source
+from tests.benchmarks.bench_folder import program
+from tests.cli.conftest import Turndesk
+
+with_distributed = pytest.mark.skipif(
+    importlib.util.find_spec("distributed") is None,
+    reason="dask.distributed is not installed (turndesk[scheduler])",
+)
+PROGRAMS = 40
+_CLUSTER = """
+import sys
+from distributed import LocalCluster
+if __name__ == "__main__":
+    with LocalCluster(
+        n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
+    ) as cluster:
+        print(cluster.scheduler_address, *(each.pid for each in cluster.workers.values()), flush=True)
+        sys.stdin.read()
+"""
+
+
+class Cluster(NamedTuple):
+    """A scheduler, and the processes of its workers."""
+
+    address: str
+    workers: list[int]
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[Cluster]:
+    script = tmp_path / "cluster.py"
+    script.write_text(_CLUSTER)
+    with subprocess.Popen(
+        [sys.executable, str(script)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=tmp_path
+    ) as process:
+        assert process.stdout is not None
+        address, *workers = process.stdout.readline().split()
+        yield Cluster(address.removeprefix("tcp://"), [int(each) for each in workers])
+        process.communicate()
+
+
+@pytest.fixture
+def parts(tmp_path: Path) -> Path:
+    folder = tmp_path / "parts"
+    folder.mkdir()
+    for number in range(PROGRAMS):
+        (folder / f"{number:02d}.nc").write_text(program(number))
+    return folder
+
+
+@pytest.mark.long
+@with_distributed
+def test_two_workers_prove_a_folder_and_one_is_killed(
+    cluster: Cluster, parts: Path, offsets: Path, tmp_path: Path
+) -> None:
+    command = [sys.executable, "-m", "app.cli.main", "prove", str(parts), "--json", "--offsets", str(offsets)]
+    around = {**os.environ, "TURNDESK_HOME": str(tmp_path / "home")}
+    given = [*command, "--scheduler", cluster.address]
+    with subprocess.Popen(given, stdout=subprocess.PIPE, text=True, env=around) as proving:
+        assert proving.stdout is not None
+        lines = [proving.stdout.readline()]
+        os.kill(cluster.workers[0], signal.SIGKILL)
+        lines += proving.stdout.readlines()
+    assert proving.returncode == 0
+    here = subprocess.run([*command, "--no-cache"], stdout=subprocess.PIPE, text=True, env=around, check=True)
+    assert [json.loads(line) for line in lines] == [json.loads(line) for line in here.stdout.splitlines()]
+    assert len(lines) == PROGRAMS
+
+
+@with_distributed
+def test_nothing_answers(
+    turndesk: Turndesk, parts: Path, offsets: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.cli.proof_scheduler._ANSWER", 0.2)
+    told = turndesk("prove", parts, "--offsets", offsets, "--scheduler", "127.0.0.1:1")
+    assert (told.status, "nothing answers there" in told.err) == (2, True)
+
+
+@pytest.mark.parametrize("address", ["here", "127.0.0.1", "127.0.0.1:", ":8786", "127.0.0.1:99999", "a b:1"])
+def test_what_is_no_address_is_refused(turndesk: Turndesk, parts: Path, offsets: Path, address: str) -> None:
+    told = turndesk("prove", parts, "--offsets", offsets, f"--scheduler={address}")
+    assert (told.status, "is no HOST:PORT" in told.err, told.err.count("\n")) == (2, True, 1)
+
+
+def test_without_dask_it_is_refused_in_one_line(
+    turndesk: Turndesk, parts: Path, offsets: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    told = turndesk("prove", parts, "--offsets", offsets, "--scheduler", "127.0.0.1:8786")
+    assert told.status == 2
+    assert told.err == (
+        "turndesk: --scheduler needs dask.distributed, which is not installed; install turndesk[scheduler]\n"
+    )
+
+
+def test_jobs_and_scheduler_exclude_each_other(turndesk: Turndesk, parts: Path) -> None:
+    told = turndesk("prove", parts, "--scheduler", "127.0.0.1:8786", "--jobs", 2)
+    assert (told.status, "exclude each other" in told.err) == (2, True)
+
+
+def test_a_worker_with_another_turndesk_proves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(proof_work, "code_version", lambda: "another")
+    with pytest.raises(OtherVersionError):
+        proof_of(b"", "ours", Source("a.nc", "M30\n"))
