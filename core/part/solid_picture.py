@@ -7,6 +7,7 @@ made for the pixels that are seen, and for no others.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -78,8 +79,16 @@ class SolidPicture:
         *,
         version: int = 0,
         hits: Spans = (),
+        quick: bool = False,
     ) -> Image:
-        """The picture (height, width); ``version`` changes with the metal, ``hits`` are spans of Z in red."""
+        """The picture (height, width); ``version`` changes with the metal, ``hits`` are spans of Z in red.
+
+        ``quick``: in points of two by two pixels, a third of the work, for metal that is being cut.
+        """
+        if quick:
+            half = replace(view, scale=0.5 * view.scale)
+            small = self.draw(solid, half, -(-width // 2), -(-height // 2), version=version, hits=hits)
+            return small.repeat(2, axis=0).repeat(2, axis=1)[:height, :width]
         surface = self._kept(solid, view, width, version)
         drawn = _Drawing(surface, view, width, height)
         return drawn.image(self._table, self.colours.ground, hits)

@@ -214,3 +214,11 @@ def test_fitted_part_lies_within_the_picture(azimuth: float) -> None:
     assert columns.min() > 0
     assert columns.max() < WIDTH - 1
     assert max(np.ptp(rows) / HEIGHT, np.ptp(columns) / WIDTH) > 0.9
+
+
+def test_quick_picture_has_the_same_outline() -> None:
+    view = SolidView(azimuth=30.0, scale=9.0, centre=-10.0)
+    picture, solid = SolidPicture(), hole_at(150.0)
+    fine, quick = (picture.draw(solid, view, 421, 301, quick=quick) for quick in (False, True))
+    assert quick.shape == fine.shape == (301, 421)
+    assert np.count_nonzero((fine != 0) != (quick != 0)) < 0.02 * np.count_nonzero(fine)
