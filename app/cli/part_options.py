@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from core.part.clamping import Clamping
     from core.part.stock import Stock
     from core.part.stock_spec import StockSpec
+    from core.part.tool_shape import ToolShape
     from core.proving.part_proof import PartSetting
 
 
@@ -31,13 +33,25 @@ def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting
     setting = PartSetting(
         nose_radii={n: tool.nose_radius for n, tool in around.setup.tools.items()},
         clamping=_clamping(args, around.machine.clamping),
+        shapes=_shapes(args),
     )
+    if around.machine.tooling == "gang":
+        setting = replace(setting, gang={n: (tool.z, tool.x) for n, tool in around.setup.tools.items()})
     if args.stock is None:
         return setting
     try:
         return replace(setting, stock=_stock(args, around, setting))
     except StockError as error:
         raise CommandError(f"--stock {error}") from error
+
+
+def _shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
+    """Those of --tools, else of the offsets file, else of the store."""
+    from app.cli.toml_files import read_tool_shapes
+    from app.compose.stored_offsets import stored_shapes
+
+    file = args.tools or args.offsets
+    return stored_shapes() if file is None else read_tool_shapes(Path(file))
 
 
 def _clamping(args: argparse.Namespace, model: ClampingModel) -> Clamping | None:

@@ -36,6 +36,7 @@ def add_parser(subparsers: SubParsers) -> None:
     )
     add_program_options(parser)
     add_ideal_option(parser)
+    parser.add_argument("--tools", metavar="FILE", help="shapes of the tools, instead of the stored ones")
     parser.add_argument(
         "--stick-out", type=float, metavar="IN", help="from the front of chuck or collet to Z0, inches"
     )

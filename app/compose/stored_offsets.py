@@ -15,6 +15,7 @@ from core.store.store_rows import SecondaryRow, ToolRow, ZeroRow
 
 if TYPE_CHECKING:
     from app.compose.journal import Journal
+    from core.part.tool_shape import ToolShape
     from core.store.store import Store
 
 OF_A_FILE = "THE OFFSETS COME FROM A FILE (--offsets) AND ARE READ ONLY: CHANGE THE FILE, OR START WITHOUT IT"
@@ -44,6 +45,24 @@ def stored_offsets() -> Offsets:
     try:
         with Store.open(folder, read_only=True) as store:
             return offsets_of(store)
+    except StoreError as error:
+        raise CommandError(str(error)) from error
+
+
+def stored_shapes() -> dict[int, ToolShape]:
+    """The shapes of tools in the store; none where there is no store yet.
+
+    Raises CommandError when the store cannot be trusted.
+    """
+    folder = data_folder()
+    if not folder.is_dir():
+        return {}
+    from app.desk.tool_shapes import tool_shapes
+    from core.store.store import Store, StoreError
+
+    try:
+        with Store.open(folder, read_only=True) as store:
+            return tool_shapes(store.shapes(), store.tools())
     except StoreError as error:
         raise CommandError(str(error)) from error
 

@@ -114,6 +114,7 @@ def _machine(reading: Reading, added: DriverReading, kinematics: KinematicsReadi
         timing=values.model(Timing, "machine", _TIMING_KEYS, collet_open=opens, collet_close=closes),
         interlocks=values.model(Interlocks, "interlocks"),
         clamping=values.model(ClampingModel, "clamping"),
+        tooling=values.text("tooling.kind"),
         max_feed=values.number("limits.max_feed"),
         manual_rapid=values.number("limits.manual_rapid"),
         resolution=values.number("limits.resolution"),

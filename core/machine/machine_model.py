@@ -134,6 +134,7 @@ class Machine:
     clearance: float = 0.0  # mm, how far a slide may run on after the last renewal of a jog
     inch: bool = True  # what its builder counts in
     clamping: ClampingModel = field(default_factory=ClampingModel)
+    tooling: str = "single"  # "gang": all tools ride one slide; "turret"; one at a time
     kind: str = "lathe"  # or "mill"
     c_modulo: bool = True  # C counts 0..<360 where a language asks; else its travel is -360..+360
     c_own_drive: bool = False  # C is no second use of the spindle

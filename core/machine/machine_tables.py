@@ -115,6 +115,7 @@ CLAMPING = (  # 0: not said, and not checked
     Field("jaw_diameter", _NUMBER, Unit.LENGTH, 0.0, 2000.0, default=0.0),
     Field("max_rpm", _NUMBER, Unit.RPM, 0.0, 50000.0, default=0.0),
 )
+TOOLING = (Field("kind", _CHOICE, choices=("single", "gang", "turret"), default="single"),)
 OUTPUT = (
     Field("at", _TEXT),
     Field("safe", _CHOICE, choices=(True, False, "keep")),
@@ -150,6 +151,7 @@ def plain_tables(drivers: Sequence[Driver]) -> tuple[tuple[str, tuple[Field, ...
         ("collet", COLLET),
         ("interlocks", INTERLOCKS),
         ("clamping", CLAMPING),
+        ("tooling", TOOLING),
     )
 
 
@@ -165,6 +167,7 @@ def top_tables(drivers: Sequence[Driver]) -> tuple[str, ...]:
             "spindle",
             "collet",
             "clamping",
+            "tooling",
             "interlocks",
             "io",
             "m_codes",
@@ -183,7 +186,7 @@ TABLES_OF_A_LATHE: dict[str, tuple[Field, ...]] = {
         Field("close_s", _NUMBER, Unit.SECONDS, 0.0, 10.0, default=0.0),
     ),
 }
-MAY_BE_MISSING = ("limits", "collet", "clamping", "c_axis", "interlocks", "m_codes")
+MAY_BE_MISSING = ("limits", "collet", "clamping", "tooling", "c_axis", "interlocks", "m_codes")
 
 # M codes with a meaning of their own; the machine file cannot assign them.
 FIXED_M_CODES = frozenset((0, 1, 2, 3, 4, 5, 8, 9, 12, 13, 19, 30, 31, 89, *range(91, 100)))

@@ -85,6 +85,7 @@ class TurnedPart:
         middles = self.columns.middles
         self.high = stock.outside_at(middles)[np.newaxis, :].copy()
         self.low = np.minimum(stock.bore_at(middles), self.high[0])[np.newaxis, :].copy()
+        self.largest = stock.radius
         self.pieces: list[Piece] = []
         self.removed = 0.0  # mm³, by cuts alone
 

@@ -39,6 +39,12 @@ CHECKS: Mapping[str, Check] = {
         "An outline comes into the contour that the machine file gives under [clamping].",
         "Let the part stick out further, or stop earlier.",
     ),
+    "neighbour-tool": Check(
+        _ERROR,
+        "Another tool of the gang plate runs into the stock.",
+        'With [tooling] kind = "gang": its outline, placed by its tool offset, overlaps metal.',
+        "Take another way there, a shorter tool, or another place on the plate.",
+    ),
     "spindle-overspeed": Check(
         _ERROR,
         "The spindle turns faster than chuck or collet may.",

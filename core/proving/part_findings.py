@@ -12,6 +12,7 @@ from core.interpreter.modal_state import Modal
 from core.language.diagnostics import Diagnostic
 from core.part.clamping import Clamping
 from core.part.cutter import Cutter
+from core.part.neighbours import Neighbours
 from core.part.polar_field import Taken
 from core.part.stock import Stock
 from core.part.swept_edge import Point
@@ -39,6 +40,7 @@ class PartFindings:
     shape: Callable[[int], ToolShape | None]
     stock: Stock | None
     clamping: Clamping | None = None
+    neighbours: Neighbours | None = None
     _found: dict[tuple[str, int], Diagnostic] = field(default_factory=dict)
     _chuck: TurnedPart | None = None
     _before: TipMove | None = None
@@ -65,6 +67,10 @@ class PartFindings:
                 "holder-into-stock", move, f"The holder of T{tool} runs into metal, {_depth(struck, move)}."
             )
         self._clamped(move, cutter, tool)
+        if self.neighbours is not None and (
+            other := self.neighbours.struck(part, tool, pairwise(move.points))
+        ):
+            self._add("neighbour-tool", move, f"T{other} beside T{tool} on the plate runs into the stock.")
         if move.quick:
             self._rapid(move, met)
         else:

@@ -16,7 +16,8 @@ from core.language.source import Source
 from core.machine.machine_model import Machine
 from core.part.clamping import Clamping
 from core.part.cutter import Cutter, Side
-from core.part.stock import Stock
+from core.part.neighbours import Neighbours
+from core.part.stock import Point, Stock
 from core.part.stock_spec import StockSpec
 from core.part.tool_outline import outline
 from core.part.tool_shape import ToolKind, ToolShape
@@ -40,6 +41,7 @@ class PartSetting:
     shapes: Mapping[int, ToolShape] = field(default_factory=dict)
     nose_radii: Mapping[int, float] = field(default_factory=dict)
     clamping: Clamping | None = None
+    gang: Mapping[int, Point] = field(default_factory=dict)  # Z and X of the tools that ride one plate
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +109,7 @@ class PartProof:
         stock = self._setting.stock or tools.assumed_stock()
         if isinstance(stock, StockSpec):
             stock = stock.stock(tools.back)
-        making = Making(tools, stock, self._setting.clamping)
+        making = Making(tools, stock, self._setting)
         for step in steps:
             making.see(step)
         return making.report()
@@ -215,7 +217,8 @@ def _side(shape: ToolShape) -> Side:
 class Making:
     """The part while the program makes it."""
 
-    def __init__(self, tools: Tools, stock: Stock | None, clamping: Clamping | None = None) -> None:
+    def __init__(self, tools: Tools, stock: Stock | None, setting: PartSetting | None = None) -> None:
+        setting = setting or PartSetting()
         self._tools, self._stock = tools, stock
         self._cutters: dict[int, Cutter | None] = {}
         self._tool = 0
@@ -225,7 +228,12 @@ class Making:
         self._pieces: list[Piece] = []
         self._last: Piece | None = None  # the last piece that a collet let go or a parting tool cut off
         self._milled = False
-        self.findings = PartFindings(tools.shape, stock, clamping)
+        self.findings = PartFindings(
+            tools.shape,
+            stock,
+            setting.clamping,
+            Neighbours(setting.shapes, setting.gang) if setting.gang else None,
+        )
         self.milling: Milling | None = None  # from the first cut of a live tool on
         self.part = TurnedPart(stock) if stock is not None and not tools.feeds_first else None
 

@@ -64,6 +64,7 @@ COVERED = {
                       "--optional-stop", "--json")},
     ("prove", "--ideal"): "test_the_options_of_a_program_act",
     ("prove", "--stick-out"): "test_a_stick_out_brings_the_chuck_into_the_proof",
+    ("prove", "--tools"): "test_tools_of_a_file_are_assumed_no_more",
     ("prove", "--stock"): "test_the_promised_keys_in_cubic_inches",
     ("prove", "--jobs"): "test_files_and_folders_mixed_are_proved_once_each",
     ("prove", "--scheduler"): "tests/cli/test_scheduler.py",

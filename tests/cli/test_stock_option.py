@@ -147,3 +147,34 @@ def test_a_stick_out_of_no_length_is_refused(
     told = turndesk(*given, f"--stick-out={value}")
     assert told.status == 2
     assert "between 0 and 40" in told.err
+
+
+SHAPES = """[tool.1]
+kind = "turning"
+insert = "DCMT21.51"
+nose_radius = 0.0156
+tip = 3
+"""
+
+
+def test_tools_of_a_file_are_assumed_no_more(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+    path, tools = written(tmp_path, PART), written(tmp_path, SHAPES, "tools.toml")
+    told = turndesk("prove", path, "--offsets", offsets, "--tools", tools, "--json")
+    assert told.status == 0
+    assert told.lines[0]["stock"]["assumed"] == []
+
+
+def test_a_tool_file_with_a_mistake_is_refused(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+    tools = written(tmp_path, SHAPES.replace("DCMT21.51", "QXMT21.51"), "tools.toml")
+    told = turndesk("prove", written(tmp_path, PART), "--offsets", offsets, "--tools", tools)
+    assert told.status == 2
+    assert "tool.1.insert" in told.err
+
+
+def test_shapes_of_the_store_are_used(turndesk: Turndesk, tmp_path: Path) -> None:
+    path = written(tmp_path, PART)
+    assert turndesk("offsets", "set", "T1", "x=0", "z=0", "nose_radius=.0156", "quadrant=3").status == 0
+    told = turndesk("prove", path, "--json")
+    assert told.lines[0]["stock"]["assumed"] != []
+    assert turndesk("offsets", "set", "T1", "kind=turning", "insert=DCMT21.51").status == 0
+    assert turndesk("prove", path, "--json").lines[0]["stock"]["assumed"] == []

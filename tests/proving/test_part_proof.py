@@ -278,3 +278,27 @@ def test_the_spindle_turns_no_faster_than_the_chuck_may() -> None:
     slow, fast = (Clamping(0.0, 0.0, max_rpm=rpm) for rpm in (1499.0, 1500.0))
     assert ("spindle-overspeed", 4) in checks(chucked(SOUND, slow))
     assert checks(chucked(SOUND, fast)) == []
+
+
+def ganged(lines: str, apart: float) -> PartReport:
+    """T1 turns, and a drill stands on the plate beside it, ``apart`` mm further along X."""
+    machine = load_machine(None)
+    places = {1: (-12.7, -50.8), 3: (-12.7 + apart, -50.8)}
+    setup = setup_for(machine, tools={n: ToolOffset(*at) for n, at in places.items()}, secondary={})
+    setting = PartSetting(bar(25.4, 0.0, -80.0), TOOLS, gang={n: (z, x) for n, (x, z) in places.items()})
+    _, part = prove_with_part(Source("PART", text(lines)), setup, machine, setting)
+    assert part is not None
+    return part
+
+
+def test_a_neighbour_on_the_plate_runs_into_the_bar() -> None:
+    turned = "T1\nX[.6]Z[.05]\nX[.4]\nG95F[.004]Z[-.5]\nX[.55]\nG94F[300]X[.6]\nZ[1]"
+    # With T1 at r 10.16 the drill, 6 thick, has its axis at r -4.84 in a bar of r 12.7; at 40 it passes.
+    assert ("neighbour-tool", 6) in checks(ganged(turned, 15.0))
+    assert checks(ganged(turned, 40.0)) == []
+    assert checks(ganged(turned, -40.0)) == []
+
+
+def test_a_neighbour_meets_the_bar_only_as_far_as_the_tool_goes_in() -> None:
+    short = "T1\nX[.6]Z[.05]\nG95F[.004]X[.4]\nG94F[300]X[.6]\nZ[1]"
+    assert checks(ganged(short, 15.0)) == []

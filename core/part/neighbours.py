@@ -1,0 +1,66 @@
+"""The other tools of a gang plate: they ride the same slide, and their tool offsets say where they stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from core.part.cutter import Cutter, Side
+from core.part.swept_edge import FloatArray, Point
+from core.part.tool_outline import outline
+from core.part.tool_shape import ToolShape
+from core.part.turned_part import TurnedPart
+
+
+class _Neighbour(NamedTuple):
+    """A tool: where it stands on the plate, Z and r, its extent about that, its outline on either side."""
+
+    at: Point
+    low: FloatArray
+    high: FloatArray
+    sides: tuple[Cutter, Cutter]
+
+
+class Neighbours:
+    """Tools with a shape and an offset; ``offsets`` are machine Z and X of each tip on part zero, mm."""
+
+    def __init__(self, shapes: Mapping[int, ToolShape], offsets: Mapping[int, Point]) -> None:
+        self._offsets = offsets
+        self._tools = {n: _neighbour(shapes[n], offsets[n]) for n in sorted(shapes.keys() & offsets.keys())}
+
+    def struck(self, part: TurnedPart, tool: int, way: Iterable[tuple[Point, Point]]) -> int:
+        """The first other tool that metal meets while ``tool`` goes this way; 0 where none does."""
+        if tool not in self._offsets:
+            return 0
+        own = self._offsets[tool]
+        for start, end in way:
+            for number, each in self._tools.items():
+                shift = own[0] - each.at[0], own[1] - each.at[1]
+                if number != tool and _meets(part, each, _moved(start, shift), _moved(end, shift)):
+                    return number
+        return 0
+
+
+def _neighbour(shape: ToolShape, at: Point) -> _Neighbour:
+    lines = outline(shape)
+    outlines = (*lines.cutting, *lines.body)
+    points = np.vstack(outlines)
+    sides = Cutter((), outlines, Side.FACE), Cutter((), outlines, Side.FACE, rear=True)
+    return _Neighbour(at, points.min(axis=0), points.max(axis=0), sides)
+
+
+def _moved(place: Point, by: Point) -> Point:
+    return place[0] + by[0], place[1] + by[1]
+
+
+def _meets(part: TurnedPart, tool: _Neighbour, start: Point, end: Point) -> bool:
+    low = tool.low + np.minimum(start, end)
+    high = tool.high + np.maximum(start, end)
+    columns, radius = part.columns, part.largest
+    if low[0] > columns.first + columns.step * columns.number or high[0] < columns.first:
+        return False
+    if low[1] > radius or high[1] < -radius:
+        return False
+    return any(side.reaches(part, start, end) for side in tool.sides)
