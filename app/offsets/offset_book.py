@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.store.store_errors import StoreError
-from core.store.store_rows import Change, Kind, Row, SecondaryRow, ToolRow, Value, ZeroRow
+from core.store.store_rows import Change, Kind, Row, SecondaryRow, ShapeRow, ToolRow, Value, ZeroRow
 from core.store.touch_off import Touch
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ SAVING = "STILL SAVING THE CHANGE BEFORE: PRESS RETURN AGAIN"
 
 @dataclass(slots=True)
 class OffsetBook:
-    """Tool, secondary and zero offsets by number, mm and degrees, X a radius.
+    """Tool, secondary and zero offsets and tool shapes by number, mm and degrees, X a radius.
 
     A change is posted to the store's writer and shown when it is on the disk; ``poll`` is called once a
     frame. Without ``store`` nothing can be changed, and ``locked`` says why.
@@ -32,6 +32,8 @@ class OffsetBook:
     tools: dict[int, ToolRow] = field(default_factory=dict)
     secondary: dict[int, SecondaryRow] = field(default_factory=dict)
     zero: dict[int, ZeroRow] = field(default_factory=dict)  # by the number of its G code
+    shapes: dict[int, ShapeRow] = field(default_factory=dict)
+    at: int = 1  # the tool that the pages of tools stand at
     changes: int = 0  # how many were saved
     _saving: Future[Any] | None = None
     _reopened: tuple[Store | None, str] | None = None  # by another thread, for the next poll
@@ -47,6 +49,7 @@ class OffsetBook:
             Kind.TOOL: self.tools,
             Kind.SECONDARY: self.secondary,
             Kind.ZERO: self.zero,
+            Kind.SHAPE: self.shapes,
         }
         return tables[kind]
 
@@ -64,6 +67,7 @@ class OffsetBook:
         if self.store is not None:
             store = self.store
             self.tools, self.secondary, self.zero = store.tools(), store.secondary(), store.zero_offsets()
+            self.shapes = store.shapes()
 
     # --- changes: each answers why not, or nothing ----------------------------------------------------
 
@@ -78,6 +82,10 @@ class OffsetBook:
     def choose_master(self, number: int, why: str) -> str:
         """Make this tool the master; 0: no tool is."""
         return self._post(lambda store: store.choose_master(number, why))
+
+    def remove_shape(self, number: int, why: str) -> str:
+        """A tool without a shape again."""
+        return self._post(lambda store: store.remove_shape(number, why))
 
     def clear(self, kind: Kind, why: str) -> str:
         """All offsets of this kind at once."""

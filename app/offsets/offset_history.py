@@ -17,7 +17,7 @@ from core.executor.snapshot import Snapshot, State
 from core.store.store_errors import StoreError
 from core.store.store_rows import Change, Kind
 
-LETTERS = {Kind.TOOL: "T", Kind.SECONDARY: "D", Kind.ZERO: "G"}
+LETTERS = {Kind.TOOL: "T", Kind.SHAPE: "T", Kind.SECONDARY: "D", Kind.ZERO: "G"}
 CORRECTIONS = frozenset({"wear_x", "wear_z", "remark"})  # of a tool; all of a secondary offset
 
 
@@ -62,6 +62,7 @@ class OffsetHistory:
     last: tuple[Change, ...] = ()  # the changes of the last step that was saved while the page was open
     shown: tuple[Change, ...] | None = None  # the history while it is looked at
     _seen: int = 0
+    _newest: int = 0  # id of the newest change that was read
 
     def __post_init__(self) -> None:
         self._seen = self.book.changes
@@ -74,6 +75,7 @@ class OffsetHistory:
     def opened(self) -> None:
         """The page comes up: what was changed elsewhere is no news here."""
         self._seen, self.last = self.book.changes, ()
+        self._newest = max((change.id for change in self._read(1)), default=0)
 
     def look(self, snapshot: Snapshot) -> None:
         """Once a frame: follow the control's unit, and say what has been saved since."""
@@ -82,7 +84,10 @@ class OffsetHistory:
             return
         self._seen = self.book.changes
         changes = self._read()
-        self.last = tuple(change for change in changes if change.step == changes[0].step)
+        # What was saved may have been of another table: the tip of a tool, entered on the page of its shape.
+        fresh = bool(changes) and changes[0].id != self._newest
+        self._newest = changes[0].id if changes else 0
+        self.last = tuple(change for change in changes if fresh and change.step == changes[0].step)
         if self.shown is not None:
             self.shown = changes
         self.desk.say(self._saved() + _behind_saved(snapshot))
@@ -126,9 +131,9 @@ class OffsetHistory:
         if why:
             self.desk.say(why)
 
-    def _read(self) -> tuple[Change, ...]:
+    def _read(self, limit: int = 200) -> tuple[Change, ...]:
         try:
-            return self.book.history(self.kind)
+            return self.book.history(self.kind, limit)
         except StoreError as error:
             self.desk.say(str(error))
             return ()

@@ -55,6 +55,11 @@ class OffsetTable:
         raise NotImplementedError
 
     @property
+    def entered(self) -> str:
+        """What is typed, as the entry shows it."""
+        return self.text
+
+    @property
     def old_to_new(self) -> str:
         """The change that is being entered, or else the last one."""
         raise NotImplementedError

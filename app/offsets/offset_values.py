@@ -14,7 +14,7 @@ from app.desk.translation import tr
 from core.store.offset_fields import FIELDS, Field, Sort
 from core.store.store_rows import Kind, Row, SecondaryRow, ShapeRow, ToolRow, Value
 
-TOOL_FIELDS = FIELDS[Kind.TOOL]
+TOOL_FIELDS = {**FIELDS[Kind.TOOL], **FIELDS[Kind.SHAPE]}  # of a tool: of its offset and of its shape
 ZERO_PLACES = 3
 
 
@@ -83,7 +83,7 @@ def in_words(offset: Row | None, mode: Mode) -> str:
         x, z, r = offset
         return f"X {signed(x, mode.metric)}  Z {signed(z, mode.metric)}  R {formats.length(r, mode.metric)}"
     if isinstance(offset, ShapeRow):
-        return " ".join(filter(None, (offset.kind, offset.insert)))
+        return _shape_in_words(offset, mode)
     return "  ".join(f"{name} {signed_zero_offset(value)}" for name, value in zip("XZC", offset, strict=True))
 
 
@@ -104,19 +104,29 @@ def _more(tool: ToolRow, mode: Mode) -> str:
     return "".join(parts) + (f"  {tool.remark}" if tool.remark else "")
 
 
+def _shape_in_words(shape: ShapeRow, mode: Mode) -> str:
+    """The kind, and whatever else is stated."""
+    stated = [
+        f"{word(name)} {shown_value(name, value, mode)}"
+        for name, value in shape._asdict().items()
+        if value and not TOOL_FIELDS[name].choices
+    ]
+    return "  ".join([choice_word(shape.kind), choice_word(shape.hand), *stated])
+
+
 def from_to(old: Row | None, new: Row | None, mode: Mode) -> str:
     """An offset before and after; of a tool that was and stays set only the fields that changed."""
-    if not (isinstance(old, ToolRow) and isinstance(new, ToolRow)):
+    if not (isinstance(old, ToolRow | ShapeRow) and isinstance(new, ToolRow | ShapeRow)):
         return f"{in_words(old, mode)}  →  {in_words(new, mode)}"
-    changed = [name for name in ToolRow._fields if getattr(old, name) != getattr(new, name)]
+    changed = [name for name in old._fields if getattr(old, name) != getattr(new, name)]
     return "   ".join(
         f"{word(name)} {_in_change(name, old, mode)} → {_in_change(name, new, mode)}" for name in changed
     )
 
 
-def _in_change(name: str, row: ToolRow, mode: Mode) -> str:
-    if name == "master":
-        return tr("yes") if row.master else tr("no")
+def _in_change(name: str, row: ToolRow | ShapeRow, mode: Mode) -> str:
+    if TOOL_FIELDS[name].sort is Sort.FLAG:
+        return tr("yes") if getattr(row, name) else tr("no")
     return shown_value(name, getattr(row, name), mode) or tr("none")
 
 
@@ -128,6 +138,8 @@ def value_typed(name: str, text: str, mode: Mode) -> Value:
     field = TOOL_FIELDS[name]
     if field.sort is Sort.TEXT:
         value: Value = text.strip()
+    elif field.sort is Sort.FLAG and text in {"yes", "no"}:
+        value = text == "yes"
     elif field.sort is Sort.LENGTH:
         value = to_mm(value_of(text) / _doubled(name, mode), mode.metric)
     else:
@@ -165,12 +177,17 @@ def _doubled(name: str, mode: Mode) -> float:
 def shown_value(name: str, value: Value, mode: Mode) -> str:
     """A field as the operator reads it."""
     field = TOOL_FIELDS[name]
+    if field.choices:
+        return choice_word(str(value))
     if field.sort is Sort.FLAG:
-        return tr("MASTER") if value else ""
-    if field.sort is not Sort.LENGTH or isinstance(value, str):
+        words = (tr("MASTER"), "") if name == "master" else (tr("YES"), tr("NO"))
+        return words[0] if value else words[1]
+    if isinstance(value, str) or field.sort is Sort.WHOLE:
         return str(value)
+    if field.sort is Sort.ANGLE:
+        return f"{value:g}°"
     mm = value * _doubled(name, mode)
-    return formats.length(mm, mode.metric) if name == "nose_radius" else signed(mm, mode.metric)
+    return signed(mm, mode.metric) if field.low < 0.0 else formats.length(mm, mode.metric)
 
 
 def marked(name: str, mode: Mode) -> str:
@@ -191,8 +208,43 @@ def word(name: str) -> str:
         "wear_z": tr("WEAR Z"),
         "remark": tr("REMARK"),
         "master": tr("MASTER"),
+        "kind": tr("KIND"),
+        "hand": tr("HAND"),
+        "insert": tr("INSERT"),
+        "holder": tr("HOLDER"),
+        "width": tr("WIDTH"),
+        "diameter": tr("DIAMETER"),
+        "point": tr("POINT ANGLE"),
+        "stick_out": tr("STICK-OUT"),
+        "length": tr("CUTTING LENGTH"),
+        "pitch": tr("PITCH"),
+        "flutes": tr("FLUTES"),
+        "entry": tr("ENTERING ANGLE"),
+        "rear": tr("WORKS AT X−"),
+        "profile": tr("PROFILE"),
     }
     return words[name]
+
+
+def choice_word(value: str) -> str:
+    """What the screen calls a kind or a hand of tools."""
+    words = {
+        "turning": tr("TURNING"),
+        "boring": tr("BORING"),
+        "grooving": tr("GROOVING"),
+        "parting": tr("PARTING"),
+        "threading": tr("THREADING"),
+        "drill": tr("DRILL"),
+        "centre-drill": tr("CENTRE DRILL"),
+        "reamer": tr("REAMER"),
+        "tap": tr("TAP"),
+        "end-mill": tr("END MILL"),
+        "form": tr("FORM TOOL"),
+        "right": tr("RIGHT HAND"),
+        "left": tr("LEFT HAND"),
+        "neutral": tr("NEUTRAL"),
+    }
+    return words.get(value, value)
 
 
 def heading(name: str, mode: Mode) -> str:

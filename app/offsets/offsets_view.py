@@ -220,7 +220,7 @@ class OffsetPage(Page):
         if changes is not None:
             self.history.show_entries(tuple(model.history.in_words(change) for change in changes))
         self.show_table(snapshot)
-        words = (model.heading, model.question, model.text, model.old_to_new, model.foot)
+        words = (model.heading, model.question, model.entered, model.old_to_new, model.foot)
         self.asked.asked = EntryWords(*words)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:

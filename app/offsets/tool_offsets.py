@@ -104,11 +104,16 @@ class ToolOffsets(OffsetTable):
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
         self.fields = ToolFields(self.history)
-        self.number, self.column = 1, 0
+        self.column = 0
         self.writing = False  # a remark is open
         self.relative = False  # X and Z are shown from the master
 
     # --- what is shown -------------------------------------------------------------------------------
+
+    @property
+    def number(self) -> int:
+        """The tool under the cursor; its page of shape stands at the same."""
+        return self.book.at
 
     @property
     def name(self) -> str:
@@ -153,7 +158,9 @@ class ToolOffsets(OffsetTable):
     @property
     def foot(self) -> str:
         """What F2, F3 and Esc do here."""
-        return tr("F2 adds what is typed; F3 shows X and Z from the master; Esc leaves")
+        return tr(
+            "F2 adds what is typed; F3 shows X and Z from the master; F8: shape of the tool; Esc leaves"
+        )
 
     def hint(self, snapshot: Snapshot) -> str:
         """Of an open remark, or of the table."""
@@ -257,7 +264,7 @@ class ToolOffsets(OffsetTable):
         if self.text or self.writing:
             self.desk.say(tr("PRESS RETURN TO SET IT, OR ESC TO LEAVE IT AS IT WAS"))
             return
-        self.number = max(OFFSETS[0], min(OFFSETS[-1], number))
+        self.book.at = max(OFFSETS[0], min(OFFSETS[-1], number))
         self.column = max(0, min(len(COLUMNS) - 1, column))
         new = self.fields.new
         if new.number and self.number != new.number:

@@ -154,7 +154,7 @@ class ToolOffsetsPage(OffsetPage):
     """F8, tool offsets."""
 
     NAME = page_table.TOOLS
-    LABELS = ("MENU", "ADD", "MASTER", "UNDO", "HISTORY", "EFFECT", "ALARMS", "", "SECCMP", "ZERO")
+    LABELS = ("MENU", "ADD", "MASTER", "UNDO", "HISTORY", "EFFECT", "ALARMS", "SHAPE", "SECCMP", "ZERO")
     model: ToolOffsets
     table: ToolTable
 
@@ -163,8 +163,13 @@ class ToolOffsetsPage(OffsetPage):
         self.table = ToolTable(self.look, self.model, self)
 
     def key_actions(self) -> KeyActions:
-        """Add to what is there; X and Z from the master; the rest as on F9."""
-        return {**super().key_actions(), "F2": self.model.add, "F3": self.model.turn_relative}
+        """Add to what is there; X and Z from the master; the tool's shape; the rest as on F9."""
+        own: KeyActions = {
+            "F2": self.model.add,
+            "F3": self.model.turn_relative,
+            "F8": partial(self._go, page_table.SHAPE),
+        }
+        return {**super().key_actions(), **own}
 
     def show_table(self, _snapshot: Snapshot) -> None:
         """The table as it is now."""

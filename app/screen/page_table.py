@@ -13,7 +13,7 @@ from app.screen.page_base import Host, Page
 MENU, AUTOMATIC, EDITOR, MDI, JOG = "MAIN MENU", "AUTOMATIC", "EDITOR", "MDI", "JOG"
 SEARCHTO = "SEARCHTO"
 TOOLS, SECCMP, SPECIAL = "TOOL OFFSETS", "SECONDARY OFFSETS", "SPECIAL FUNCTIONS"
-PROGRAMS, ZERO = "PROGRAMS", "ZERO OFFSETS"
+PROGRAMS, ZERO, SHAPE = "PROGRAMS", "ZERO OFFSETS", "TOOL SHAPE"
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +86,7 @@ PAGES = (
         "SPECIAL",
         "speed limit, parts, inputs and outputs, log, backup",
     ),
+    PageEntry(SHAPE, "app.offsets.tool_shapes_view.ToolShapePage"),
     PageEntry(MENU, "app.screen.main_menu.MenuPage"),
     PageEntry(
         SEARCHTO, "app.searchto.searchto_view.SearchtoPage", "app.searchto.searchto_model.SearchtoModel"

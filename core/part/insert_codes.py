@@ -172,8 +172,10 @@ class _Size:
     def take(self, found: str, what: str, known: Mapping[str, float]) -> float:
         """What the next characters stand for."""
         if not found or len(found) < len(min(known, key=len)):
-            at = f"{self.code}: character {self.place + len(found) + 1}"
-            raise InsertCodeError(f"{at} is missing; there stands the {what}: {' '.join(sorted(known))}")
+            place, figures = self.place + len(found) + 1, " ".join(sorted(known))
+            raise InsertCodeError(
+                f"{self.code}: character {place} is missing; there stands the {what}: {figures}"
+            )
         if found not in known:
             raise _meaningless(self.code, self.place + 1, found, what, known)
         self.left = self.left[len(found) :]

@@ -62,13 +62,16 @@ def _entry(shape: ToolShape, letter: str, point: float) -> Iterator[ShapeMistake
     usual = 0.0 if neutral else (BORING_ENTRIES if shape.internal else ENTRIES).get(letter, 0.0)
     angle = shape.entry or coded or usual
     if angle + point > 180.0:
-        text = f"an entering angle of {angle:g}° leaves a point of {point:g}° no clearance"
-        yield ShapeMistake("entry", f"{text}; at most {180 - point:g}°")
+        text = (
+            f"an entering angle of {angle:g}° leaves a point of {point:g}° no clearance; "
+            f"at most {180 - point:g}°"
+        )
+        yield ShapeMistake("entry", text)
 
 
 def _tip(shape: ToolShape) -> Iterator[ShapeMistake]:
     if shape.turns_itself and 0 not in TIP_DIRECTIONS[shape.tip]:
-        text = f"tip {shape.tip} is no end of a {shape.kind}: 7 along the spindle, 8 across it, 6 from behind"
+        text = f"tip {shape.tip} is no end of a round tool: 7 along the spindle, 8 across it, 6 from behind"
         yield ShapeMistake("tip", text)
     across = TIP_DIRECTIONS[shape.tip][1]
     if shape.rear and across and not shape.turns_itself and (across > 0) is shape.internal:

@@ -44,7 +44,7 @@ ROOMS = (
     ),
     *("app/screen", "app/searchto", "app/special", "app/transfer", "app/working_plane"),
     *("core/alarms", "core/executor", "core/store", "core/interpreter"),
-    *("core/language", "core/proving", "core/geometry", "core/motion", COMPOSING),
+    *("core/language", "core/proving", "core/geometry", "core/motion", "core/part", COMPOSING),
 )
 # Scripts and tables that no screen shows, and what the console is told where there is no screen.
 APART = frozenset(

@@ -1124,6 +1124,11 @@
       <translation>COMO EL PROGRAMA</translation>
     </message>
     <message>
+      <location filename="app/desk/tool_shapes.py" />
+      <source>a profile is three points or more, Z and X in mm: 0,0 2.5,0 1.2,1.5</source>
+      <translation>un perfil son tres puntos o más, Z y X en mm: 0,0 2.5,0 1.2,1.5</translation>
+    </message>
+    <message>
       <location filename="app/editor/document.py" />
       <source>%1 CANNOT NAME A PROGRAM: LETTERS, DIGITS, DOT, DASH AND BLANK</source>
       <translation>%1 NO PUEDE NOMBRAR UN PROGRAMA: LETRAS, NÚMEROS, PUNTO, GUION Y ESPACIO</translation>
@@ -2240,8 +2245,93 @@
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
+      <source>BORING</source>
+      <translation>MANDRINADO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>CENTRE DRILL</source>
+      <translation>BROCA DE CENTRAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>CUTTING LENGTH</source>
+      <translation>LONGITUD DE CORTE</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>DIAMETER</source>
+      <translation>DIÁMETRO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>DRILL</source>
+      <translation>BROCA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>END MILL</source>
+      <translation>FRESA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>ENTERING ANGLE</source>
+      <translation>ÁNGULO DE POSICIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>FLUTES</source>
+      <translation>FILOS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>FORM TOOL</source>
+      <translation>HERRAMIENTA DE FORMA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>GROOVING</source>
+      <translation>RANURADO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>HAND</source>
+      <translation>MANO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>HOLDER</source>
+      <translation>PORTAHERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>INSERT</source>
+      <translation>INSERTO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>KIND</source>
+      <translation>CLASE</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>LEFT HAND</source>
+      <translation>A IZQUIERDAS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
       <source>MASTER</source>
       <translation>MAESTRA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>NEUTRAL</source>
+      <translation>NEUTRO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>NO</source>
+      <translation>NO</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
@@ -2250,13 +2340,63 @@
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
+      <source>PARTING</source>
+      <translation>TRONZADO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>PITCH</source>
+      <translation>PASO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>POINT ANGLE</source>
+      <translation>ÁNGULO DE PUNTA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>PROFILE</source>
+      <translation>PERFIL</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>REAMER</source>
+      <translation>ESCARIADOR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
       <source>REMARK</source>
       <translation>NOTA</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
+      <source>RIGHT HAND</source>
+      <translation>A DERECHAS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>STICK-OUT</source>
+      <translation>VOLADIZO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>TAP</source>
+      <translation>MACHO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>THREADING</source>
+      <translation>ROSCADO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
       <source>TIP</source>
       <translation>PUNTA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>TURNING</source>
+      <translation>CILINDRADO</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
@@ -2275,8 +2415,23 @@
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
+      <source>WIDTH</source>
+      <translation>ANCHO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>WORKS AT X−</source>
+      <translation>TRABAJA EN X−</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
       <source>X</source>
       <translation>X</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>YES</source>
+      <translation>SÍ</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
@@ -2425,8 +2580,8 @@
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
-      <source>F2 adds what is typed; F3 shows X and Z from the master; Esc leaves</source>
-      <translation>F2 suma lo escrito; F3 muestra X y Z desde la maestra; Esc sale</translation>
+      <source>F2 adds what is typed; F3 shows X and Z from the master; F8: shape of the tool; Esc leaves</source>
+      <translation>F2 suma lo escrito; F3 muestra X y Z desde la maestra; F8: forma de la herramienta; Esc sale</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
@@ -2495,6 +2650,11 @@
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
+      <source>SHAPE</source>
+      <translation>FORMA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets_view.py" />
       <source>TOOL OFFSETS</source>
       <translation>HERRAMIENTAS</translation>
     </message>
@@ -2502,6 +2662,76 @@
       <location filename="app/offsets/tool_offsets_view.py" />
       <source>X AND Z FROM THE MASTER T{number}</source>
       <translation>X Y Z DESDE LA MAESTRA T{number}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_shapes.py" />
+      <source>LEFT AND RIGHT TURN THROUGH WHAT THERE IS</source>
+      <translation>IZQUIERDA Y DERECHA RECORREN LO QUE HAY</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_shapes.py" />
+      <source>LEFT AND RIGHT, OR A FINGER, TURN THROUGH WHAT THERE IS; RETURN SETS IT</source>
+      <translation>IZQUIERDA Y DERECHA, O UN DEDO, RECORREN LO QUE HAY; RETURN LO FIJA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_shapes.py" />
+      <source>PRESS RETURN TO WRITE IT</source>
+      <translation>OPRIMA RETURN PARA ESCRIBIRLO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_shapes.py" />
+      <source>PRESS Y TO FORGET THE SHAPE OF T{number}, ESC TO KEEP IT</source>
+      <translation>OPRIMA Y PARA OLVIDAR LA FORMA DE T{number}, ESC PARA CONSERVARLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_shapes.py" />
+      <source>Page up and Page down: another tool; F3: no shape; F8: the table of tools; Esc leaves</source>
+      <translation>Re Pág y Av Pág: otra herramienta; F3: sin forma; F8: la tabla de herramientas; Esc sale</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_shapes.py" />
+      <source>TYPE IT; RETURN KEEPS IT, ESC LEAVES IT AS IT WAS; F-KEYS STILL WORK</source>
+      <translation>ESCRÍBALO; RETURN LO GUARDA, ESC LO DEJA COMO ESTABA; LAS TECLAS F SIGUEN ACTIVAS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_shapes.py" />
+      <source>T{number} HAS NO SHAPE</source>
+      <translation>T{number} NO TIENE FORMA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_shapes.py" />
+      <source>UP AND DOWN CHOOSE A FIELD; TYPE A VALUE OR A SUM, RETURN SETS IT; 0: NOT STATED</source>
+      <translation>ARRIBA Y ABAJO ELIGEN UN CAMPO; ESCRIBA UN VALOR O UNA SUMA, RETURN LO FIJA; 0: SIN INDICAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_shapes.py" />
+      <source>no shape</source>
+      <translation>sin forma</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_shapes_view.py" />
+      <source>ASSUMED: {names}</source>
+      <translation>SUPUESTO: {names}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_shapes_view.py" />
+      <source>NO SHAPE: THE PROOF TAKES THE NOSE ALONE</source>
+      <translation>SIN FORMA: LA PRUEBA SOLO TOMA LA PUNTA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_shapes_view.py" />
+      <source>NONE</source>
+      <translation>NINGUNO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_shapes_view.py" />
+      <source>SHAPE OF T{number}</source>
+      <translation>FORMA DE T{number}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_shapes_view.py" />
+      <source>THIS SHAPE CANNOT BE</source>
+      <translation>ESTA FORMA NO PUEDE SER</translation>
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
@@ -3260,6 +3490,11 @@
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
+      <source>TOOL SHAPE</source>
+      <translation>FORMA DE HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
       <source>ZERO OFFSETS</source>
       <translation>CEROS DE PIEZA</translation>
     </message>
@@ -3970,11 +4205,6 @@
     </message>
     <message>
       <location filename="app/special/event_log.py" />
-      <source>KIND</source>
-      <translation>CLASE</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
       <source>OPERATOR</source>
       <translation>OPERADOR</translation>
     </message>
@@ -4410,11 +4640,6 @@
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
-      <source>NONE</source>
-      <translation>NINGUNO</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
       <source>PRESS Y TO LIFT THE LIMIT, ESC TO KEEP IT</source>
       <translation>OPRIMA Y PARA QUITAR EL TOPE, ESC PARA CONSERVARLO</translation>
     </message>
@@ -4480,11 +4705,6 @@
     </message>
     <message>
       <location filename="app/transfer/serial_settings.py" />
-      <source>NO</source>
-      <translation>NO</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_settings.py" />
       <source>PORT</source>
       <translation>PUERTO</translation>
     </message>
@@ -4492,11 +4712,6 @@
       <location filename="app/transfer/serial_settings.py" />
       <source>WAIT FOR DC1 TO SEND</source>
       <translation>ESPERAR DC1 PARA ENVIAR</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_settings.py" />
-      <source>YES</source>
-      <translation>SÍ</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -7162,11 +7377,6 @@
       <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>the chamfer would cross one of them</source>
       <translation>el chaflán cruzaría uno de ellos</translation>
-    </message>
-    <message>
-      <location filename="core/geometry/chamfer_and_rounding.py" />
-      <source>the lines go on in one direction</source>
-      <translation>las líneas siguen en una misma dirección</translation>
     </message>
     <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />
@@ -11809,9 +12019,274 @@
       <translation>Un intervalo de muestreo de %1 s no da muestras; dé un tiempo mayor que cero.</translation>
     </message>
     <message>
+      <location filename="core/part/insert_codes.py" />
+      <source>%1: %2 nothing as %3; known: %4</source>
+      <translation>%1: %2 nada como %3; se conocen: %4</translation>
+    </message>
+    <message>
+      <location filename="core/part/insert_codes.py" />
+      <source>%1: character %2 is missing; it is the %3</source>
+      <translation>%1: falta el carácter %2; es: %3</translation>
+    </message>
+    <message>
+      <location filename="core/part/insert_codes.py" />
+      <source>%1: character %2 is missing; there stands the %3: %4</source>
+      <translation>%1: falta el carácter %2; ahí va: %3: %4</translation>
+    </message>
+    <message>
+      <location filename="core/part/insert_codes.py" />
+      <source>%1: character %2, %3, is one figure too many</source>
+      <translation>%1: el carácter %2, %3, es una cifra de más</translation>
+    </message>
+    <message>
+      <location filename="core/part/insert_codes.py" />
+      <source>%1: character 5, %2, means nothing; the size begins there</source>
+      <translation>%1: el carácter 5, %2, no significa nada; ahí empieza el tamaño</translation>
+    </message>
+    <message>
+      <location filename="core/part/insert_codes.py" />
+      <source>character %1, %2, means</source>
+      <translation>el carácter %1, %2, no significa</translation>
+    </message>
+    <message>
+      <location filename="core/part/insert_codes.py" />
+      <source>characters %1 and %2, %3, mean</source>
+      <translation>los caracteres %1 y %2, %3, no significan</translation>
+    </message>
+    <message>
+      <location filename="core/part/insert_codes.py" />
+      <source>corner of a round insert</source>
+      <translation>esquina de un inserto redondo</translation>
+    </message>
+    <message>
+      <location filename="core/part/insert_codes.py" />
+      <source>corner radius (1/64 in)</source>
+      <translation>radio de esquina (1/64 in)</translation>
+    </message>
+    <message>
+      <location filename="core/part/insert_codes.py" />
+      <source>corner radius (tenths of a mm)</source>
+      <translation>radio de esquina (décimas de mm)</translation>
+    </message>
+    <message>
+      <location filename="core/part/insert_codes.py" />
+      <source>size (eighths of an inch)</source>
+      <translation>tamaño (octavos de pulgada)</translation>
+    </message>
+    <message>
+      <location filename="core/part/insert_codes.py" />
+      <source>size of insert shape %1</source>
+      <translation>tamaño de el inserto de forma %1</translation>
+    </message>
+    <message>
+      <location filename="core/part/insert_codes.py" />
+      <source>thickness (sixteenths of an inch)</source>
+      <translation>espesor (dieciseisavos de pulgada)</translation>
+    </message>
+    <message>
+      <location filename="core/part/insert_codes.py" />
+      <source>tolerance class</source>
+      <translation>clase de tolerancia</translation>
+    </message>
+    <message>
+      <location filename="core/part/insert_codes.py" />
+      <source>type of hole and chip breaker</source>
+      <translation>tipo de agujero y rompevirutas</translation>
+    </message>
+    <message>
+      <location filename="core/part/shape_rules.py" />
+      <source>an entering angle of %1° leaves a point of %2° no clearance; at most %3°</source>
+      <translation>un ángulo de posición de %1° no deja despeje a una punta de %2°; %3° como máximo</translation>
+    </message>
+    <message>
+      <location filename="core/part/shape_rules.py" />
+      <source>an outline takes three points that do not lie on one line</source>
+      <translation>un contorno necesita tres puntos que no estén en una línea</translation>
+    </message>
+    <message>
+      <location filename="core/part/shape_rules.py" />
+      <source>the corner radius is larger than half of the diameter</source>
+      <translation>el radio de esquina es mayor que la mitad del diámetro</translation>
+    </message>
+    <message>
+      <location filename="core/part/shape_rules.py" />
+      <source>the nose radius is larger than the insert %1</source>
+      <translation>el radio de punta es mayor que el inserto %1</translation>
+    </message>
+    <message>
+      <location filename="core/part/shape_rules.py" />
+      <source>the pilot is as thick as the centre drill</source>
+      <translation>el piloto es tan grueso como la broca de centrar</translation>
+    </message>
+    <message>
+      <location filename="core/part/shape_rules.py" />
+      <source>the pitch is too coarse for the diameter of the tap</source>
+      <translation>el paso es demasiado grande para el diámetro del macho</translation>
+    </message>
+    <message>
+      <location filename="core/part/shape_rules.py" />
+      <source>tip %1 is no end of a round tool: 7 along the spindle, 8 across it, 6 from behind</source>
+      <translation>la punta %1 no es extremo de una herramienta redonda: 7 a lo largo del husillo, 8 de través, 6 desde detrás</translation>
+    </message>
+    <message>
+      <location filename="core/part/shape_rules.py" />
+      <source>tip %1 is that of a tool in front; behind the spindle the tip lies at %2: %3</source>
+      <translation>la punta %1 es la de una herramienta delantera; detrás del husillo la punta está en %2: %3</translation>
+    </message>
+    <message>
+      <location filename="core/part/shape_rules.py" />
+      <source>two corners of this nose radius are wider than the edge</source>
+      <translation>dos esquinas con este radio son más anchas que el filo</translation>
+    </message>
+    <message>
+      <location filename="core/part/shape_rules.py" />
+      <source>what cuts is longer than the tool sticks out</source>
+      <translation>lo que corta es más largo que el voladizo de la herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/part/stock_forms.py" />
+      <source>bar:D, bar:D:LENGTH, tube:D:BORE, tube:D:BORE:LENGTH, profile:FILE.csv or after:FILE.nc, then +ALLOWANCE</source>
+      <translation>bar:D, bar:D:LARGO, tube:D:INTERIOR, tube:D:INTERIOR:LARGO, profile:ARCHIVO.csv o after:ARCHIVO.nc, luego +DEMASÍA</translation>
+    </message>
+    <message>
+      <location filename="core/part/stock_spec.py" />
+      <source>%1 has %2 sizes; say one of %3</source>
+      <translation>%1 tiene %2 medidas; diga una de %3</translation>
+    </message>
+    <message>
+      <location filename="core/part/stock_spec.py" />
+      <source>%1 is no stock; say one of %2</source>
+      <translation>%1 no es ningún material; diga una de %2</translation>
+    </message>
+    <message>
+      <location filename="core/part/stock_spec.py" />
+      <source>%1 names no file; say %2:FILE</source>
+      <translation>%1 no nombra ningún archivo; diga %2:ARCHIVO</translation>
+    </message>
+    <message>
+      <location filename="core/part/stock_spec.py" />
+      <source>%1: %2 is no length; say 1.25 (inches) or 30mm</source>
+      <translation>%1: %2 no es una longitud; diga 1.25 (pulgadas) o 30mm</translation>
+    </message>
+    <message>
+      <location filename="core/part/stock_spec.py" />
+      <source>%1: a diameter is more than 0 and up to %2 in</source>
+      <translation>%1: un diámetro es mayor que 0 y hasta %2 in</translation>
+    </message>
+    <message>
+      <location filename="core/part/stock_spec.py" />
+      <source>%1: a length is more than 0</source>
+      <translation>%1: una longitud es mayor que 0</translation>
+    </message>
+    <message>
+      <location filename="core/part/stock_spec.py" />
+      <source>%1: the bore of a tube is more than 0 and less than its diameter</source>
+      <translation>%1: el interior de un tubo es mayor que 0 y menor que su diámetro</translation>
+    </message>
+    <message>
+      <location filename="core/part/stock_spec.py" />
+      <source>a profile has z, r, or z, r, bore in every row alike</source>
+      <translation>un perfil tiene z, r, o z, r, interior, en todas las filas por igual</translation>
+    </message>
+    <message>
+      <location filename="core/part/stock_spec.py" />
+      <source>a profile needs two points at least: z, r in each row</source>
+      <translation>un perfil necesita al menos dos puntos: z, r en cada fila</translation>
+    </message>
+    <message>
+      <location filename="core/part/stock_spec.py" />
+      <source>radii of a profile are not negative, and a bore is within its outside</source>
+      <translation>los radios de un perfil no son negativos, y el interior queda dentro del exterior</translation>
+    </message>
+    <message>
+      <location filename="core/part/stock_spec.py" />
+      <source>row %1 of the profile has %2 numbers; it has z, r (, bore)</source>
+      <translation>la fila %1 del perfil tiene %2 números; lleva z, r (, interior)</translation>
+    </message>
+    <message>
+      <location filename="core/part/stock_spec.py" />
+      <source>row %1 of the profile is no numbers: %2</source>
+      <translation>la fila %1 del perfil no son números: %2</translation>
+    </message>
+    <message>
+      <location filename="core/part/stock_spec.py" />
+      <source>the points of a profile go one way along Z</source>
+      <translation>los puntos de un perfil van en un solo sentido a lo largo de Z</translation>
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>%1, its diameter as %2 in</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>, %1 in</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>RIGHT EDGE</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>RIGHT SIDE</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>T%1 is taken for %2 (%3)</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>T%1 is taken for a bar stop</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>a %1 tool</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>an end mill</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>by its comment</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>by its moves</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>drill tool</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>reamer tool</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>tap tool</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
       <location filename="core/proving/block_delete.py" />
       <source>With block delete %1: %2</source>
       <translation>Con salto de bloque %1: %2</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks_page.py" />
+      <source>Found when: %1  </source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -11937,6 +12412,261 @@
       <location filename="core/proving/machine_checks.py" />
       <source>stop it with M5 first, or take a lathe whose C has its own drive: sinumerik-modulo</source>
       <translation>párelo primero con M5, o use un torno cuyo C tenga servo propio: sinumerik-modulo</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A commanded speed over max_rpm under [clamping] of the machine file.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A cutting move leads away from the part, and nothing is cut where the program seems to mean it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A drill goes deeper than its flutes are long.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A feed along Z beside the stock, .1 in and longer, stays .08 in and more outside of it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A feed goes on where there is no metal.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A feed of .1 in and more leads away from the part and cuts nothing, and the next goes on there.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A feed per turn over .8 of the nose radius along a turned face.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A rapid right behind a cut takes off metal at a smaller radius than the cut.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A rapid, or a feed of 100 in/min and more, takes off metal.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A tool, or its holder, runs into chuck, jaws or collet.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>An outline comes into the contour that the machine file gives under [clamping].</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>An outline that cannot cut overlaps metal by more than .001 in.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Change M03 and M04, or the hand that the tool's shape says.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Check the stock, and X as a radius or a diameter.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Go out along X before Z, or in a bore along Z before X.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Holder, shank or boring bar runs into metal at a rapid or at a feed.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>It is longer than five times its diameter.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>It stays more than .08 in from all metal for 3 s and .2 in of its way.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Let the part stick out further, or stop earlier.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Look for a lost minus (Z.5 for Z-.5) or a lost decimal point (X4 for X.4).</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Look for a lost minus or decimal point; move there by a rapid.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Lower F, or look for a lost decimal point (F.03 for F.003).</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Lower S, or limit G96 by G77.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>M04 with a right-hand drill, tap or reamer; M03 with a left-hand one.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Stop short of the metal and feed in: look for a G00 left on, and for a sign or a decimal point.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Support it, or part it off in two steps.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The edge meets more than .001 in of metal in r and in Z.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The feed is larger than the nose can cut.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The hole is deeper than the cutting length of the drill.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The part is larger than its stock: a contour is cut in the air outside the bar.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The spindle turns against the cutting edge.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The spindle turns faster than chuck or collet may.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The tool retracts through the part.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Use a longer drill, or peck and check the length that was entered.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Use a longer or slimmer tool, or another direction of cut.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>What is parted off is long and held by nothing.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 deep at Z %2 … %3</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 goes into metal, %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 leaves a cut through the part, %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>A feed as fast as a rapid</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>A rapid of a live tool goes into metal at %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>T%1 cuts while the spindle turns backwards (M04).</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>T%1 feeds %2 with a nose radius of %3.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>T%1 goes %2 deep; it cuts %3.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>T%1 runs into the chuck, %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>The holder of T%1 runs into metal, %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>The spindle turns at %1 rpm; the chuck may turn at %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>This move feeds for %1 s where there is no metal.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>This move leads away from the part and cuts nothing, and so does the next.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>This move turns a larger diameter than the stock has.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>What is parted off is %1 times as long as it is thick.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />
@@ -12090,8 +12820,28 @@
     </message>
     <message>
       <location filename="core/store/offset_fields.py" />
+      <source>behind the spindle</source>
+      <translation>detrás del husillo</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_fields.py" />
+      <source>cutting length</source>
+      <translation>longitud de corte</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_fields.py" />
+      <source>entering angle</source>
+      <translation>ángulo de posición</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_fields.py" />
       <source>nose radius</source>
       <translation>radio de punta</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_fields.py" />
+      <source>point angle</source>
+      <translation>ángulo de punta</translation>
     </message>
     <message>
       <location filename="core/store/offset_fields.py" />
@@ -12135,6 +12885,11 @@
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
+      <source>T%1 has no shape yet; enter its kind first: %2</source>
+      <translation>T%1 aún no tiene forma; introduzca primero su clase: %2</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
       <source>T%1 was never set, so nothing can be relative to it; touch it off first</source>
       <translation>T%1 nunca se puso, nada puede ser relativo a ella; tóquela primero</translation>
     </message>
@@ -12142,6 +12897,11 @@
       <location filename="core/store/offset_tables.py" />
       <source>there is no change of G54…G59 to undo</source>
       <translation>no hay cambio de G54…G59 que deshacer</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>there is no change of a tool's shape to undo</source>
+      <translation>no hay ningún cambio de forma de herramienta que deshacer</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />

@@ -141,7 +141,7 @@ def test_tool_with_a_shape_alone_was_never_touched_off(sheet: Path) -> None:
             '[tool.5]\nkind = "drill"\npoint = nan',
             "tool.5.point = nan is out of range; expected 0…180 degrees",
         ),
-        ('[tool.5]\nkind = "drill"\ntip = 3', "tool.5.tip: tip 3 is no end of a drill"),
+        ('[tool.5]\nkind = "drill"\ntip = 3', "tool.5.tip: tip 3 is no end of a round tool"),
         ('[tool.7]\nkind = "form"\nprofile = "0,0 1,1"', "tool.7.profile: a profile is three points or more"),
         ('[tool.33]\nkind = "drill"', "[tool.33] does not exist; offsets are 1…32"),
         ('[tools.3]\nkind = "drill"', "tools is unknown; did you mean tool?"),
@@ -247,5 +247,5 @@ def test_refusal_is_one_line_and_sets_nothing(capsys: Captured, argv: tuple[str,
 
 def test_contradiction_with_the_offset_of_the_tool_is_refused(capsys: Captured) -> None:
     assert offsets("set", "T5", "x=1", "z=1", "quadrant=3") == 0
-    assert "tip 3 is no end of a drill" in refused(capsys, "set", "T5", "kind=drill")
+    assert "tip 3 is no end of a round tool" in refused(capsys, "set", "T5", "kind=drill")
     assert offsets("set", "T5", "kind=drill", "quadrant=7") == 0

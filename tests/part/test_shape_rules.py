@@ -28,7 +28,7 @@ SOUND = {
         ("insert", "CNXG432", "CNXG432: character 3, X, means nothing as tolerance class"),
         ("nose_radius", 1.1, "two corners of this nose radius are wider than the edge"),
         ("entry", 95.0, "an entering angle of 95° leaves a point of 90° no clearance; at most 90°"),
-        ("tip", 3, "tip 3 is no end of a drill"),
+        ("tip", 3, "tip 3 is no end of a round tool"),
         ("length", 61.0, "what cuts is longer than the tool sticks out"),
         ("width", 5.0, "the pilot is as thick as the centre drill"),
         ("pitch", 3.0, "the pitch is too coarse for the diameter of the tap"),

@@ -32,6 +32,7 @@ from app.screen.main_window import MainWindow
 from app.screen.theme import PALETTES
 from core.executor.snapshot import State
 from core.store.store import Store
+from core.store.store_rows import Kind
 
 SIZES = ((1024, 600), (1920, 1080), (3840, 2160))
 THEMES = ("dark", "light")
@@ -72,6 +73,9 @@ class Stage:
         """The offsets of the samples and some corrections."""
         for number, tool in read_offsets(samples() / "offsets.toml").tools.items():
             store.set_tool(number, "touched off", x=tool.x, z=tool.z, nose_radius=tool.nose_radius)
+        sheet = {"kind": "turning", "insert": "CNMG432", "holder": "MCLNR-124B"}
+        store.set_tool(1, "set", quadrant=3)
+        store.set_offset(Kind.SHAPE, 1, "entered", sheet)
         for number, x, z, why in CORRECTIONS:
             store.set_secondary(number, why, x=x * 25.4, z=z * 25.4).result()
 
@@ -199,6 +203,7 @@ SCENES = (
     Scene("jog", "F1 F5"),
     Scene("searchto", 'F6 "20 Enter'),
     Scene("tools", "F8"),
+    Scene("shape", "F8 F8"),
     Scene("seccmp", 'F9 "1 Enter "-.002+.0005'),
     Scene("history", "F9 F5"),
     Scene("zero", "F1 G"),

@@ -1,0 +1,294 @@
+"""Shape of a tool, F8 of the tool offsets: what its sheet says, field by field, and what it looks like."""
+
+from __future__ import annotations
+
+from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError
+from app.desk.desk import Desk
+from app.desk.tool_shapes import row_mistakes, shape_of
+from app.desk.translation import tr
+from app.offsets.offset_table import OffsetTable
+from app.offsets.offset_values import TOOL_FIELDS, choice_word, heading, shown_value, value_typed, word
+from app.offsets.tool_offsets import ToolFields
+from core.executor.snapshot import Snapshot
+from core.part.shape_rules import FIELDS_OF, ShapeMistake
+from core.part.tool_outline import ToolOutline, outline
+from core.part.tool_shape import ToolKind
+from core.store.offset_fields import Sort
+from core.store.store_rows import OFFSETS, Kind, ShapeRow, ToolRow, Value
+
+_OF_THE_OFFSET = {"tip": "quadrant", "nose_radius": "nose_radius"}  # kept with the tool's offset
+_MOVES = {"Up": -1, "Down": 1, "Tab": 1}
+_TURNS = {"Left": -1, "Right": 1}
+
+
+class ToolShapes(OffsetTable):
+    """One tool, and the field under the cursor. Left and Right turn through what a field may be."""
+
+    kind = Kind.SHAPE
+
+    def __init__(self, desk: Desk) -> None:
+        super().__init__(desk)
+        self.place = 0
+        self.writing = False  # a text is open: every character is part of it
+
+    # --- what is shown -------------------------------------------------------------------------------
+
+    @property
+    def number(self) -> int:
+        """The tool that the pages of tools stand at."""
+        return self.book.at
+
+    @property
+    def row(self) -> ShapeRow | None:
+        """Its shape; None: it has none yet."""
+        return self.book.shapes.get(self.number)
+
+    @property
+    def tool(self) -> ToolRow | None:
+        """Its offset; None: it was never set."""
+        return self.book.tools.get(self.number)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The fields that mean something for a tool of this kind."""
+        row = self.row
+        if row is None:
+            return ("kind",)
+        return ("kind", *(_OF_THE_OFFSET.get(name, name) for name in FIELDS_OF[ToolKind(row.kind)]))
+
+    @property
+    def name(self) -> str:
+        """The field under the cursor."""
+        return self.names[min(self.place, len(self.names) - 1)]
+
+    def value(self, name: str) -> Value:
+        """A field as it is kept; of nose radius and tip what the tool's offset has."""
+        if name in ToolRow._fields:
+            of_offset: Value = getattr(self.tool or ToolRow(), name)
+            return of_offset
+        of_shape: Value = getattr(self.row or ShapeRow(), name)
+        return of_shape
+
+    def cell(self, name: str) -> str:
+        """A field as the operator reads it; empty where nothing is stated."""
+        value = self.value(name)
+        stated = bool(value) or TOOL_FIELDS[name].sort is Sort.FLAG or (name == "quadrant" and self.tool)
+        return shown_value(name, value, self.mode) if stated else ""
+
+    @property
+    def mistakes(self) -> tuple[ShapeMistake, ...]:
+        """What cannot be in this shape."""
+        return () if self.row is None else row_mistakes(self.row, self.tool)
+
+    @property
+    def outline(self) -> ToolOutline | None:
+        """What to draw; None while there is no shape, or one that cannot be."""
+        return None if self.row is None or self.mistakes else outline(shape_of(self.row, self.tool))
+
+    @property
+    def question(self) -> str:
+        """The tool and the field under the cursor."""
+        return f"T{self.number}  {heading(self.name, self.mode)}?"
+
+    @property
+    def entered(self) -> str:
+        """What is typed, or what has been turned to."""
+        return self._said(self.text) if self.text and self.chosen_from else self.text
+
+    def _said(self, choice: str) -> str:
+        return {"yes": tr("YES"), "no": tr("NO")}.get(choice) or choice_word(choice)
+
+    @property
+    def old_to_new(self) -> str:
+        """The field before and after what is typed, or else the last change."""
+        if not (self.text or self.writing):
+            return self.history.last_in_words
+        try:
+            new = shown_value(self.name, value_typed(self.name, self.text, self.mode), self.mode)
+        except EntryError:
+            new = "…"  # half a sum is no mistake yet
+        return f"{self.cell(self.name)}  →  {new}"
+
+    @property
+    def foot(self) -> str:
+        """What F3, F8 and Esc do here."""
+        return tr("Page up and Page down: another tool; F3: no shape; F8: the table of tools; Esc leaves")
+
+    def hint(self, _snapshot: Snapshot) -> str:
+        """What cannot be in the shape; else how the field under the cursor is entered."""
+        if self.mistakes and not (self.text or self.writing):
+            return f"T{self.number}: {tr(self.mistakes[0].text)}"
+        if self.writing:
+            return tr("TYPE IT; RETURN KEEPS IT, ESC LEAVES IT AS IT WAS; F-KEYS STILL WORK")
+        if self.chosen_from:
+            return tr("LEFT AND RIGHT, OR A FINGER, TURN THROUGH WHAT THERE IS; RETURN SETS IT")
+        if TOOL_FIELDS[self.name].sort is Sort.TEXT:
+            return tr("PRESS RETURN TO WRITE IT")
+        return tr("UP AND DOWN CHOOSE A FIELD; TYPE A VALUE OR A SUM, RETURN SETS IT; 0: NOT STATED")
+
+    @property
+    def corrects(self) -> bool:
+        """A shape is no correction: it waits until no program is under way."""
+        return False
+
+    @property
+    def chosen_from(self) -> tuple[str, ...]:
+        """What the field under the cursor may be, where it is one of several."""
+        field = TOOL_FIELDS[self.name]
+        return ("no", "yes") if field.sort is Sort.FLAG else field.choices
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def takes(self, key: str) -> bool:
+        """Figures and signs; every character while a text is written."""
+        return self.writing or key in CHARACTERS
+
+    def enter_key(self, key: str) -> bool:
+        """Up and Down go from field to field, Return sets what is typed or chosen."""
+        if key == "Enter":
+            self._enter()
+        elif key in _MOVES:
+            self.go(self.names.index(self.name) + _MOVES[key])
+        elif key in _TURNS:
+            self.turn(_TURNS[key])
+        elif key in {"Page up", "Page down"}:
+            self.go_to_tool(self.number + (1 if key == "Page down" else -1))
+        elif key in {"Back", "Delete"}:
+            self.type_text(key)
+        elif len(key) == 1 and self.takes(key):
+            self._add(key)
+        else:
+            return False
+        return True
+
+    def choose(self, place: int) -> None:
+        """A field by a finger; touched again its text opens, or the next of several comes up."""
+        again = place == self.names.index(self.name)
+        if not again:
+            self.go(place)
+        elif self.chosen_from:
+            self.turn(1)
+        elif TOOL_FIELDS[self.name].sort is Sort.TEXT and not self.writing:
+            self._enter()
+
+    def go(self, place: int) -> None:
+        """The cursor there; what was typed and not entered stays, and that is said."""
+        if not self._left_open():
+            self.place = max(0, min(len(self.names) - 1, place))
+
+    def go_to_tool(self, number: int) -> None:
+        """Another tool, at its first field."""
+        if not self._left_open():
+            self.book.at, self.place = max(OFFSETS[0], min(OFFSETS[-1], number)), 0
+
+    def turn(self, step: int) -> None:
+        """The next or the one before of what the field may be; Return sets it."""
+        choices = self.chosen_from
+        if not choices:
+            return
+        if why := self._barred():
+            self.desk.say(why)
+            return
+        now = self.text or self._choice()
+        self.text = choices[(choices.index(now) + step) % len(choices)] if now in choices else choices[0]
+
+    def _choice(self) -> str:
+        """The value of the field as one of its choices; empty when it is none yet."""
+        value = self.value(self.name)
+        return ("yes" if value else "no") if isinstance(value, bool) else str(value)
+
+    def _left_open(self) -> bool:
+        if self.text or self.writing:
+            self.desk.say(tr("PRESS RETURN TO SET IT, OR ESC TO LEAVE IT AS IT WAS"))
+        return bool(self.text or self.writing)
+
+    def _add(self, key: str) -> None:
+        if self.chosen_from:
+            self.desk.say(tr("LEFT AND RIGHT TURN THROUGH WHAT THERE IS"))
+        elif TOOL_FIELDS[self.name].sort is Sort.TEXT and not self.writing:
+            self.desk.say(tr("PRESS RETURN TO WRITE IT"))
+        else:
+            if not self.text:
+                self.desk.clear()
+            self.type_text(key, int(TOOL_FIELDS[self.name].high) if self.writing else LONGEST)
+
+    def _enter(self) -> None:
+        if self.text.strip() or self.writing:
+            self._store()
+        elif TOOL_FIELDS[self.name].sort is Sort.TEXT and not self.chosen_from:
+            self._open()
+        else:
+            self.go(self.names.index(self.name) + 1)
+
+    def _barred(self) -> str:
+        return self.barred(self.desk.snapshot(), correction=False)
+
+    def _open(self) -> None:
+        if why := self._barred():
+            self.desk.say(why)
+        else:
+            self.writing, self.text = True, str(self.value(self.name))
+
+    def _store(self) -> None:
+        """Save the field; what is refused is said, and the text stays to be mended."""
+        why = self._barred()
+        try:
+            why = why or self._save(self.name, value_typed(self.name, self.text, self.mode))
+        except EntryError as error:
+            why = tr("REFUSED: {why}").format(why=error)
+        if why:
+            self.desk.say(why)
+        else:
+            self.text, self.writing = "", False
+
+    def _save(self, name: str, value: Value) -> str:
+        """Raises EntryError where this field would mean nothing."""
+        of_offset = name in ToolRow._fields
+        if of_offset and self.tool is None:
+            return ToolFields(self.history).never_set(self.number)
+        if (self.row is not None or of_offset) and value == self.value(name):
+            self.desk.say(tr("T{number} IS AS IT WAS").format(number=self.number))
+            return ""
+        self._check(name, value)
+        typed = f"{'MM ' if self.mode.metric else ''}{word(name)} {self.text.strip()}"
+        return self.book.change(Kind.TOOL if of_offset else Kind.SHAPE, self.number, {name: value}, typed)
+
+    def _check(self, name: str, value: Value) -> None:
+        """What is wrong with this very field is refused; what it does to the others is shown."""
+        tool, row = self.tool or ToolRow(), self.row or ShapeRow()
+        if name in ToolRow._fields:
+            tool = tool._replace(**{name: value})  # type: ignore[arg-type]
+        else:
+            row = row._replace(**{name: value})  # type: ignore[arg-type]
+        wrong = [
+            each for each in row_mistakes(row, tool) if _OF_THE_OFFSET.get(each.field, each.field) == name
+        ]
+        if wrong:
+            raise EntryError(wrong[0].text)
+
+    def remove(self) -> None:
+        """F3: the tool has no shape any more, after asking."""
+        if self.row is None:
+            self.desk.say(tr("T{number} HAS NO SHAPE").format(number=self.number))
+        elif why := self._barred():
+            self.desk.say(why)
+        else:
+            number = self.number
+            question = tr("PRESS Y TO FORGET THE SHAPE OF T{number}, ESC TO KEEP IT").format(number=number)
+            self.desk.ask(question, lambda: self._remove(number))
+
+    def _remove(self, number: int) -> None:
+        self.drop()
+        self.history.answer(self._barred() or self.book.remove_shape(number, tr("no shape")))
+
+    def take_back(self) -> bool:
+        """What is typed or chosen, or an open text."""
+        if not (self.text or self.writing):
+            return False
+        self.drop()
+        self.desk.say(tr("T{number} IS AS IT WAS").format(number=self.number))
+        return True
+
+    def drop(self) -> None:
+        """Forget what is typed or chosen."""
+        self.text, self.writing = "", False

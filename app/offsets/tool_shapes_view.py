@@ -1,0 +1,192 @@
+"""Shape of a tool, F8 of the tool offsets: its fields, and insert, holder and tip drawn from its outline."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QPolygonF, QTransform
+from PySide6.QtWidgets import QWidget
+
+from app.desk.translation import tr
+from app.offsets.offset_values import heading, word
+from app.offsets.offsets_view import OffsetPage
+from app.offsets.tool_shapes import ToolShapes
+from app.screen import page_table
+from app.screen.look import CENTRE, RIGHT, Look, Painter
+from app.screen.page_base import Host, KeyActions
+from app.screen.panel import Panel, Shown
+from app.screen.tool_tip_drawing import draw_tip
+from core.executor.snapshot import Snapshot
+from core.part.tool_outline import ToolOutline
+from core.part.tool_polygons import FloatArray
+
+ROWS = 6  # fields in one of the two columns
+FIELDS = 0.6  # of the width, for both columns
+_AROUND = 1.9  # how much more than the cutting edges the picture shows of a tool with an insert
+
+
+class ShapeTable(Panel):
+    """Two columns of fields, each a finger's target, and the picture at their right."""
+
+    _shown: Shown[object] = Shown(())
+
+    def __init__(self, look: Look, model: ToolShapes, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._model = model
+
+    def show_shape(self) -> None:
+        """The model as it is now."""
+        model = self._model
+        last = tuple(change.number for change in model.history.last)
+        self._shown = (model.number, model.row, model.tool, model.name, model.mode, last)
+
+    def draw(self, painter: Painter) -> None:
+        u, model = self.look.u, self._model
+        unit = tr("MM") if model.mode.metric else tr("INCH")
+        title = f"{tr('SHAPE OF T{number}').format(number=model.number)}  ·  {unit}"
+        if model.tool is not None and model.tool.remark:
+            title += f"  ·  {model.tool.remark}"
+        self.frame(painter, title)
+        room = self.inside().adjusted(-0.7 * u, 0, 0.7 * u, 0.5 * u)
+        fields = QRectF(room.x(), room.y(), FIELDS * room.width(), room.height())
+        wide, high = fields.width() / 2, fields.height() / ROWS
+        for place, name in enumerate(model.names):
+            column, row = divmod(place, ROWS)
+            cell = QRectF(fields.x() + column * wide, fields.y() + row * high, wide, high)
+            self._field(painter, cell.adjusted(0, 0, -0.5 * u, -0.5 * u), name)
+            self.place(cell, partial(model.choose, place))
+        self._picture(
+            painter,
+            QRectF(
+                fields.right() + 0.4 * u, room.y(), room.right() - fields.right() - 0.4 * u, room.height()
+            ),
+        )
+
+    def _field(self, painter: Painter, cell: QRectF, name: str) -> None:
+        """Its name over its value."""
+        u, model = self.look.u, self._model
+        here = name == model.name
+        painter.fill(cell, "here" if here else "key")
+        head = cell.adjusted(0.8 * u, 0.3 * u, -0.8 * u, 0)
+        head.setHeight(1.8 * u)
+        painter.write(head, heading(name, model.mode), 1.5, "soft")
+        wrong = name in {"quadrant" if each.field == "tip" else each.field for each in model.mistakes}
+        foot = cell.adjusted(0.8 * u, 2.2 * u, -0.8 * u, -0.4 * u)
+        text = model.cell(name)
+        free = name in {"insert", "holder", "profile"}
+        if name == "quadrant" and text:
+            side = foot.height()
+            draw_tip(painter, QRectF(foot.x(), foot.y(), side, side), int(text))
+        painter.write(
+            foot, text or "–", 2.0, "alarm" if wrong else "text", at=RIGHT, bold=bool(text), raw=free
+        )
+
+    # --- the picture ---------------------------------------------------------------------------------
+
+    def _picture(self, painter: Painter, room: QRectF) -> None:
+        """The outline, X downwards as in every picture of the path; under it what is assumed, or wrong."""
+        u, model = self.look.u, self._model
+        words = QRectF(room.x(), room.bottom() - 2.6 * u, room.width(), 2.4 * u)
+        painter.fill(room, "panel")
+        outline = model.outline
+        if model.row is None:
+            text = tr("NO SHAPE: THE PROOF TAKES THE NOSE ALONE")
+            painter.write(room, text, 1.8, "soft", at=CENTRE, margin=1.0)
+        elif outline is None:
+            painter.write(room, tr("THIS SHAPE CANNOT BE"), 1.8, "alarm", at=CENTRE, margin=1.0)
+        else:
+            draw_outline(painter, room.adjusted(0, 0, 0, -2.8 * u), outline)
+            if outline.assumed:
+                names = ", ".join(word("quadrant" if name == "tip" else name) for name in outline.assumed)
+                text = tr("ASSUMED: {names}").format(names=names)
+                painter.write(words, text, 1.5, "soft", at=CENTRE, bold=False, margin=1.0)
+
+
+def draw_outline(painter: Painter, box: QRectF, outline: ToolOutline) -> None:
+    """Body and cutting edges of a tool, and the control point; Z to the right, X downwards."""
+    look, u = painter.look, painter.look.u
+    place = _placing(box, outline)
+    painter.save()
+    painter.setClipRect(box)
+    for polygons, ink, ground in ((outline.body, "frame", "ghost"), (outline.cutting, "accent", "key")):
+        for points in polygons:
+            painter.setPen(look.pen(ink, 0.16))
+            painter.setBrush(look.colour(ground))
+            painter.drawPolygon(place.map(_polygon(points)))
+    at = place.map(QPointF(0.0, 0.0))
+    painter.setPen(look.pen("tip", 0.2))
+    painter.drawLine(at - QPointF(1.6 * u, 0), at + QPointF(1.6 * u, 0))
+    painter.drawLine(at - QPointF(0, 1.6 * u), at + QPointF(0, 1.6 * u))
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.drawEllipse(at, 0.6 * u, 0.6 * u)
+    painter.restore()
+    _axes(painter, box)
+
+
+def _placing(box: QRectF, outline: ToolOutline) -> QTransform:
+    """From (z, x) in mm to the box: round tools whole, of others the edges and what lies around them."""
+    cutting = _polygon(outline.cutting[0]).boundingRect()
+    for points in outline.cutting[1:]:
+        cutting = cutting.united(_polygon(points).boundingRect())
+    share = 1.15 if outline.axial else _AROUND
+    if outline.axial and outline.body:
+        cutting = cutting.united(_polygon(outline.body[0]).boundingRect())
+    scale = min(box.width() / cutting.width(), box.height() / cutting.height()) / share
+    # Where the body lies beside the edges, the picture looks that way.
+    middle = cutting.center()
+    if outline.body and not outline.axial:
+        whole = _polygon(outline.body[0]).boundingRect().center() - middle
+        reach = max(abs(whole.x()), abs(whole.y()), 1e-9)
+        middle += whole * (0.3 * min(cutting.width(), cutting.height()) / reach)
+    return QTransform(
+        scale, 0, 0, scale, box.center().x() - scale * middle.x(), box.center().y() - scale * middle.y()
+    )
+
+
+def _polygon(points: FloatArray) -> QPolygonF:
+    return QPolygonF([QPointF(z, x) for z, x in points.tolist()])
+
+
+def _axes(painter: Painter, box: QRectF) -> None:
+    """Z+ to the right and X+ downwards, in the corner that is the chuck's."""
+    u = painter.look.u
+    at, long = QPointF(box.x() + 1.2 * u, box.y() + 1.2 * u), 3.0 * u
+    painter.setPen(painter.look.pen("soft", 0.14))
+    painter.drawLine(at, at + QPointF(long, 0))
+    painter.drawLine(at, at + QPointF(0, long))
+    painter.write(QRectF(at.x() + long + 0.3 * u, at.y() - u, 3 * u, 2 * u), "Z+", 1.4, "soft", raw=True)
+    painter.write(QRectF(at.x() - 0.6 * u, at.y() + long, 3 * u, 2 * u), "X+", 1.4, "soft", raw=True)
+
+
+class ToolShapePage(OffsetPage):
+    """The shape of the tool at which the table of tools stands."""
+
+    NAME = page_table.SHAPE
+    LABELS = ("MENU", "", "NONE", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "ZERO")
+    model: ToolShapes
+    table: ShapeTable
+
+    def __init__(self, host: Host, parent: QWidget) -> None:
+        super().__init__(host, parent, ToolShapes(host.desk))
+        self.table = ShapeTable(self.look, self.model, self)
+
+    def key_actions(self) -> KeyActions:
+        """No shape any more; no effect on the path is drawn of these."""
+        shared = {key: act for key, act in super().key_actions().items() if key != "F6"}
+        return {**shared, "F3": self.model.remove}
+
+    def opened(self) -> None:
+        """At the first field of the tool that was chosen."""
+        super().opened()
+        self.model.place = 0
+
+    def show_table(self, _snapshot: Snapshot) -> None:
+        """The tool as it is now."""
+        self.table.show_shape()
+
+    def escape(self) -> bool:
+        """Esc goes one step back, and then to the table of tools."""
+        if not self.model.escape():
+            self.host.go(page_table.TOOLS)
+        return True

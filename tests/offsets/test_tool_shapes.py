@@ -1,0 +1,250 @@
+"""Shape of a tool, F8 of the tool offsets: fields by kind, what is refused, what is shown, and when."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.offsets.tool_shapes import ToolShapes
+from core.executor.snapshot import State
+from core.part.tool_shape import ToolKind
+from core.store.offset_fields import TOOL_KINDS
+from core.store.store_rows import Kind, ShapeRow
+from tests.offsets.conftest import LIMIT, Room
+from tests.screen.yes import read
+
+INCH = 25.4
+
+
+def set_tools(room: Room) -> None:
+    """T1 turns and was touched off, T2 was touched off and has no shape, T3 is a drill from the office."""
+    room.store.set_tool(1, "set", x=-12.7, z=-76.2, nose_radius=0.79375, quadrant=3)
+    room.store.set_tool(2, "set", x=25.4, z=-50.8)
+    room.store.set_offset(Kind.SHAPE, 1, "set", {"kind": "turning", "insert": "CNMG432"})
+    room.store.set_offset(Kind.SHAPE, 3, "set", {"kind": "drill", "diameter": 6.35}).result(LIMIT)
+    room.desk.book.read()
+
+
+def shape_of(room: Room, number: int, name: str = "kind") -> ToolShapes:
+    """The page of this tool with the cursor on a field."""
+    set_tools(room)
+    page = ToolShapes(room.desk)
+    page.history.opened()
+    page.look(room.now[0])
+    page.go_to_tool(number)
+    page.go(page.names.index(name))
+    return page
+
+
+def write(page: ToolShapes, *keys: str) -> None:
+    """``Enter`` and the like are keys; other words are typed letter by letter."""
+    for key in keys:
+        named = key in {
+            "Enter",
+            "Left",
+            "Right",
+            "Up",
+            "Down",
+            "Tab",
+            "Page up",
+            "Page down",
+            "Back",
+            "Delete",
+        }
+        for each in [key] if named else key:
+            assert page.typed(each)
+
+
+def save(room: Room, page: ToolShapes) -> None:
+    """Wait for the disk, then look as a frame would."""
+    room.store.write(lambda _connection: None).result(LIMIT)
+    room.desk.book.poll()
+    page.look(room.now[0])
+
+
+def test_fields_are_those_of_the_kind(room: Room) -> None:
+    page = shape_of(room, 1)
+    assert page.names[:4] == ("kind", "hand", "quadrant", "nose_radius")
+    assert "diameter" not in page.names
+    page.go_to_tool(3)
+    assert page.names == ("kind", "quadrant", "diameter", "point", "length", "stick_out", "flutes")
+    page.go_to_tool(2)
+    assert page.names == ("kind",)
+
+
+@pytest.mark.parametrize("kind", TOOL_KINDS)
+def test_every_kind_has_its_fields_on_the_page(room: Room, kind: str) -> None:
+    set_tools(room)
+    room.desk.book.shapes[5] = ShapeRow(kind)
+    page = ToolShapes(room.desk)
+    page.look(room.now[0])
+    page.go_to_tool(5)
+    assert len(page.names) <= 12, "two columns of six"
+    for name in page.names:
+        page.go(page.names.index(name))
+        assert page.question.startswith("T5  ")
+        page.cell(name)
+    assert page.outline is not None
+    assert ToolKind(kind)
+
+
+def test_kind_is_turned_to_and_set(room: Room) -> None:
+    page = shape_of(room, 2)
+    write(page, "Right")
+    assert page.entered == "TURNING"
+    write(page, "Right", "Right", "Left", "Left", "Left")
+    assert page.entered == "FORM TOOL", "it goes round"
+    write(page, "Right", "Enter")
+    save(room, page)
+    assert room.store.shapes()[2] == ShapeRow("turning")
+    assert room.desk.notice == "T2 SAVED"
+    assert page.history.last_in_words == "T2   not set  →  TURNING  RIGHT HAND"
+
+
+@pytest.mark.parametrize(
+    ("metric", "typed", "mm"), [(False, ".25", 6.35), (False, "1/4+1/8", 9.525), (True, "6.5", 6.5)]
+)
+def test_length_is_typed_in_the_controls_unit(room: Room, metric: bool, typed: str, mm: float) -> None:
+    page = shape_of(room, 3, "diameter")
+    room.at(metric=metric, diameter=True)  # an X that is a diameter changes no size of a tool
+    page.look(room.now[0])
+    write(page, typed, "Enter")
+    save(room, page)
+    assert room.store.shapes()[3].diameter == pytest.approx(mm)
+
+
+def test_angle_is_typed_in_degrees(room: Room) -> None:
+    page = shape_of(room, 3, "point")
+    write(page, "118", "Enter")
+    save(room, page)
+    assert room.store.shapes()[3].point == 118.0
+    assert page.cell("point") == "118°"
+
+
+def test_text_is_opened_written_and_kept(room: Room) -> None:
+    page = shape_of(room, 1, "insert")
+    assert not page.takes("D")
+    write(page, "Enter")
+    assert (page.text, page.takes("D")) == ("CNMG432", True)
+    write(page, "Delete", "DNMG 442", "Enter")
+    save(room, page)
+    assert room.store.shapes()[1].insert == "DNMG 442"
+    assert page.cell("insert") == "DNMG 442"
+
+
+def test_nose_radius_and_tip_are_those_of_the_offset(room: Room) -> None:
+    page = shape_of(room, 1, "nose_radius")
+    assert page.cell("nose_radius") == "0.03125"
+    write(page, ".0156", "Enter")
+    save(room, page)
+    assert room.store.tools()[1].nose_radius == pytest.approx(0.0156 * INCH)
+    assert len(room.store.history(Kind.SHAPE)) == 2, "the shape has not changed"
+    assert room.desk.notice == "SAVED"
+    assert page.outline is not None
+    assert page.outline.cutting[0][:, 1].min() == pytest.approx(0.0, abs=1e-9)
+
+
+def test_page_keys_go_to_the_next_tool_and_the_table_stands_there_too(room: Room) -> None:
+    page = shape_of(room, 1)
+    write(page, "Page down", "Page down")
+    assert (page.number, room.grid().number) == (3, 3)
+    write(page, *["Page up"] * 5)
+    assert page.number == 1
+
+
+def test_f3_takes_the_shape_away_after_asking_and_undo_brings_it_back(room: Room) -> None:
+    page = shape_of(room, 3)
+    page.remove()
+    assert "PRESS Y TO FORGET THE SHAPE OF T3" in room.desk.notice
+    assert 3 in room.store.shapes()
+    read(room.desk)
+    room.desk.yes()
+    save(room, page)
+    assert 3 not in room.store.shapes()
+    page.undo()
+    save(room, page)
+    assert room.store.shapes()[3].diameter == 6.35
+    assert room.desk.notice == "T3 TAKEN BACK"
+
+
+# --- refusals ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("number", "name", "keys", "says"),
+    [
+        (1, "insert", ("Enter", "Delete", "CNXG432", "Enter"), "CNXG432: character 3, X, means nothing"),
+        (1, "nose_radius", (".26", "Enter"), "the nose radius is larger than the insert CNMG432"),
+        (1, "entry", ("101", "Enter"), "an entering angle of 101° leaves a point of 80° no clearance"),
+        (1, "entry", ("200", "Enter"), "entering angle takes 0…150 degrees"),
+        (1, "rear", ("Right", "Enter"), ""),
+        (3, "diameter", ("-.25", "Enter"), "it may be 0…20"),
+        (3, "diameter", ("1/", "Enter"), "REFUSED: "),
+        (3, "flutes", ("2.5", "Enter"), "flutes takes 0…20"),
+        (3, "quadrant", ("7", "Enter"), "T3 WAS NEVER SET"),
+        (1, "quadrant", ("10", "Enter"), "tip quadrant takes 0…9"),
+    ],
+)
+def test_value_that_means_nothing_is_refused_and_stays_to_be_mended(
+    room: Room, number: int, name: str, keys: tuple[str, ...], says: str
+) -> None:
+    page = shape_of(room, number, name)
+    before = room.store.shapes()[number], room.store.tools().get(number)
+    write(page, *keys)
+    if not says:  # a contradiction with another field is kept, and shown there
+        save(room, page)
+        assert "behind the spindle the tip lies at X+" in page.prompt(room.now[0])
+        assert page.outline is None
+        return
+    assert says in room.desk.notice
+    assert page.text
+    assert (room.store.shapes()[number], room.store.tools().get(number)) == before
+
+
+def test_letters_are_no_figures(room: Room) -> None:
+    page = shape_of(room, 3, "diameter")
+    assert not page.typed("q")
+    write(page, "Up")
+    page.go(0)
+    write(page, "5")
+    assert room.desk.notice == "LEFT AND RIGHT TURN THROUGH WHAT THERE IS"
+    assert page.text == ""
+
+
+def test_text_takes_nothing_before_it_is_opened(room: Room) -> None:
+    page = shape_of(room, 1, "insert")
+    write(page, "5")
+    assert room.desk.notice == "PRESS RETURN TO WRITE IT"
+    assert page.text == ""
+
+
+def test_what_is_not_entered_keeps_the_cursor(room: Room) -> None:
+    page = shape_of(room, 3, "diameter")
+    write(page, ".3", "Down")
+    assert page.name == "diameter"
+    write(page, "Page down")
+    assert page.number == 3
+    assert room.desk.notice == "PRESS RETURN TO SET IT, OR ESC TO LEAVE IT AS IT WAS"
+    assert page.escape()
+    assert (page.text, room.desk.notice) == ("", "T3 IS AS IT WAS")
+    assert not page.escape()
+
+
+def test_nothing_changes_while_a_program_is_under_way(room: Room) -> None:
+    page = shape_of(room, 3, "diameter")
+    room.at(State.RUN)
+    write(page, ".3", "Enter")
+    assert "A PROGRAM IS UNDER WAY" in room.desk.notice
+    page.drop()
+    page.go(0)
+    write(page, "Right")
+    assert page.text == ""
+    page.remove()
+    page.undo()
+    assert len(room.store.history(Kind.SHAPE)) == 2
+
+
+def test_there_is_no_shape_to_take_away(room: Room) -> None:
+    page = shape_of(room, 2)
+    page.remove()
+    assert room.desk.notice == "T2 HAS NO SHAPE"
+    assert not room.desk.asked

@@ -1,0 +1,213 @@
+"""The page of a tool's shape: by keys, by fingers alone, in both sizes and languages, and what it draws."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+
+from app.offsets.offset_book import OffsetBook
+from app.offsets.tool_shapes_view import ShapeTable, ToolShapePage
+from app.screen import page_table
+from app.screen.entry_panel import KeyPad
+from app.screen.language import speak_in
+from app.screen.panel import Panel
+from core.executor.snapshot import State
+from core.store.store import Store
+from core.store.store_rows import Kind, ShapeRow
+from tests.screen.hands import Hands, Key
+from tests.screen.test_offsets import FINGER
+from tests.screen.yes import yes
+
+LIMIT = 5.0
+
+
+@pytest.fixture
+def store(hands: Hands, tmp_path: Path) -> Iterator[Store]:
+    with Store.open(tmp_path / "home") as store:
+        store.set_tool(1, "set", x=-12.7, z=-76.2, nose_radius=0.79375, quadrant=3)
+        store.set_offset(Kind.SHAPE, 1, "set", {"kind": "turning", "insert": "CNMG432"})
+        store.set_tool(2, "set", x=25.4, z=-50.8).result(LIMIT)
+        hands.desk.book = OffsetBook(store)
+        yield store
+
+
+def opened(hands: Hands, number: int = 1) -> ToolShapePage:
+    """F8, down to the tool, F8."""
+    hands.key(Key.Key_F8)
+    for _ in range(number - 1):
+        hands.key(Key.Key_Down)
+    hands.key(Key.Key_F8)
+    page = hands.frame.page
+    assert isinstance(page, ToolShapePage)
+    assert hands.frame.title.page == page_table.SHAPE
+    return page
+
+
+def touch(hands: Hands, panel: Panel, place: int) -> None:
+    """A finger in the middle of a place, which is large enough for one; then what is shown now."""
+    hands.window.grab()
+    box, _press = panel._places[place]
+    assert isinstance(panel, KeyPad) or min(box.width(), box.height()) >= FINGER
+    QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, box.center().toTuple())))
+    hands.window.grab()
+
+
+def colours(hands: Hands, table: ShapeTable) -> set[str]:
+    """What colours the right half, the picture, has."""
+    image = table.grab().toImage()
+    wide, high = image.width(), image.height()
+    return {image.pixelColor(x, y).name() for x in range(wide * 2 // 3, wide) for y in range(high)}
+
+
+def test_shape_of_the_tool_under_the_cursor_comes_up_and_goes_back(hands: Hands, store: Store) -> None:
+    page = opened(hands, 2)
+    hands.sees(lambda: page.asked.asked.question == "T2  KIND?")
+    hands.key(Key.Key_F8)
+    assert hands.frame.title.page == page_table.TOOLS
+    hands.key(Key.Key_F8)
+    assert page.model.number == 2
+    hands.key(Key.Key_Escape)
+    assert hands.frame.title.page == page_table.TOOLS
+    hands.key(Key.Key_Escape)
+    assert hands.frame.page is hands.page
+
+
+def test_a_new_shape_by_keys_alone(hands: Hands, store: Store) -> None:
+    page = opened(hands, 2)
+    hands.key(Key.Key_Right)
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: 2 in page.model.book.shapes)
+    hands.sees(lambda: hands.prompt() == "T2 SAVED")
+    for _ in range(4):
+        hands.key(Key.Key_Down)
+    hands.sees(lambda: page.asked.asked.question == "T2  INSERT?")
+    hands.key(Key.Key_Return)
+    hands.type("DCMT 11T304")
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: store.shapes()[2] == ShapeRow("turning", insert="DCMT 11T304"))
+
+
+def test_letters_of_an_open_text_are_no_commands(hands: Hands, store: Store) -> None:
+    """H holds, E stops, C and D mean something too: here they are letters."""
+    page = opened(hands)
+    for _ in range(5):
+        hands.key(Key.Key_Down)
+    hands.key(Key.Key_Return)
+    hands.machine.posted.clear()
+    hands.type("the old one")
+    assert page.model.text == "the old one".upper() or page.model.text == "the old one"
+    assert hands.machine.posted == []
+    hands.key(Key.Key_Escape)
+    assert (page.model.text, hands.frame.page) == ("", page)
+    assert store.shapes()[1].holder == ""
+
+
+def test_a_finger_alone_makes_a_drill(hands: Hands, store: Store) -> None:
+    page = opened(hands, 2)
+    enter, point, two, five = 19, 13, 9, 5  # places on the pad, row by row
+    for _ in range(6):
+        touch(hands, page.table, 0)
+    assert page.model.entered == "DRILL"
+    touch(hands, page.pad, enter)
+    hands.sees(lambda: page.model.row == ShapeRow("drill") and not page.model.book.busy)
+    hands.sees(lambda: len(page.model.names) == 7)
+    touch(hands, page.table, 2)
+    for key in (point, two, five, enter):
+        touch(hands, page.pad, key)
+    hands.sees(lambda: store.shapes()[2].diameter == pytest.approx(6.35))
+
+
+def test_every_field_is_as_large_as_a_finger(hands: Hands, store: Store) -> None:
+    store.set_offset(Kind.SHAPE, 1, "set", {"kind": "threading"}).result(LIMIT)
+    hands.desk.book.read()
+    page = opened(hands)
+    for place in reversed(range(1, len(page.model.names))):
+        touch(hands, page.table, place)
+        assert page.model.place == place
+
+
+@pytest.mark.parametrize("size", [(1024, 600), (1920, 1080)])
+def test_outline_and_control_point_are_drawn(hands: Hands, store: Store, size: tuple[int, int]) -> None:
+    hands.window.resize(*size)
+    page = opened(hands)
+    hands.window.grab()
+    look = hands.window.look
+    drawn = colours(hands, page.table)
+    assert {look.colour(name).name() for name in ("accent", "ghost", "tip")} <= drawn
+    hands.key(Key.Key_PageDown)
+    hands.sees(lambda: page.model.number == 2)
+    hands.window.refresh()
+    assert look.colour("ghost").name() not in colours(hands, page.table)
+
+
+def test_what_cannot_be_is_told_and_not_drawn(hands: Hands, store: Store) -> None:
+    store.set_offset(Kind.SHAPE, 1, "set", {"kind": "drill"}).result(LIMIT)
+    hands.desk.book.read()
+    page = opened(hands)
+    hands.sees(lambda: hands.prompt().startswith("T1: tip 3 is no end of a round tool"))
+    hands.window.refresh()
+    assert hands.window.look.colour("ghost").name() not in colours(hands, page.table)
+    assert hands.window.look.colour("alarm").name() in colours(hands, page.table)
+
+
+def test_f3_asks_before_it_forgets(hands: Hands, store: Store) -> None:
+    page = opened(hands)
+    hands.key(Key.Key_F3)
+    assert hands.prompt().startswith("PRESS Y TO FORGET THE SHAPE OF T1")
+    hands.key(Key.Key_Escape)
+    assert 1 in store.shapes()
+    hands.key(Key.Key_F3)
+    yes(hands.window)
+    hands.sees(lambda: page.model.row is None)
+    hands.key(Key.Key_F4)
+    hands.sees(lambda: page.model.row == ShapeRow("turning", insert="CNMG432"))
+
+
+def test_history_tells_what_has_changed(hands: Hands, store: Store) -> None:
+    store.set_offset(Kind.SHAPE, 1, "sharper", {"insert": "CNMG431"}).result(LIMIT)
+    page = opened(hands)
+    hands.key(Key.Key_F5)
+    hands.sees(page.history.isVisible)
+    assert [entry[2] for entry in page.history.entries] == [
+        "INSERT CNMG432 → CNMG431",
+        "not set  →  TURNING  RIGHT HAND  INSERT CNMG432",
+    ]
+
+
+def test_nothing_changes_under_a_running_program(hands: Hands, store: Store) -> None:
+    opened(hands)
+    hands.machine.now = replace(hands.machine.now, state=State.RUN)
+    hands.sees(lambda: hands.prompt().startswith("A PROGRAM IS UNDER WAY"))
+    hands.key(Key.Key_Right)
+    hands.key(Key.Key_Return)
+    hands.key(Key.Key_F4)
+    assert len(store.history(Kind.SHAPE)) == 1
+
+
+def test_without_a_store_the_reason_is_told(hands: Hands) -> None:
+    opened(hands)
+    hands.key(Key.Key_Right)
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: hands.prompt() == "NO OFFSETS ARE KEPT HERE")
+
+
+def test_refusal_is_spanish_where_the_operator_is(hands: Hands, store: Store) -> None:
+    hands.desk.settings.choose("language", "es")
+    try:
+        page = opened(hands)
+        for _ in range(4):
+            hands.key(Key.Key_Down)
+        hands.key(Key.Key_Return)
+        hands.key(Key.Key_Delete)
+        hands.type("CNXG 432")
+        hands.key(Key.Key_Return)
+        told = hands.frame.prompt.text
+        assert "CNXG 432" in told
+        assert page.model.text == "CNXG 432"
+    finally:
+        speak_in("en")
