@@ -31,6 +31,7 @@ _BLOCK = 1 << 15  # points put at once: what is worked on stays in the cache
 _LIGHT = (-0.38, 0.62, 0.69)  # to the right, up, towards the viewer
 _BISECTOR = (-0.207, 0.337, 0.919)  # half way between light and viewer
 _SHADES = 256
+_STEEP = 0.5  # cosine between a wall's normal and the radius below which it is no round of the part
 _FACING = 0.02  # radians beyond the horizon that are drawn too
 
 
@@ -228,39 +229,51 @@ class _Drawing:
         inside = self.nearest.reshape(self.height + 2, self.width + 2)[1:-1, 1:-1].ravel()
         pixel = np.flatnonzero(inside > _NUMBER)
         point = inside[pixel] & _NUMBER
-        order = np.zeros(len(point), np.int16)
+        shade, colour = np.zeros(len(point), np.float32), np.zeros(len(point), np.int16)
+        rough = np.zeros(len(point), np.bool_)
         bounds = np.array([group.first for group in self.groups[1:]], np.int64)
         which = np.searchsorted(bounds, point, side="right").astype(np.int8)
         for number, group in enumerate(self.groups):
             own = np.flatnonzero(which == number)
             if len(own):
-                order[own] = self._lit(group, point[own] - group.first, hits)
+                shade[own], colour[own], rough[own] = self._lit(group, point[own] - group.first, hits)
+        if rough.any():
+            self._smooth(pixel, shade, rough)
         codes = np.full(inside.shape, -1, np.int16)
-        codes[pixel] = order
+        level = np.clip(shade * np.float32(_SHADES), 0, _SHADES - 1).astype(np.int16)
+        codes[pixel] = np.where(shade < 0.0, _AWAY, level + colour * _SHADES)
         codes = _without_specks(codes.reshape(self.height, self.width))
         return np.append(table.ravel(), np.uint32(ground))[np.maximum(codes, -1)]
 
-    def _lit(self, group: _Group, index: Numbers, hits: Spans) -> Codes:
-        """Places (n,) in the table of colours by shades, of points of a group."""
+    def _smooth(self, pixel: IntArray, shade: Floats, rough: Bools) -> None:
+        """Give rough points the mean light of the rough ones around them, five by five."""
+        at, wide = pixel[rough], self.width
+        light, count = (np.zeros(self.height * wide, np.float32) for _ in range(2))
+        light[at], count[at] = np.maximum(shade[rough], 0.0), 1.0
+        for step in (1, wide):
+            light, count = (_summed(values, step) for values in (light, count))
+        shade[rough] = light[at] / count[at]
+
+    def _lit(self, group: _Group, index: Numbers, hits: Spans) -> tuple[Floats, Codes | int, Bools | bool]:
+        """How light points (n,) of a group are, their colours, and which are rough."""
+        rough: Bools | bool = False
+        colour: Codes | int = _SECTION
         if group.wall is not None:
-            shade, z, colour = self._wall_light(group, group.wall, index)
+            shade, z, colour, rough = self._wall_light(group, group.wall, index)
         elif group.patch is not None:
-            shade, z, colour = self._patch_light(group, group.patch, index)
+            shade, z, colour, rough = self._patch_light(group, group.patch, index)
         else:
             assert group.z is not None
-            shade, z, colour = self._section_light(group.edge, len(index)), group.z[index], _SECTION
-        level: Codes = np.clip(shade * np.float32(_SHADES), 0, _SHADES - 1).astype(np.int16)
-        away = shade < 0.0
-        if hits:
-            at = z / self.view.scale + self.view.centre
-            hit = np.any([(at >= low) & (at <= high) for low, high in hits], axis=0)
-            level += np.where(hit, _HIT * _SHADES, colour * _SHADES).astype(np.int16)
-        else:
-            level += np.int16(colour * _SHADES)
-        level[away] = _AWAY
-        return level
+            shade, z = self._section_light(group.edge, len(index)), group.z[index]
+        if not hits:
+            return shade, colour, rough
+        at = z / self.view.scale + self.view.centre
+        hit = np.any([(at >= low) & (at <= high) for low, high in hits], axis=0)
+        return shade, np.where(hit, _HIT, colour).astype(np.int16), rough
 
-    def _wall_light(self, group: _Group, wall: Wall, index: Numbers) -> tuple[Floats, Floats, int]:
+    def _wall_light(
+        self, group: _Group, wall: Wall, index: Numbers
+    ) -> tuple[Floats, Floats, Codes | int, Bools]:
         row, ray = np.divmod(index, group.rays.stop - group.rays.start)
         ray += group.rays.start
         if group.columns is not None:
@@ -269,16 +282,21 @@ class _Drawing:
         if wall.inside:
             across, way, along = -across, -way, -along
         shade = self._shade(2 * ray, across, way, along)
-        return shade, self.surface.z[wall.columns[row]], _BORE if wall.bore else _OUTSIDE
+        rough = np.abs(across) < _STEEP
+        colour: Codes | int = _OUTSIDE
+        if wall.bore is not None:  # a slot through the axis is none
+            r = wall.r[row, 0 if self.surface.turned else ray]
+            colour = np.where(np.abs(r - wall.bore[row]) < 1.0, _BORE, _OUTSIDE).astype(np.int16)
+        return shade, self.surface.z[wall.columns[row]], colour, rough
 
-    def _patch_light(self, group: _Group, patch: Patch, index: Numbers) -> tuple[Floats, Floats, int]:
+    def _patch_light(self, group: _Group, patch: Patch, index: Numbers) -> tuple[Floats, Floats, int, Bools]:
         if patch.ray is None:
             index, ray = np.divmod(index, group.rays.stop - group.rays.start)
             halves = 2 * (ray + group.rays.start)
         else:
             halves = patch.ray[index]
         shade = self._shade(halves, patch.across[index], patch.way[index], patch.along[index])
-        return shade, patch.z[index], _OUTSIDE
+        return shade, patch.z[index], _OUTSIDE, patch.rough[index]
 
     def _section_light(self, edge: float, count: int) -> Floats:
         phi, side = abs(edge), math.copysign(1.0, edge)
@@ -326,6 +344,15 @@ def _normals(wall: Wall, row: IntArray, ray: IntArray, surface: Surface) -> tupl
     way = -np.clip(_smoother(own - before, behind - own), -50.0, 50.0) / ring
     size = 1.0 / np.sqrt(1.0 + along * along + way * way)
     return size, way * size, along * size
+
+
+def _summed(values: Floats, step: int) -> Floats:
+    """Sums of each with two neighbours on either side, ``step`` apart."""
+    total = values.copy()
+    for off in (step, 2 * step):
+        total[off:] += values[:-off]
+        total[:-off] += values[off:]
+    return total
 
 
 def _smoother(before: Floats, behind: Floats) -> Floats:

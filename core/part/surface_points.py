@@ -28,6 +28,7 @@ _GAP = 0.7  # pixels
 _NEAR = 6.0  # pixels: neighbouring rays further apart do not go on into each other
 _BEYOND = np.float32(1e6)
 _SPREAD = 3  # columns and rays over which a wall's direction is seen
+_AROUND = 90  # rays by which the radius of a bore is told
 _FINEST = 4  # rays are divided into so many at most
 
 
@@ -60,6 +61,7 @@ class Patch(NamedTuple):
     """Points off the rays' walls: Z and r in pixels, and normals along r, the angle and Z.
 
     ``ray`` (n,) counts halves of the step from ray to ray; None: the points are rings, at every ray.
+    ``rough``: the wall goes across columns and rays, and its normals turn from point to point.
     """
 
     z: Floats
@@ -68,12 +70,14 @@ class Patch(NamedTuple):
     across: Floats
     way: Floats
     along: Floats
+    rough: npt.NDArray[np.bool_]
 
 
 class Wall(NamedTuple):
     """One side of one layer: r (columns, rays), pixels, of these ``columns`` of the surface.
 
-    ``inside``: it looks to the axis; ``bore``: and is the innermost one; ``whole``: every point is there.
+    ``inside``: it looks to the axis; ``bore`` (columns,): and is the innermost, at this radius mostly;
+    ``whole``: every point is there.
     ``leaning`` are those of the columns that rise or fall along Z, ``lean`` is the greatest angle, radians,
     between its normals and the radius.
     """
@@ -84,7 +88,7 @@ class Wall(NamedTuple):
     leaning: npt.NDArray[np.bool_]
     lean: float
     whole: bool
-    bore: bool
+    bore: Floats | None
 
 
 class Surface:
@@ -127,7 +131,10 @@ class Surface:
                 kept = np.where(there[columns], r[columns], AWAY)
                 whole = bool((kept > 0.0).all())
                 leaning, lean = self._leaning(columns, kept)
-                found.append(Wall(columns, kept, inside, leaning, lean, whole, inside and not layer))
+                bore = None
+                if inside and not layer:
+                    bore = np.median(kept[:, :: max(kept.shape[1] // _AROUND, 1)], axis=1).astype(np.float32)
+                found.append(Wall(columns, kept, inside, leaning, lean, whole, bore))
         return found
 
     def _leaning(self, columns: IntArray, r: Floats) -> tuple[npt.NDArray[np.bool_], float]:
@@ -148,6 +155,7 @@ class Surface:
         own, other = beside if towards > 0 else beside[::-1]
         nth, first, last = _free(self.low, self.high, own, other, _GAP)
         column, ray = own[0][nth], own[1][nth]
+        inner = len(column)
         ends = (drawn[0] <= float(solid.edges[0]), drawn[1] >= float(solid.edges[-1]))
         if ends[towards > 0]:
             at = len(self.z) - 1 if towards > 0 else 0
@@ -158,53 +166,43 @@ class Surface:
         index, r = _filled(first, last)
         slope = (last - first) / np.float32(self.step)
         across = (1.0 / np.sqrt(1.0 + slope * slope)).astype(np.float32)
-        way, along = self._downhill(
-            column, ray, np.zeros_like(across), np.full_like(across, towards), round_=False
-        )
-        rest = slope * across
         across[first <= self.low[0][column, ray]] *= -1.0
+        along = towards * slope * np.abs(across)
+        across[inner:], along[inner:] = 0.0, towards
+        rough = ~self._straight(column, ray, round_=False)
+        rough[inner:] = False
         return Patch(
             self.z[column[index]] + np.float32(0.5 * towards * self.step),
             r,
             None if self.turned else 2 * ray[index],
             across[index],
-            (way * rest)[index],
-            (along * rest)[index],
+            np.zeros_like(r),
+            along[index],
+            rough[index],
         )
 
-    def _downhill(
-        self, column: IntArray, ray: IntArray, way: Floats, along: Floats, *, round_: bool
-    ) -> tuple[Floats, Floats]:
-        """The direction round and along Z in which there is less metal; where that is doubtful the one given.
-
-        It is seen over some pixels, so that the wall of a hole that lies across columns and rays is smooth.
-        """
-        if self.turned:
-            return way, along
-        last, off = len(self.z) - 1, _SPREAD
-        rise = self.thick[np.minimum(column + off, last), ray] - self.thick[np.maximum(column - off, 0), ray]
-        turn = self.thick[column, (ray + off) % self.rays] - self.thick[column, ray - off]
-        ring = np.maximum(self.thick[column, ray], 8.0) * np.float32(2.0 * math.pi / self.rays)
-        rise, turn = -rise / np.float32(self.step), -turn / ring
-        size = np.hypot(rise, turn)
-        sure = (size > 0.5) & (rise * along + turn * way > 0.2 * size) & ~self._straight(column, ray, round_)
-        size = np.where(sure, size, np.float32(1.0))
-        return np.where(sure, turn / size, way), np.where(sure, rise / size, along)
-
-    def _straight(self, column: IntArray, ray: IntArray, round_: bool) -> npt.NDArray[np.bool_]:
-        """Whether a step goes on in the same column, or on the same ray, on both sides of a cell."""
-        after = min(1, len(self.z) - 1)
+    def _straight(self, column: IntArray, ray: IntArray, *, round_: bool) -> npt.NDArray[np.bool_]:
+        """Whether a step goes on as it is in the same column, or on the same ray, on both sides of a cell."""
+        own = self._step(column, ray, round_=round_)
+        limit, thick = 0.5 * np.abs(own), self.thick[column, ray]
         straight = np.ones(len(column), np.bool_)
+        if self.turned:
+            return straight
         for off in (-_SPREAD, _SPREAD):
             if round_:
-                at = np.clip(column + off, 0, len(self.z) - 1)
-                step = self.thick[at, (ray + 1) % self.rays] - self.thick[at, ray - 1]
+                at = np.clip(column + off, 0, len(self.z) - 1), ray
             else:
-                at = (ray + off) % self.rays
-                ahead = np.minimum(column + after, len(self.z) - 1)
-                step = self.thick[ahead, at] - self.thick[np.maximum(column - after, 0), at]
-            straight &= np.abs(step) > 2.0
+                at = column, (ray + off) % self.rays
+            straight &= np.abs(self._step(*at, round_=round_) - own) <= limit
+            straight &= np.abs(self.thick[at] - thick) <= limit
         return straight
+
+    def _step(self, column: IntArray, ray: IntArray, *, round_: bool) -> Floats:
+        """By how much the metal grows from the neighbour on one side of a cell to that on the other."""
+        if round_:
+            return self.thick[column, (ray + 1) % self.rays] - self.thick[column, ray - 1]
+        ahead, behind = np.minimum(column + 1, len(self.z) - 1), np.maximum(column - 1, 0)
+        return self.thick[ahead, ray] - self.thick[behind, ray]
 
     def _flanks(self) -> Patch:
         """What of each ray's metal stands free of the next ray's, on either side."""
@@ -217,6 +215,7 @@ class Surface:
             np.concatenate((one.across, other.across)),
             np.concatenate((one.way, other.way)),
             np.concatenate((one.along, other.along)),
+            np.concatenate((one.rough, other.rough)),
         )
 
     def _flank(self, own: Cells, other: Cells, side: int) -> Patch:
@@ -226,11 +225,10 @@ class Surface:
         ring = np.float32(math.pi / self.rays) * (first + last)
         rest = (last - first) / np.hypot(ring, last - first)
         across = np.sqrt(np.maximum(np.float32(1.0) - rest * rest, np.float32(0.0)))
-        way, along = self._downhill(column, ray, np.full_like(rest, side), np.zeros_like(rest), round_=True)
+        rough = ~self._straight(column, ray, round_=True)
         halves = (2 * ray[index] + side) % (2 * self.rays)
-        return Patch(
-            self.z[column[index]], r, halves, across[index], (way * rest)[index], (along * rest)[index]
-        )
+        parts = across[index], (side * rest)[index], np.zeros_like(r), rough[index]
+        return Patch(self.z[column[index]], r, halves, *parts)
 
 
 def _halves(patch: Patch) -> IntArray:
