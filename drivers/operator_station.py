@@ -10,8 +10,6 @@ from contextlib import AbstractContextManager
 
 from core.ports import Clock, Station, StationState
 
-# --- The operator station: two palm buttons behind a two-hand relay, hold, latching E-stop, switch and pots.
-
 
 class TwoHandRelay:
     """Both palms within ``window`` seconds, and both let go before it works again (anti-tie-down).

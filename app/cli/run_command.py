@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     from core.proving.proof_report import Report
 
 
+_OF_ALARMS = ("number", "code", "text", "cause", "remedy", "line")
+
+
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
     parser = subparsers.add_parser("run", help="run a program through executor and drivers")
@@ -96,14 +99,8 @@ def _say(path: Path, text: str) -> None:
 def _refused(args: argparse.Namespace, why: str, report: Report) -> int:
     sys.stderr.write(f"turndesk: {why}\n")
     if args.json:
-        _write_line(
-            {
-                "state": "refused",
-                "final": _place(report, None),
-                **_figures(None, report.dialect),
-                "events": "",
-            }
-        )
+        figures = _figures(None, report.dialect)
+        _write_line({"state": "refused", "final": _place(report, None), **figures, "events": ""})
     return EXIT_ERRORS
 
 
@@ -162,17 +159,7 @@ def _figures(outcome: Outcome | None, dialect: Dialect) -> dict[str, object]:
     snapshot = outcome.snapshot
     return {
         "elapsed_s": seconds(outcome.elapsed),
-        "alarms": [
-            {
-                "number": a.number,
-                "code": a.code,
-                "text": a.text,
-                "cause": a.cause,
-                "remedy": a.remedy,
-                "line": a.line,
-            }
-            for a in snapshot.alarms
-        ],
+        "alarms": [{name: getattr(alarm, name) for name in _OF_ALARMS} for alarm in snapshot.alarms],
         "underruns": snapshot.underruns,
         "max_following_error": length_of(dialect)(snapshot.max_following_error),
     }

@@ -42,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 @contextmanager
-def told() -> Iterator[None]:
+def store_refusals() -> Iterator[None]:
     """What the store refuses ends the command with its sentence."""
     from core.store.store_errors import StoreError
 
@@ -57,7 +57,7 @@ def opened_store(*, read_only: bool = False) -> Iterator[Store]:
     """The store, closed at the end. Raises CommandError for whatever the store refuses."""
     from core.store.store import Store
 
-    with told(), Store.open(data_folder(), read_only=read_only) as store:
+    with store_refusals(), Store.open(data_folder(), read_only=read_only) as store:
         yield store
 
 
@@ -67,7 +67,7 @@ def opened_store(*, read_only: bool = False) -> Iterator[Store]:
 def _backup(args: argparse.Namespace) -> int:
     from core.store import backup
 
-    with told():
+    with store_refusals():
         backup.backup(data_folder(), Path(args.path))
     sys.stdout.write(f"{args.path} holds the store of {data_folder()}\n")
     return EXIT_OK
@@ -76,7 +76,7 @@ def _backup(args: argparse.Namespace) -> int:
 def _restore(args: argparse.Namespace) -> int:
     from core.store import backup
 
-    with told():
+    with store_refusals():
         kept = backup.restore(data_folder(), Path(args.path))
     beside = f"; the replaced store is kept as {kept}" if kept else ""
     sys.stdout.write(f"{data_folder()} is as {args.path} has it{beside}\n")
@@ -112,7 +112,7 @@ def _verify(args: argparse.Namespace) -> int:
     from core.store import backup, database
 
     path = data_folder() / database.FILE_NAME
-    with told():
+    with store_refusals():
         problems = backup.problems(path) if path.exists() else ()
     if args.json:
         sys.stdout.write(json.dumps({"store": str(path), "problems": problems}) + "\n")

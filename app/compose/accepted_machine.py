@@ -17,7 +17,7 @@ from core.ports import DriverError
 _TEXT, _DRIVES = "text", "drives"
 
 
-class Kept(Protocol):
+class Settings(Protocol):
     """Settings of the store."""
 
     def setting(self, key: str) -> object: ...
@@ -34,7 +34,7 @@ def record_of(machine: Machine) -> dict[str, object]:
     return {_TEXT: machine.text, _DRIVES: _hashes(machine)}
 
 
-def differences(machine: Machine, kept: Kept) -> tuple[Change, ...] | None:
+def differences(machine: Machine, kept: Settings) -> tuple[Change, ...] | None:
     """What differs from what was accepted; None: this file was never accepted."""
     record = kept.setting(key_of(machine))
     if not isinstance(record, dict) or not isinstance(record.get(_TEXT), str):

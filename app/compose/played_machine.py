@@ -67,14 +67,6 @@ def obey(line: str, peers: CanopenDevices) -> str:
     return f"{line}: done"
 
 
-def _start(peers: CanopenDevices) -> None:
-    hands = peers.machine
-    hands.press_left()
-    hands.press_right()
-    hands.release_left()
-    hands.release_right()
-
-
 def _hold(peers: CanopenDevices) -> None:
     peers.machine.press_hold()
     peers.machine.release_hold()
@@ -99,7 +91,7 @@ def _jam(peers: CanopenDevices, axis: str, word: str) -> None:
 
 
 _ACTS: dict[str, Callable[..., None]] = {
-    "start": _start,
+    "start": lambda peers: peers.machine.press_start(),
     "hold": _hold,
     "estop": lambda peers: peers.machine.press_estop(),
     "release": lambda peers: peers.machine.release_estop(),

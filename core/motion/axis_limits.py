@@ -10,8 +10,6 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-# --- errors ---------------------------------------------------------------------------------------------
-
 
 class MotionError(Exception):
     """A movement cannot be planned; one sentence says which block, what is wrong and what to do."""

@@ -46,8 +46,8 @@ def by_radius(table: BlockTable) -> BoolArray:
 
 
 def surface_rpms(table: BlockTable, radius: FloatArray) -> FloatArray:
-    """``core.geometry.surface_speed.surface_rpm`` for arrays; NaN without a surface speed."""
-    with np.errstate(divide="ignore"):
+    """``surface_rpm`` of ``core.geometry`` for arrays; NaN without a surface speed, or by 0 on the axis."""
+    with np.errstate(divide="ignore", invalid="ignore"):
         rpm = 60.0 * table.surface / (2.0 * np.pi * np.abs(radius))
     return np.clip(rpm, table.lo, table.hi)
 

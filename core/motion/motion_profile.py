@@ -13,9 +13,6 @@ import numpy as np
 from core.motion.axis_limits import BoolArray, FloatArray, IntArray
 from core.motion.motion_path import Path
 
-# --- setpoints ------------------------------------------------------------------------------------------
-
-
 SegmentArrays = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 
 PART = 0.002  # s, longest part of an arc

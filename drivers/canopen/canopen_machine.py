@@ -70,7 +70,7 @@ class CanopenMachine:
             io=self.io,
             station=self.io,
             lock=self.c,
-            warnings=tuple(each for axis in self.axes.drives.axes for each in axis.drive.setup.told),
+            warnings=tuple(each for axis in self.axes.drives.axes for each in axis.drive.setup.warnings),
         )
 
     def tick(self) -> None:

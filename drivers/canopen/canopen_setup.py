@@ -34,7 +34,7 @@ class Setup:
         self._name = name
         self.node = Node(number, objects)
         bus.add_node(self.node)
-        self.told: tuple[str, ...] = ()
+        self.warnings: tuple[str, ...] = ()
 
     def pre_operational(self) -> None:
         """PDO mapping may only change there."""
@@ -60,10 +60,10 @@ class Setup:
             )
 
     def write_all(self, values: tuple[tuple[int, int, int], ...]) -> None:
-        """One after the other; a later value of the same object wins. ``told``: what it did without."""
+        """One after the other; a later value of the same object wins. ``warnings``: what it did without."""
         for index, sub, value in values:
             if index in od.MAY_LACK and self._lacks(index, sub):
-                self.told = (f"{self._name}: {od.MAY_LACK[index]}",)
+                self.warnings = (f"{self._name}: {od.MAY_LACK[index]}",)
             else:
                 self.write(index, sub, value)
 

@@ -14,7 +14,7 @@ from core.ports import Clock, DriverError
 from drivers.mtconnect.agent_links import AgentLink, GoneError, LostError, accepted, listening
 from drivers.mtconnect.mtconnect_items import DataItem
 from drivers.mtconnect.mtconnect_table import MtconnectTable
-from drivers.mtconnect.shdr_lines import Report, Told, stamp
+from drivers.mtconnect.shdr_lines import AgentsState, Report, stamp
 
 LOOK = 0.1  # s between two looks at the machine
 MOST = 8  # agents at a time
@@ -48,7 +48,7 @@ class Adapter:
         utc: Callable[[], datetime] = utc_now,
     ) -> None:
         self._settings, self._report, self._clock, self._utc = settings, report, clock, utc
-        self._told = Told(items)
+        self._sent = AgentsState(items)
         self._door: socket.socket | None = None
         self._selector = selectors.DefaultSelector()
         self._links: list[AgentLink] = []
@@ -101,7 +101,7 @@ class Adapter:
     def look(self) -> None:
         """See what is new at the machine, and tell it."""
         self._next_look = self._clock.now() + LOOK
-        changes = self._told.changes(self._report(), stamp(self._utc())).encode("utf-8")
+        changes = self._sent.changes(self._report(), stamp(self._utc())).encode("utf-8")
         for link in self._links.copy():
             self._tell(link, changes)
 
@@ -127,7 +127,7 @@ class Adapter:
         link = AgentLink(wire, self._settings.heartbeat)
         self._links.append(link)
         self._selector.register(wire, selectors.EVENT_READ, link)
-        self._tell(link, self._told.whole(stamp(self._utc())).encode("utf-8"))
+        self._tell(link, self._sent.whole(stamp(self._utc())).encode("utf-8"))
 
     def _serve(self, link: AgentLink) -> None:
         try:
@@ -153,8 +153,6 @@ class Adapter:
 
 
 _BREATH = 0.005  # s between two turns: an agent that floods takes no more than that of this computer
-
-_log_keeper = logging.getLogger(__name__)
 
 
 class Keeper:
@@ -188,7 +186,5 @@ class Keeper:
             self._adapter.look()  # how it ended is worth knowing too
         finally:
             if not self._closing.is_set():
-                _log_keeper.error(
-                    "there is no shop-floor data any more: a mistake of the control", exc_info=True
-                )
+                _log.error("there is no shop-floor data any more: a mistake of the control", exc_info=True)
             self._adapter.close()

@@ -95,7 +95,7 @@ def unknown_line(at: str, key: str) -> str:
 Conditions = dict[str, tuple[Active, ...] | None]  # None: not known
 
 
-class Told:
+class AgentsState:
     """The state of the machine as every agent that is connected has it."""
 
     def __init__(self, items: tuple[DataItem, ...]) -> None:

@@ -10,8 +10,6 @@ from drivers.lookalikes.plant import Plant
 from drivers.lookalikes.plant_config import SimConfig
 from drivers.lookalikes.plant_hands import PlantHands, Schedule
 
-# --- The simulated machine behind the ports: thin fronts on one plant.
-
 
 class _OnPlant:
     """What looks at the plant."""

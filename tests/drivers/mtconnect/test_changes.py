@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from drivers.mtconnect.shdr_lines import Active, Report, Told, Value
+from drivers.mtconnect.shdr_lines import Active, AgentsState, Report, Value
 from tests.drivers.mtconnect.bench import lathe
 
 A, B = "2026-01-01T00:00:00.000Z", "2026-01-01T00:00:00.100Z"
@@ -12,14 +12,14 @@ A, B = "2026-01-01T00:00:00.000Z", "2026-01-01T00:00:00.100Z"
 
 def told_after(*values: dict[str, Value]) -> str:
     """What the last of these reports makes."""
-    told, said = Told(tuple(lathe().all_items())), ""
+    told, said = AgentsState(tuple(lathe().all_items())), ""
     for each in values:
         said = told.changes(Report(each, {}), A)
     return said
 
 
 def test_before_anything_is_known_all_of_it_is_unavailable() -> None:
-    lines = Told(tuple(lathe().all_items())).whole(A).splitlines()
+    lines = AgentsState(tuple(lathe().all_items())).whole(A).splitlines()
     values, *conditions = (line.split("|") for line in lines)
     assert set(values[2::2]) == {"UNAVAILABLE"}
     assert {parts[2] for parts in conditions} == {"UNAVAILABLE"}
@@ -58,7 +58,7 @@ def test_a_slow_drift_is_not_lost_in_the_band() -> None:
 
 
 def test_what_a_report_leaves_out_is_no_longer_known() -> None:
-    told = Told(tuple(lathe().all_items()))
+    told = AgentsState(tuple(lathe().all_items()))
     told.changes(Report({"Xabs": 1.0}, {"Xservo": (Active("FAULT", "101", "tripped"),)}), A)
     lines = told.changes(Report({"avail": "UNAVAILABLE"}, {}), B).splitlines()
     assert lines == [f"{B}|Xabs|UNAVAILABLE", f"{B}|Xservo|UNAVAILABLE||||"]
@@ -69,7 +69,7 @@ def test_keys_that_are_no_items_are_not_sent() -> None:
 
 
 def test_a_new_text_of_the_same_fault_replaces_it() -> None:
-    told = Told(tuple(lathe().all_items()))
+    told = AgentsState(tuple(lathe().all_items()))
     told.changes(Report({}, {"system": (Active("WARNING", "hold", "ONE"),)}), A)
     said = told.changes(Report({}, {"system": (Active("WARNING", "hold", "TWO"),)}), B)
     assert said == f"{B}|system|WARNING|hold|||TWO\n"

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from drivers.clocks import StepClock
 from drivers.mtconnect.devices_xml import devices_xml
 from drivers.mtconnect.mtconnect_items import Category
-from drivers.mtconnect.shdr_lines import Active, Report, Told, Value, clean, values_line
+from drivers.mtconnect.shdr_lines import Active, AgentsState, Report, Value, clean, values_line
 from tests.drivers.mtconnect.agent import FakeAgent, tokens
 from tests.drivers.mtconnect.bench import BEGIN, lathe
 
@@ -58,7 +58,7 @@ def values() -> st.SearchStrategy[Report]:
 @given(st.lists(values(), min_size=1, max_size=6), st.data())
 def test_who_comes_late_knows_what_the_others_know(reports: list[Report], data: st.DataObject) -> None:
     comes = data.draw(st.integers(0, len(reports) - 1))
-    told = Told(ITEMS)
+    told = AgentsState(ITEMS)
     early, late = (FakeAgent(MODEL, StepClock()) for _ in range(2))
     hear(early, told.whole(AT))
     for i, report in enumerate(reports):

@@ -1,0 +1,258 @@
+"""What ``turndesk offsets`` does: shows, sets and undoes offsets and tool shapes of the store; in inches."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from app.cli.command_errors import EXIT_OK, CommandError
+from app.cli.store_command import opened_store
+from app.cli.toml_files import ALIASES, TOOL_KEYS, out_of_range, shown, unknown
+from app.desk.arithmetic import EntryError, value_of
+from core.store.offset_fields import FIELDS, Field, Sort
+from core.store.store_rows import (
+    MM_PER_INCH,
+    OFFSETS,
+    ZERO_CODES,
+    Change,
+    Kind,
+    Row,
+    ShapeRow,
+    ToolRow,
+    Value,
+    ZeroRow,
+    inches,
+)
+
+if TYPE_CHECKING:
+    from core.store.store import Store
+
+
+_OFFSET = re.compile(r"([TDG])0*(\d{1,4})", re.IGNORECASE)
+_KIND = {"T": Kind.TOOL, "D": Kind.SECONDARY, "G": Kind.ZERO}
+_LETTER = {**{kind: letter for letter, kind in _KIND.items()}, Kind.SHAPE: "T"}
+NO_SHAPE = "none"  # kind=none takes the shape of a tool away
+_FLAGS = {"1": True, "yes": True, "true": True, "0": False, "no": False, "false": False}
+
+
+def _show(args: argparse.Namespace) -> int:
+    with opened_store(read_only=True) as store:
+        rows = {kind: store.offsets(kind) for kind in Kind}
+    if args.json:
+        told = {
+            kind.value: {n: _in_inches(kind, row) for n, row in table.items()}
+            for kind, table in rows.items()
+            if table or kind in {Kind.TOOL, Kind.SECONDARY}
+        }
+        sys.stdout.write(json.dumps(told) + "\n")
+        return EXIT_OK
+    lines = [_line(f"{_LETTER[kind]}{n}", row) for kind, table in rows.items() for n, row in table.items()]
+    sys.stdout.write("".join(f"{line}\n" for line in lines) or "no offsets are set\n")
+    return EXIT_OK
+
+
+def _in_inches(kind: Kind, row: Row) -> dict[str, Value]:
+    """Every field by its name, as it is entered: lengths of tools in inches."""
+    values: list[Value] = list(row)
+    return {
+        name: _typed(field, value) for (name, field), value in zip(FIELDS[kind].items(), values, strict=True)
+    }
+
+
+def _line(name: str, row: Row) -> str:
+    if isinstance(row, ShapeRow):
+        return f"{name:<3} {_shape(row)}"
+    if isinstance(row, ZeroRow):
+        return f"{name} X {row.x:+.3f}  Z {row.z:+.3f} mm  C {row.c:+.3f}°"
+    r = row.nose_radius if isinstance(row, ToolRow) else row.r
+    x, z, r = inches(row.x), inches(row.z), inches(r)
+    line = f"{name:<3} X {x:+.5f}  Z {z:+.5f}  R {r:.5f}"
+    return line + _more(row) if isinstance(row, ToolRow) else line
+
+
+def _shape(row: ShapeRow) -> str:
+    """What is stated of a shape, as it would be entered."""
+    told = [f"{row.kind} {row.hand}"]
+    values: list[Value] = list(row)
+    for field, value in zip(FIELDS[Kind.SHAPE].values(), values, strict=True):
+        if value and not field.choices:
+            told.append(
+                f"{field.name}={shown(_typed(field, value)) if not isinstance(value, str) else value}"
+            )
+    return "  ".join(told)
+
+
+def _more(row: ToolRow) -> str:
+    """What else is set of a tool."""
+    wear = (
+        f"  wear X {inches(row.wear_x):+.5f} Z {inches(row.wear_z):+.5f}" if row.wear_x or row.wear_z else ""
+    )
+    tip = f"  tip {row.quadrant}" if row.quadrant else ""
+    return wear + tip + ("  master" if row.master else "") + (f"  {row.remark}" if row.remark else "")
+
+
+def _set(args: argparse.Namespace) -> int:
+    kind, number = _named(args.offset)
+    values = _values(kind, args.values)
+    shape = {
+        name: value for name, value in values.items() if kind is Kind.TOOL and name in FIELDS[Kind.SHAPE]
+    }
+    offset = {name: value for name, value in values.items() if name not in shape}
+    reason, rows = {"why": args.why, "who": "command line"}, list[Row]()
+    with opened_store() as store:
+        gone = shape.get("kind") == NO_SHAPE
+        if shape and not gone:
+            _check_shape(store, number, shape, offset)
+        if offset:
+            rows.append(store.set_offset(kind, number, values=offset, **reason).result())
+        if gone:
+            store.remove_shape(number, **reason).result()
+        elif shape:
+            rows.append(store.set_offset(Kind.SHAPE, number, values=shape, **reason).result())
+    name = f"{_LETTER[kind]}{number}"
+    sys.stdout.write("".join(f"{_line(name, row)}\n" for row in rows) or f"{name} has no shape\n")
+    return EXIT_OK
+
+
+def _check_shape(store: Store, number: int, shape: dict[str, Value], offset: dict[str, Value]) -> None:
+    """Raises CommandError where the tool's shape would contradict itself or begin without a kind."""
+    from app.desk.tool_shapes import row_mistakes
+
+    row = store.shapes().get(number, ShapeRow())._replace(**shape)  # type: ignore[arg-type]
+    if not row.kind:
+        kinds = FIELDS[Kind.SHAPE]["kind"].range
+        raise CommandError(f"T{number} has no shape yet; give its kind too: kind= one of {kinds}")
+    tools = store.tools()
+    if offset and number not in tools and not {"x", "z"} <= offset.keys():
+        text = f"T{number} was never set, and {' and '.join(offset)} would stand beside an offset of 0"
+        raise CommandError(f"{text}; give x and z too, or touch it off first")
+    tool = tools.get(number, ToolRow())._replace(**offset)  # type: ignore[arg-type]
+    if mistakes := row_mistakes(row, tool):
+        raise CommandError(f"T{number}: " + "; ".join(f"{wrong.field}: {wrong.text}" for wrong in mistakes))
+
+
+def _named(text: str) -> tuple[Kind, int]:
+    match = _OFFSET.fullmatch(text)
+    kind = _KIND[match[1].upper()] if match else Kind.TOOL
+    if match and int(match[2]) in (ZERO_CODES if kind is Kind.ZERO else OFFSETS):
+        return kind, int(match[2])
+    if match and kind is Kind.ZERO:
+        raise CommandError(f"{text} is no settable offset; name G54…G59")
+    raise CommandError(f"{text} is no offset; name T1…T32, D1…D32 or G54…G59")
+
+
+def _values(kind: Kind, entries: list[str]) -> dict[str, Value]:
+    """Fields from entries such as ``x=1.25``, lengths mm. Raises CommandError for the first mistake."""
+    values: dict[str, Value] = {}
+    for entry in entries:
+        key, equals, text = entry.partition("=")
+        key = key.strip().lower()
+        if not equals:
+            such = "z=-120" if kind is Kind.ZERO else "x=1.25"
+            raise CommandError(f"{entry} sets nothing; write KEY=VALUE, such as {such}")
+        fields = TOOL_KEYS if kind is Kind.TOOL else FIELDS[kind]
+        field = fields.get(ALIASES.get(key, key) if kind is Kind.TOOL else key)
+        if field is None:
+            raise CommandError(unknown(key, fields))
+        if field.name in values:
+            raise CommandError(f"{key} is given twice; give it once")
+        values[field.name] = _entered(field, text)
+    return values
+
+
+def _entered(field: Field, text: str) -> Value:
+    value = _value(field, text)
+    if field.choices:
+        return _chosen(field, str(value).lower())
+    if field.sort in {Sort.METRIC, Sort.ANGLE}:
+        return value  # of a zero offset: the store tells its range
+    if mistake := out_of_range(field, value):
+        raise CommandError(f"{field.name} = {shown(_typed(field, value))} {mistake}")
+    return value
+
+
+def _chosen(field: Field, word: str) -> str:
+    """One of the field's choices. Raises CommandError with the nearest."""
+    known = (*field.choices, NO_SHAPE) if field.name == "kind" else field.choices
+    if word not in known:
+        raise CommandError(f"{field.name}: {unknown(word, known)}")
+    return word
+
+
+def _typed(field: Field, value: Value) -> Value:
+    """The value again in the unit of the entry."""
+    return inches(value) if field.sort is Sort.LENGTH and not isinstance(value, str) else value
+
+
+def _value(field: Field, text: str) -> Value:
+    """What the text comes to; lengths mm. Raises CommandError."""
+    if field.sort is Sort.TEXT:
+        return text.strip()
+    if field.sort is Sort.FLAG and text.strip().lower() not in _FLAGS:
+        raise CommandError(f"{field.name} = {text} is neither 1 nor 0")
+    if field.sort is Sort.FLAG:
+        return _FLAGS[text.strip().lower()]
+    try:
+        value = value_of(text)
+    except EntryError as error:
+        raise CommandError(f"{field.name}: {error}") from error
+    if field.sort is Sort.WHOLE:
+        return int(value) if value.is_integer() else value
+    return value * MM_PER_INCH if field.sort is Sort.LENGTH else value
+
+
+def _clear(args: argparse.Namespace) -> int:
+    with opened_store() as store:
+        count = store.clear_offsets(Kind.SECONDARY, args.why, who="command line").result()
+    sys.stdout.write(f"secondary offsets cleared: {count}; 'turndesk offsets undo' brings them back\n")
+    return EXIT_OK
+
+
+def _history(args: argparse.Namespace) -> int:
+    if args.limit < 1:
+        raise CommandError(f"--limit {args.limit} shows nothing; give 1 or more")
+    with opened_store(read_only=True) as store:
+        changes = store.history(Kind(args.table) if args.table else None, limit=args.limit)
+    if args.json:
+        sys.stdout.write(json.dumps([_change(change) for change in changes]) + "\n")
+    else:
+        sys.stdout.write(
+            "".join(f"{_told(change)}\n" for change in changes) or "no offset was ever changed\n"
+        )
+    return EXIT_OK
+
+
+def _change(change: Change) -> dict[str, object]:
+    """One change for a program to read, inches."""
+    fields: dict[str, object] = change._asdict()
+    for side, row in (("old", change.old), ("new", change.new)):
+        fields[side] = row and _in_inches(change.kind, row)
+    return fields
+
+
+def _told(change: Change) -> str:
+    """One change for a person to read."""
+    sides = ["not set" if row is None else _line("", row).strip() for row in (change.old, change.new)]
+    name = f"{_LETTER[change.kind]}{change.number}"
+    return f"{change.at}  {name:<3} {' → '.join(sides)}  {change.why} ({change.who})"
+
+
+def _undo(args: argparse.Namespace) -> int:
+    with opened_store() as store:
+        kind = Kind(args.table) if args.table else None
+        changes = store.undo_offset(args.why, kind=kind, who="command line").result()
+    sys.stdout.write("".join(f"{_told(change)}\n" for change in changes))
+    return EXIT_OK
+
+
+ACTIONS: dict[str, Callable[[argparse.Namespace], int]] = {
+    "show": _show,
+    "set": _set,
+    "clear": _clear,
+    "history": _history,
+    "undo": _undo,
+}
