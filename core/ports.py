@@ -164,6 +164,12 @@ class Segments(NamedTuple):
     v: FloatArray
     a: FloatArray
 
+    @classmethod
+    def resting(cls, t: float, place: Sequence[float] | FloatArray) -> Segments:
+        """At this place from ``t`` on: they cut off whatever was queued behind."""
+        still = np.zeros((1, len(place)))
+        return cls(np.array([t]), np.zeros(1), np.array([place], dtype=np.float64), still, still)
+
 
 _NO_MOTION = 1e-6  # s; what rounding may leave of a last piece, on a clock of hours
 

@@ -11,9 +11,8 @@ import logging
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
 from core.executor.spindle_control import SpindleAngle
+from core.executor.thread_pass import SpindlePass
 from core.executor.thread_path import Phases, ThreadPath
 from core.interpreter.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
@@ -29,10 +28,9 @@ _SLOWEST = 0.1  # turns/s; a spindle that is as good as still asks for no other 
 _ROUNDING = 1e-9  # turns
 _BEGINS = {"late", "broken-path"}  # what a driver says of setpoints behind a start that is near
 _AT_START = 1e-6  # mm
-_ALLOWED = 0.01  # turns, between setpoints and spindle
 
 
-class GearedThreadPass:
+class GearedThreadPass(SpindlePass):
     """Blocks of one pass: the thread, and behind it its pull-out or the rapid straight out.
 
     Raises AlarmError where the spindle does not turn or has no encoder.
@@ -41,28 +39,17 @@ class GearedThreadPass:
     def __init__(
         self, axes: AxisSink, gear: Gear, limits: MotionLimits, turns: SpindleAngle, blocks: Sequence[Block]
     ) -> None:
-        self._axes = axes
+        super().__init__(axes, limits, turns, blocks)
         self._gear = gear
-        self._turns = turns
-        self._path = ThreadPath.of(blocks, limits)
-        self.blocks = tuple(blocks)
-        self._zero, self._sign = 0.0, 1.0
+        self._zero = 0.0
         self._speed = 0.0  # turns/s, for which the cam is planned
         self._ramp = 0.0  # turns of running up
         self._leaves = math.inf  # turns at which the thread itself ends
-        self._stopped = False
-        self._reported = False
-        self.worst = 0.0  # turns by which the slides were behind the spindle
 
     @property
     def end(self) -> float:
         """When the pass will come to rest at the present speed."""
         return self._axes.horizon()
-
-    @property
-    def complete(self) -> bool:
-        """Whether what is queued is the whole pass."""
-        return not self._stopped
 
     def block(self, _now: float) -> Block:
         """The block being played."""
@@ -90,11 +77,6 @@ class GearedThreadPass:
         if abs(speed - self._speed) > _CHANGED * self._speed and speed > _SLOWEST:
             self._go_on_at(speed, geared)
 
-    def lost_step(self) -> bool:
-        """Whether setpoints and spindle have come too far apart for a good thread; True once a pass."""
-        before, self._reported = self._reported, self.worst > _ALLOWED
-        return self._reported and not before
-
     def hold(self) -> None:
         """A pass that has not begun to move does not begin; any other is finished."""
         t = self._axes.now() + self._axes.commit + _EARLY
@@ -102,9 +84,8 @@ class GearedThreadPass:
         if self._stopped or geared is None or self._reached(geared, t) >= -self._ramp:
             return
         place, _ = self._axes.demand_at(t)
-        still = np.zeros((1, len(place)))
         try:
-            self._axes.splice(Segments(np.array([t]), np.zeros(1), np.array([place]), still, still))
+            self._axes.splice(Segments.resting(t, place))
         except DriverError as error:
             if error.code not in _BEGINS:
                 raise

@@ -165,15 +165,9 @@ class PlanQueue:
             tail = plan(profile.path, start_s=float(s[0]), start_v=float(v[0]), stop=True)
             parts.append(tail.segments(0.0, tail.duration, end))
             tracks.append(Track(end, end, tail))
-        arrays = [np.concatenate(part) for part in zip(*parts, strict=True)]
-        if not len(arrays[0]):
-            arrays = _rest_setpoints(t, profile)
-        self._axes.splice(Segments(*arrays))
+        setpoints = Segments(*[np.concatenate(part) for part in zip(*parts, strict=True)])
+        if not len(setpoints.t):
+            setpoints = Segments.resting(t, profile.path.point(np.array([profile.end_s]))[0])
+        self._axes.splice(setpoints)
         self._tracks.replace(t, tracks, self._axes.now())
         self._queued_to = end
-
-
-def _rest_setpoints(t: float, profile: Profile) -> list[np.ndarray[tuple[int, ...], np.dtype[np.float64]]]:
-    """Setpoints that stay where the plan stands: they cut off whatever was queued behind."""
-    still = np.zeros((1, len(profile.path.start)))
-    return [np.array([t]), np.zeros(1), profile.path.point(np.array([profile.end_s])), still, still]

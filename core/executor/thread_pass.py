@@ -27,10 +27,36 @@ _PATIENCE = 0.002  # s more for a braking, which has one try
 _TRIES = 3
 _OVER = 1.0005  # of the greatest speed, for what corrections need
 _AT_START = 1e-6  # mm
-_ALLOWED = 0.01  # of a lead, between setpoints and spindle
+_ALLOWED = 0.01  # turns, between the slide and the spindle
 
 
-class ThreadPass:
+class SpindlePass:
+    """One pass, tied to the spindle by setpoints or by gear, and how far it has come from it."""
+
+    def __init__(
+        self, axes: AxisSink, limits: MotionLimits, turns: SpindleAngle, blocks: Sequence[Block]
+    ) -> None:
+        self._axes = axes
+        self._turns = turns
+        self._path = ThreadPath.of(blocks, limits)
+        self.blocks = tuple(blocks)
+        self._sign = 1.0  # of the spindle
+        self._stopped = False
+        self._reported = False
+        self.worst = 0.0  # turns between the slide and the spindle while in step
+
+    @property
+    def complete(self) -> bool:
+        """Whether what is queued is the whole pass."""
+        return not self._stopped
+
+    def lost_step(self) -> bool:
+        """Whether slide and spindle have come too far apart for a good thread; True once a pass."""
+        before, self._reported = self._reported, self.worst > _ALLOWED
+        return self._reported and not before
+
+
+class ThreadPass(SpindlePass):
     """Blocks of one pass: the thread, and behind it its pull-out or the rapid straight out.
 
     Raises AlarmError where the spindle does not turn or has no encoder.
@@ -39,32 +65,20 @@ class ThreadPass:
     def __init__(
         self, axes: AxisSink, limits: MotionLimits, turns: SpindleAngle, blocks: Sequence[Block]
     ) -> None:
-        self._axes = axes
-        self._turns = turns
-        self._path = ThreadPath.of(blocks, limits)
+        super().__init__(axes, limits, turns, blocks)
         self._top = limits.vmax[1]
         self._lead, self._ramp = self._path.lead, _SHARE * self._path.a
-        self.blocks = tuple(blocks)
         self._index = 0.0  # turns, unsigned, at which s = 0 is in step
-        self._sign = 1.0
         self._begins = 0.0, 0.0  # when the running up begins, and the speed it leads to
         self._leaves = math.inf  # when the thread itself ends
         self._ends = math.inf
         self._cost = 0.0
-        self._stopped = False
-        self._reported = False
         self._free = False  # too near its end for another plan
-        self.worst = 0.0  # deviation from the spindle in step, leads
 
     @property
     def end(self) -> float:
         """When the pass comes to rest as planned now, s."""
         return self._ends
-
-    @property
-    def complete(self) -> bool:
-        """Whether what is queued is the whole pass."""
-        return not self._stopped
 
     def block(self, now: float) -> Block:
         """The block being played."""
@@ -108,19 +122,13 @@ class ThreadPass:
         self._cost = max(min(self._axes.now() - now, 0.2), 0.8 * self._cost)
         return True
 
-    def lost_step(self) -> bool:
-        """Whether setpoints and spindle have come too far apart for a good thread; True once a pass."""
-        before, self._reported = self._reported, self.worst > _ALLOWED
-        return self._reported and not before
-
     def hold(self) -> None:
         """A pass that has not begun to move does not begin; any other is finished."""
         t = self._axes.now() + self._axes.commit + max(1.5 * self._cost, _PATIENCE)
         if self._stopped or t >= self._begins[0]:
             return
         place, _ = self._axes.demand_at(t)
-        still = np.zeros((1, 3))
-        self._axes.splice(Segments(np.array([t]), np.zeros(1), np.array([place]), still, still))
+        self._axes.splice(Segments.resting(t, place))
         self._stopped, self._ends, self._leaves = True, t, math.inf
 
     def go_on(self) -> None:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
-
 from core.ports import AxisSample, DriverError, Segments, Stop, at_rest, code_of
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig
@@ -217,14 +215,9 @@ class CanopenAxes:
             if any(self.queue.demand_at(at)[1]):
                 self.queue.brake(at, [axis.amax for axis in self.config.axes])
             else:
-                self._end(at)
+                place, _ = self.queue.demand_at(at)  # what is played until then stays
+                self.queue.splice(Segments.resting(at, place), at - self.commit)
             self.follower.braked(at)
-
-    def _end(self, at: float) -> None:
-        """Rest from ``at`` on; what is played until then stays."""
-        p, v = self.queue.demand_at(at)
-        row, still = np.array([p]), np.array([v])
-        self.queue.splice(Segments(np.array([at]), np.zeros(1), row, still, still), at - self.commit)
 
     def _go_on(self, now: float) -> None:
         homing = self.homing or self._given_up
