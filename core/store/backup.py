@@ -23,13 +23,11 @@ def problems(path: Path) -> tuple[str, ...]:
     Raises StoreError when it is no store of ours or of a newer version.
     """
     database.check_file(path, thorough=False)
-    connection = database.connect(path, read_only=True)
     try:
-        return _found(connection)
+        with closing(database.connect(path, read_only=True)) as connection:
+            return _found(connection)
     except sqlite3.Error as error:
         return (f"the file is damaged: {error}",)
-    finally:
-        connection.close()
 
 
 def _found(connection: sqlite3.Connection) -> tuple[str, ...]:

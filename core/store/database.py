@@ -77,14 +77,12 @@ def check_file(path: Path, *, thorough: bool) -> int:
     """
     check_header(path)
     newest = len(migrations())
-    connection = connect(path, read_only=True)
     try:
-        version = version_of(connection)
-        told = connection.execute("PRAGMA quick_check(1)").fetchone()[0] if thorough else "ok"
+        with closing(connect(path, read_only=True)) as connection:
+            version = version_of(connection)
+            told = connection.execute("PRAGMA quick_check(1)").fetchone()[0] if thorough else "ok"
     except sqlite3.Error as error:
         raise why(path, error) from error
-    finally:
-        connection.close()
     if version > newest:
         raise StoreError(
             f"{path} was written by a newer TurnDesk (store version {version}, this one knows {newest}); "
@@ -277,8 +275,5 @@ def _writing(path: Path, version: int) -> sqlite3.Connection:
 
 def _keep_copy(connection: sqlite3.Connection, target: Path) -> None:
     """The store as the older version had it, kept beside the one that is about to change."""
-    copy = sqlite3.connect(target)
-    try:
+    with closing(sqlite3.connect(target)) as copy:
         connection.backup(copy)
-    finally:
-        copy.close()

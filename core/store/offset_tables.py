@@ -9,7 +9,7 @@ from __future__ import annotations
 import sqlite3
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from core.store.offset_fields import FIELDS, Field, Sort
 from core.store.store_errors import StoreError
@@ -29,6 +29,7 @@ from core.store.store_rows import (
 )
 
 Changes = Mapping[int, tuple[Row | None, Row | None]]
+R = TypeVar("R", bound=Row)
 
 
 class Reason(NamedTuple):
@@ -73,13 +74,8 @@ _OFFSETS = _Log("offset_changes", "number", _columns(Kind.TOOL), "kind", "there 
 _ZEROS = _Log(
     "zero_offset_changes", "code", _columns(Kind.ZERO), "'zero'", "there is no change of G54…G59 to undo"
 )
-_SHAPES = _Log(
-    "tool_shape_changes",
-    "number",
-    _columns(Kind.SHAPE),
-    "'shape'",
-    "there is no change of a tool's shape to undo",
-)
+_NO_SHAPE = "there is no change of a tool's shape to undo"
+_SHAPES = _Log("tool_shape_changes", "number", _columns(Kind.SHAPE), "'shape'", _NO_SHAPE)
 _TABLES = {
     Kind.TOOL: _Table("tool_offsets", "T", OFFSETS, ToolRow, _OFFSETS),
     Kind.SECONDARY: _Table("secondary_offsets", "D", OFFSETS, SecondaryRow, _OFFSETS),
@@ -97,24 +93,14 @@ def current(connection: sqlite3.Connection, kind: Kind) -> dict[int, Row]:
     return {number: _row(kind, values) for number, *values in rows}
 
 
+def rows_of(connection: sqlite3.Connection, kind: Kind, row: type[R]) -> dict[int, R]:
+    """The same by the type of its rows."""
+    return {number: each for number, each in current(connection, kind).items() if isinstance(each, row)}
+
+
 def tools(connection: sqlite3.Connection) -> dict[int, ToolRow]:
     """The tool offsets that have been set."""
-    return {n: row for n, row in current(connection, Kind.TOOL).items() if isinstance(row, ToolRow)}
-
-
-def secondary(connection: sqlite3.Connection) -> dict[int, SecondaryRow]:
-    """The secondary offsets that have been set."""
-    return {n: row for n, row in current(connection, Kind.SECONDARY).items() if isinstance(row, SecondaryRow)}
-
-
-def zero(connection: sqlite3.Connection) -> dict[int, ZeroRow]:
-    """The settable offsets that have been set, by code."""
-    return {n: row for n, row in current(connection, Kind.ZERO).items() if isinstance(row, ZeroRow)}
-
-
-def shapes(connection: sqlite3.Connection) -> dict[int, ShapeRow]:
-    """The shapes of tools that have been set."""
-    return {n: row for n, row in current(connection, Kind.SHAPE).items() if isinstance(row, ShapeRow)}
+    return rows_of(connection, Kind.TOOL, ToolRow)
 
 
 def change(
@@ -286,23 +272,11 @@ def _select(
         f" FROM {log.name} {tail}",
         values,
     )
-    half = len(log.columns)
-    return tuple(
-        Change(
-            i,
-            step,
-            undoes,
-            at,
-            Kind(kind),
-            number,
-            _side(kind, both[:half]),
-            _side(kind, both[half:]),
-            why,
-            who,
-        )
-        for i, step, undoes, at, kind, number, why, who, *both in rows
-        for old in (both[:half],)
-    )
+    half, found = len(log.columns), list[Change]()
+    for i, step, undoes, at, kind, number, why, who, *both in rows:
+        old, new = _side(kind, both[:half]), _side(kind, both[half:])
+        found.append(Change(i, step, undoes, at, Kind(kind), number, old, new, why, who))
+    return tuple(found)
 
 
 def _side(kind: str, values: list[Value | None]) -> Row | None:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import sqlite3
 import threading
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
-from typing import TypeVar
+from typing import Concatenate, ParamSpec, TypeVar
 
 from core.store import event_log, offset_tables, program_records, touch_off
 from core.store.database import Opened, open_to_read, open_to_write
@@ -36,6 +36,7 @@ from core.store.touch_off import Touch
 __all__ = ["Store", "StoreError"]
 
 T = TypeVar("T")
+P = ParamSpec("P")
 
 
 class Store:
@@ -101,68 +102,62 @@ class Store:
             except sqlite3.Error as error:
                 raise why(self.path, error) from error
 
+    def _asked(
+        self, query: Callable[Concatenate[sqlite3.Connection, P], T], *args: P.args, **named: P.kwargs
+    ) -> T:
+        with self.read() as connection:
+            return query(connection, *args, **named)
+
     def offsets(self, kind: Kind) -> dict[int, Row]:
         """The offsets of a table that have been set, by number or code."""
-        with self.read() as connection:
-            return offset_tables.current(connection, kind)
+        return self._asked(offset_tables.current, kind)
 
     def tools(self) -> dict[int, ToolRow]:
         """The tool offsets that have been set."""
-        with self.read() as connection:
-            return offset_tables.tools(connection)
+        return self._asked(offset_tables.tools)
 
     def secondary(self) -> dict[int, SecondaryRow]:
         """The secondary offsets that have been set."""
-        with self.read() as connection:
-            return offset_tables.secondary(connection)
+        return self._asked(offset_tables.rows_of, Kind.SECONDARY, SecondaryRow)
 
     def history(self, kind: Kind | None = None, limit: int = 100) -> tuple[Change, ...]:
         """Changes of a table, newest first; without ``kind`` of tool and secondary offsets together."""
-        with self.read() as connection:
-            return offset_tables.history(connection, kind, limit)
+        return self._asked(offset_tables.history, kind, limit)
 
     def zero_offsets(self) -> dict[int, ZeroRow]:
         """The settable offsets G54…G59 that have been set."""
-        with self.read() as connection:
-            return offset_tables.zero(connection)
+        return self._asked(offset_tables.rows_of, Kind.ZERO, ZeroRow)
 
     def shapes(self) -> dict[int, ShapeRow]:
         """The shapes of tools that have been set."""
-        with self.read() as connection:
-            return offset_tables.shapes(connection)
+        return self._asked(offset_tables.rows_of, Kind.SHAPE, ShapeRow)
 
     def programs(self) -> tuple[ProgramRow, ...]:
         """All programs by name."""
-        with self.read() as connection:
-            return program_records.listing(connection)
+        return self._asked(program_records.listing)
 
     def versions(self, name: str) -> tuple[VersionRow, ...]:
         """Every version of a program, newest first."""
-        with self.read() as connection:
-            return program_records.versions(connection, name)
+        return self._asked(program_records.versions, name)
 
     def load_program(self, name: str, version: int | None = None) -> bytes:
         """The text as saved. Raises StoreError for a version that is not there or not as it was saved."""
-        with self.read() as connection:
-            return program_records.load(connection, name, version)
+        return self._asked(program_records.load, name, version)
 
     def events(self, search: str = "", limit: int = 100, kinds: Collection[str] = ()) -> tuple[EventRow, ...]:
         """The log, newest first; with ``search`` what holds it in kind or text, in any case of letters.
 
         With ``kinds`` only events of these.
         """
-        with self.read() as connection:
-            return event_log.events(connection, search, limit, kinds)
+        return self._asked(event_log.events, search, limit, kinds)
 
     def runs(self) -> tuple[RunRow, ...]:
         """What each program has done."""
-        with self.read() as connection:
-            return program_records.all_of(connection)
+        return self._asked(program_records.all_of)
 
     def setting(self, key: str) -> object:
         """A setting, None: not set."""
-        with self.read() as connection:
-            return event_log.setting(connection, key)
+        return self._asked(event_log.setting, key)
 
     def parts(self, program: str) -> int:
         """Parts of this program that were counted, those that are still to be written too."""

@@ -273,11 +273,7 @@ def _beyond_the_end(ready: ReadyLines, structure: Structure) -> list[Diagnostic]
 
 def _capped(problems: list[Diagnostic]) -> list[Diagnostic]:
     """Errors first in the count: no flood of warnings may hide one."""
-    errors = [problem for problem in problems if problem.severity is Severity.ERROR]
     if len(problems) <= _MOST_PROBLEMS:
         return problems
-    if len(errors) >= _MOST_PROBLEMS:
-        return errors[:_MOST_PROBLEMS]
-    others = [problem for problem in problems if problem.severity is not Severity.ERROR]
-    kept = errors + others[: _MOST_PROBLEMS - len(errors)]
-    return sorted(kept, key=lambda problem: (problem.line, problem.column))
+    by_weight = sorted(problems, key=lambda problem: problem.severity is not Severity.ERROR)
+    return sorted(by_weight[:_MOST_PROBLEMS], key=lambda problem: (problem.line, problem.column))
