@@ -10,9 +10,6 @@ import math
 from dataclasses import dataclass
 from math import atan2, cos, dist, hypot, pi, sin, sqrt
 
-# --- sweep and extent -----------------------------------------------------------------------------------
-
-
 FULL_TURN = 2 * math.pi
 
 # Two ends closer than this on a circle are one point: a full turn. Well under the control's step of 1.27 µm.
@@ -47,9 +44,6 @@ def arc_extent(
         xs.append(cx + radius * math.sin(k * quarter))
         zs.append(cz + radius * math.cos(k * quarter))
     return min(xs), max(xs), min(zs), max(zs)
-
-
-# --- centre and length ----------------------------------------------------------------------------------
 
 
 Point = tuple[float, float]

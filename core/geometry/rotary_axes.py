@@ -176,9 +176,6 @@ class Kinematics:
         return tip
 
 
-# --- rotary axes that turn about a point ----------------------------------------------------------------
-
-
 FloatArray = npt.NDArray[np.float64]
 
 

@@ -16,8 +16,6 @@ from core.geometry.lines_and_arcs import arc_sweep
 
 FloatArray = npt.NDArray[np.float64]
 
-# --- XC: the face ---------------------------------------------------------------------------------------
-
 
 @dataclass(frozen=True, slots=True)
 class Face:
@@ -47,9 +45,6 @@ class Face:
         rho = np.hypot(x, self.h)
         theta = np.arctan2(self.h, x) - np.radians(machine[:, 2] - self.c0)
         return np.column_stack([rho * np.cos(theta), rho * np.sin(theta), machine[:, 1]])
-
-
-# --- ZC: the side ---------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,8 +14,6 @@ from core.store import database, program_records
 from core.store.database import WriterLock, make_folder
 from core.store.store_errors import Cause, StoreError, cause_of, why
 
-# --- Is everything in a store as it was stored?
-
 
 def problems(path: Path) -> tuple[str, ...]:
     """What is wrong inside ``path``, which is not written to: pages, references, program texts.

@@ -110,9 +110,6 @@ def reset_parts(connection: sqlite3.Connection, program: str) -> None:
     connection.execute("DELETE FROM part_counts WHERE program = ?", (program,))
 
 
-# --- What each program has done: last run, cycle times, last proof. One row a program.
-
-
 def all_of(connection: sqlite3.Connection) -> tuple[RunRow, ...]:
     """Every program that was run, proved or counted, by name."""
     rows = connection.execute(

@@ -8,8 +8,6 @@ import tempfile
 from enum import Enum
 from pathlib import Path
 
-# --- The one error of the store.
-
 
 class StoreError(Exception):
     """The store cannot do what it was asked; the sentence says what, where and what to do.

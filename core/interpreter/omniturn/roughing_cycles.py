@@ -281,9 +281,6 @@ def _view(state: State, made: Statement, contour: list[Element]) -> ContourView:
     return view_from(start, first, last)
 
 
-# --- G74
-
-
 def box_moves(state: State, made: Statement) -> list[Move]:
     """Equal passes from the start's X to X, none deeper than I, U left on a side; back to the start.
 

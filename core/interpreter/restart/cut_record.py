@@ -157,10 +157,10 @@ def record_cuts(blocks: Iterable[Block | Series], watch: Callable[[float], None]
         count = each.n
         if count % _WATCHED == 0:
             watch(count)
-    return _told(rows, count)
+    return _record(rows, count)
 
 
-def _told(rows: _Rows, blocks: int) -> CutRecord:
+def _record(rows: _Rows, blocks: int) -> CutRecord:
     table = rows.table()
     n, line, how, tool, bar = table[[0, 1, 6, 7, 8]].astype(np.int64)
     x0, z0, x, z = table[2:6]
