@@ -179,22 +179,20 @@ class TurnedPart:
     def _met(self, first: int, low: FloatArray, high: FloatArray, start: FloatArray, end: FloatArray) -> Cut:
         """What lies between ``start`` and ``end`` of a layer, both within its metal."""
         thick = end - start
-        touched = thick > _TOUCH
-        count = int(np.count_nonzero(touched))
-        if not count:
+        deep = float(thick.max(initial=0.0))
+        if deep <= _TOUCH:
             return NOTHING
-        step = self.columns.step
-        index = np.flatnonzero(touched)
-        back = self.columns.first + step * (first + int(index[0]) - 0.5)
-        front = self.columns.first + step * (first + int(index[-1]) + 0.5)
+        touched = thick > _TOUCH
+        step, begin = self.columns.step, self.columns.first + self.columns.step * (first - 0.5)
+        whole = float((start - low).min()) <= _TOUCH and float((high - end).min()) <= _TOUCH
         return Cut(
             area=step * float(thick.sum()),
-            volume=math.pi * step * float(np.sum((end + start) * thick)),
-            depth=float(thick.max()),
-            width=step * count,
-            back=back,
-            front=front,
-            parts=bool(np.any(touched & (start <= low + _TOUCH) & (end >= high - _TOUCH))),
+            volume=math.pi * step * float(end @ end - start @ start),
+            depth=deep,
+            width=step * int(np.count_nonzero(touched)),
+            back=begin + step * int(touched.argmax()),
+            front=begin + step * (len(touched) - int(touched[::-1].argmax())),
+            parts=whole and bool(np.any(touched & (start <= low + _TOUCH) & (end >= high - _TOUCH))),
         )
 
     def _taken(self, met: Cut, *, cut: bool) -> Cut:
