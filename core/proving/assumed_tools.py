@@ -12,16 +12,19 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from core.interpreter.elementary_blocks import Kind
-from core.part.tool_shape import ToolKind, ToolShape
+from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.proving.tip_moves import QUICK, LiveStep, TipMove
 
 _ON_AXIS = 0.05  # mm; a tool that feeds along Z no further off it is a drill
 _SQUARE = 0.02  # mm of Z, in a plunge
 _GROOVE = 2.0  # mm; width of a grooving or parting tool that nobody has given
 _USUAL, _SMALLEST, _ALLOWANCE = 6.35, 1.0, 0.5  # mm; diameter of a drill that nobody has given
+_BAR = 5.0  # mm; the bar of a grooving tool in a bore
 _SLIM = "VNMG160404"  # reaches into contours that a stouter insert would not: a doubt speaks for the program
 _MILL = 3.175  # mm; diameter of a mill that nobody has given
 _WIDE = 1.6  # widths; what feeds further along Z than that turns
+
+_OPENS = frozenset({ToolKind.DRILL, ToolKind.REAMER})
 
 # Words of shop comments, the more telling first.
 _WORDS = (
@@ -48,6 +51,7 @@ class ToolUse:
     number: int
     comments: list[str] = field(default_factory=list)
     moves: list[TipMove] = field(default_factory=list)
+    nose_radius: float = 0.0
     pushes_bar: bool = False  # it fed while the collet was open
     live: list[LiveStep] = field(default_factory=list)  # with C held, or in a plane of the virtual mill
 
@@ -58,12 +62,10 @@ class ToolUse:
         along = sum(max(b.z0 - b.z, 0.0) for b in feeds)
         return sum(max(abs(b.x0) - abs(b.x), 0.0) for b in feeds) > along
 
-    nose_radius: float = 0.0
-
 
 @dataclass(frozen=True, slots=True)
 class Assumed:
-    """``shape`` None: no cutting tool, but a bar stop, or a mill of unknown diameter."""
+    """``shape`` None: no cutting tool, but a bar stop."""
 
     shape: ToolShape | None
     words: str
@@ -73,6 +75,7 @@ class Assumed:
         shape = self.shape
         if shape is None or not shape.turns_itself or shape.diameter:
             return self
+        bore = bore if shape.kind in _OPENS else ()
         inside = [abs(r) for m in bore if not m.quick for z, r in m.points if z < -_SQUARE]
         diameter = max(2.0 * min(inside) - _ALLOWANCE, _SMALLEST) if inside else _USUAL
         words = f"{self.words}, its diameter as {diameter / 25.4:.3f} in"
@@ -148,16 +151,29 @@ def _enters_before_cutting(feeds: Sequence[TipMove], moves: Sequence[TipMove]) -
     return len(behind) > 1 and falls < -1.0 and bool(moves) and not _to_centre(feeds)
 
 
-def _shape(kind: ToolKind, use: ToolUse) -> ToolShape | None:
+def _shape(kind: ToolKind, use: ToolUse) -> ToolShape:
     nose, rear = use.nose_radius, _rear(use.moves)
     if kind is ToolKind.TURNING:
-        return ToolShape(kind, tip=2 if rear else 3, nose_radius=nose, insert=_SLIM, rear=rear)
+        left = _away_from_chuck(use.moves)
+        tip = (1 if rear else 4) if left else (2 if rear else 3)
+        hand = Hand.LEFT if left else Hand.RIGHT
+        return ToolShape(kind, hand, tip=tip, nose_radius=nose, insert=_SLIM, rear=rear)
     if kind is ToolKind.BORING:
         return ToolShape(kind, tip=3 if rear else 2, nose_radius=nose, insert=_SLIM, rear=rear)
     if kind in {ToolKind.GROOVING, ToolKind.PARTING}:
-        return ToolShape(kind, tip=_edge(use, rear=rear), width=_GROOVE, rear=rear)
+        return _groover(kind, use, rear=rear)
     if kind is ToolKind.THREADING:
         return ToolShape(kind, tip=6 if in_bore(use.moves) is not rear else 8, nose_radius=nose, rear=rear)
+    return _round_tool(kind, use)
+
+
+def _groover(kind: ToolKind, use: ToolUse, *, rear: bool) -> ToolShape:
+    if kind is ToolKind.GROOVING and _plunges_outwards(use.moves):
+        return ToolShape(kind, tip=3 if rear else 2, width=_GROOVE, diameter=_BAR, rear=rear)
+    return ToolShape(kind, tip=_edge(use, rear=rear), width=_GROOVE, rear=rear)
+
+
+def _round_tool(kind: ToolKind, use: ToolUse) -> ToolShape:
     diameter = _diameter(" ".join(use.comments))
     if use.live and not _on_axis(use.moves):
         return ToolShape(kind, tip=8 if use.across else 7, diameter=diameter or _MILL, point=118.0)
@@ -170,6 +186,22 @@ def _rear(moves: Sequence[TipMove]) -> bool:
     behind = [r for move in cuts for z, r in move.points if z < -_SQUARE]
     radii = behind or [r for move in cuts for _, r in move.points]
     return bool(radii) and -min(radii) > max(radii)
+
+
+def _away_from_chuck(moves: Iterable[TipMove]) -> bool:
+    """Whether a tool cuts along Z from the chuck to the face, as one of the left hand does.
+
+    What ends before the face is a retract at a feed.
+    """
+    cuts = [move for move in moves if not move.quick]
+    along = [m.points[-1][0] - m.points[0][0] for m in cuts if max(z for z, _ in m.points) < 0.0]
+    return sum(along) > _SQUARE and max(along) > 2.0 * max(-min(along), 0.0)
+
+
+def _plunges_outwards(moves: Iterable[TipMove]) -> bool:
+    """Whether the cuts square to the axis lead away from it: a groove in a bore."""
+    square = [m for m in moves if not m.quick and abs(m.points[-1][0] - m.points[0][0]) <= _SQUARE]
+    return bool(square) and abs(square[0].points[-1][1]) > abs(square[0].points[0][1])
 
 
 def _edge(use: ToolUse, *, rear: bool) -> int:
@@ -191,8 +223,7 @@ def _diameter(comment: str) -> float:
     return 0.0
 
 
-def _names(kind: ToolKind, shape: ToolShape | None) -> str:
-    name = {ToolKind.END_MILL: "an end mill"}.get(kind, f"a {kind.replace('-', ' ')} tool")
-    name = name.replace("drill tool", "drill").replace("reamer tool", "reamer").replace("tap tool", "tap")
-    size = f", {shape.diameter / 25.4:.3f} in" if shape is not None and shape.diameter else ""
-    return f"{name}{size}"
+def _names(kind: ToolKind, shape: ToolShape) -> str:
+    name = {ToolKind.END_MILL: "an end mill"}.get(kind, f"a {kind.replace('-', ' ')}")
+    size = f", {shape.diameter / 25.4:.3f} in" if shape.diameter and shape.turns_itself else ""
+    return f"{name}{'' if shape.turns_itself else ' tool'}{size}"

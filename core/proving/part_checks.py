@@ -60,7 +60,7 @@ CHECKS: Mapping[str, Check] = {
     "cuts-air": Check(
         _WARNING,
         "A feed goes on where there is no metal.",
-        "It stays more than .08 in from all metal for 3 s and .2 in of its way.",
+        "It stays more than .08 in from all metal for 5 s and .2 in of its way.",
         "Look for a lost minus or decimal point; move there by a rapid.",
     ),
     "unmade-cut": Check(

@@ -97,7 +97,7 @@ CASES = {
     ),
     "chip-load": (SOUND.replace("F[.004]", "F[.014]"), SOUND.replace("F[.004]", "F[.012]"), BAR, 9),
     "cuts-air": (
-        SOUND.replace("G94F[300]Z[1]", "").replace("\nG94F[300]X[.6]", "\nG94F[4]X[.9]\nF[300]"),
+        SOUND.replace("G94F[300]Z[1]", "").replace("\nG94F[300]X[.6]", "\nG94F[2]X[.9]\nF[300]"),
         SOUND, BAR, 11,
     ),
     "part-off-unsupported": (
