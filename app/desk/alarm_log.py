@@ -9,8 +9,8 @@ import re
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from datetime import datetime
 
+from app.desk.formats import wall_time
 from core.alarms import CATALOGUE, Code
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, Event
@@ -46,7 +46,9 @@ class AlarmLog:
     def recall(self, rows: Iterable[EventRow]) -> None:
         """What the store has kept, newest first: it comes behind what was heard since."""
         kept = tuple(
-            LoggedStop(_local(row.at), alarm) for row in rows if (alarm := read_back(row)) is not None
+            LoggedStop(wall_time(row.at, "%H:%M:%S"), alarm)
+            for row in rows
+            if (alarm := read_back(row)) is not None
         )
         self._entries = (*self.entries, *kept)[:KEPT]
 
@@ -66,13 +68,3 @@ def read_back(row: EventRow) -> Alarm | None:
     found = _WRITTEN.fullmatch(row.text) if row.kind in KINDS else None
     code = _BY_NUMBER.get(int(found[1])) if found is not None else None
     return None if found is None or code is None else make_alarm(code, found[3], row.line, 0.0)
-
-
-def _local(at: str) -> str:
-    """A time of the store, UTC, as a wall clock shows it; with its day when that is not today."""
-    try:
-        time = datetime.fromisoformat(at).astimezone()
-    except ValueError:
-        return at
-    today = datetime.now().astimezone().date()
-    return time.strftime("%H:%M:%S" if time.date() == today else "%Y-%m-%d %H:%M")

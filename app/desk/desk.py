@@ -456,7 +456,7 @@ class Desk:
         Where there is a station its pot is turned, so that knob and value never differ.
         """
         if self.station is not None:
-            self.hands.set_feed_pot(stepped(self.hands.feed_pot, steps))
+            self.hands.feed_pot.set(stepped(self.hands.feed_pot.wanted, steps))
             return
         wanted = stepped(self.snapshot().feed_override, steps)
         self.post(FeedOverride(max(0.0, min(OVERRIDE_MOST, wanted))))

@@ -81,6 +81,16 @@ def file_size(size: int) -> str:
     return f"{size / 1e9:.1f} GB"
 
 
+def wall_time(at: str, today: str = "%H:%M") -> str:
+    """A UTC time of the store as a wall clock shows it: one of ``today`` so, any other with its day."""
+    try:
+        then = datetime.fromisoformat(at).astimezone()
+    except ValueError:
+        return at
+    same = datetime.now().astimezone().date() == then.date()
+    return then.strftime(today if same else "%Y-%m-%d %H:%M")
+
+
 def local_time(at: str, *, seconds: bool = True) -> str:
     """A UTC time of the store (ISO 8601) as a clock on the wall shows it, with its day."""
     return datetime.fromisoformat(at).astimezone().strftime(f"%Y-%m-%d %H:%M{':%S' if seconds else ''}")

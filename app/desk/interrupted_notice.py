@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import datetime
 
 from app.desk import formats
 from app.desk.program_loading import Loaded
@@ -38,21 +37,11 @@ def notice_of(snapshot: Snapshot, loaded: Loaded, units: Units) -> InterruptedNo
         passed=_pass(found, loaded),
         tool=found.tool,
         part=found.part,
-        at=clock_time(found.at),
+        at=formats.wall_time(found.at),
         why=tr(found.why),
         changed=tr(" (ITS TEXT HAS CHANGED SINCE)") if _changed(found, loaded) else "",
     )
     return InterruptedNotice(words, _places(found, snapshot, units))
-
-
-def clock_time(at: str) -> str:
-    """The time of day as a wall clock here shows it, with the date when that is not today's."""
-    try:
-        then = datetime.fromisoformat(at).astimezone()
-    except ValueError:
-        return at
-    today = datetime.now().astimezone().date() == then.date()
-    return then.strftime("%H:%M" if today else "%Y-%m-%d %H:%M")
 
 
 def interrupted_prompt(snapshot: Snapshot, loaded: Loaded, start: str) -> str:

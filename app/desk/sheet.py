@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from app.desk.arithmetic import CHARACTERS, LONGEST
 from app.desk.machine_status import Tone
 
+T = TypeVar("T")
 STEPS = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}  # of the mark, by keys
+
+
+def following(choices: Iterable[T], now: T) -> T:
+    """The next choice; the first after the last, and after one that is none of them."""
+    order = list(choices)
+    return order[(order.index(now) + 1) % len(order) if now in order else 0]
+
+
+def edited(text: str, key: str, longest: int = LONGEST) -> str:
+    """A text that is typed, after one more key: a character, ``Back`` or ``Delete``."""
+    if key == "Back":
+        return text[:-1]
+    return "" if key == "Delete" else (text + key)[:longest]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,12 +75,7 @@ class Entry:
 
     def type(self, key: str) -> bool:
         """A key; False when it means nothing here. Return is the caller's."""
-        if self.takes(key):
-            self.text = (self.text + key)[:LONGEST]
-        elif key == "Back":
-            self.text = self.text[:-1]
-        elif key == "Delete":
-            self.text = ""
-        else:
-            return False
-        return True
+        taken = self.takes(key) or key in {"Back", "Delete"}
+        if taken:
+            self.text = edited(self.text, key)
+        return taken

@@ -131,8 +131,8 @@ class StationHands:
     ago: Callable[[], float] = float  # s since the press that is handled now really happened
     palms: Palms = field(default_factory=Palms)
     estop_pressed: bool = False
-    spindle_knob: Pot = field(default_factory=lambda: Pot(1.0))
-    feed_knob: Pot = field(default_factory=lambda: Pot(OVERRIDE_MOST))
+    spindle_pot: Pot = field(default_factory=lambda: Pot(1.0))
+    feed_pot: Pot = field(default_factory=lambda: Pot(OVERRIDE_MOST))
     _looked: float | None = None
 
     def at(self) -> float:
@@ -189,27 +189,9 @@ class StationHands:
         if self.station:
             self.station.set_spindle_auto(auto)
 
-    @property
-    def spindle_pot(self) -> float:
-        """Where the spindle override pot shall stand, 0…1."""
-        return self.spindle_knob.wanted
-
-    def set_spindle_pot(self, fraction: float) -> None:
-        """Put the spindle override pot there."""
-        self.spindle_knob.set(fraction)
-
     def turn_spindle_pot(self, steps: int) -> None:
         """The spindle pot by so many steps of ten percent."""
-        self.set_spindle_pot(stepped(self.spindle_pot, steps))
-
-    @property
-    def feed_pot(self) -> float:
-        """Where the feed override pot shall stand, 0…1.5."""
-        return self.feed_knob.wanted
-
-    def set_feed_pot(self, fraction: float) -> None:
-        """Put the feed override pot there."""
-        self.feed_knob.set(fraction)
+        self.spindle_pot.set(stepped(self.spindle_pot.wanted, steps))
 
     def turn_knobs(self) -> None:
         """Once a frame: the pots turn on towards where they shall stand."""
@@ -217,10 +199,10 @@ class StationHands:
         passed = min(LONGEST_TURN, now - self._looked) if self._looked is not None else 0.0
         self._looked = now
         if self.station is not None:
-            if self.spindle_knob.turn(passed):
-                self.station.set_spindle_pot(self.spindle_knob.value)
-            if self.feed_knob.turn(passed):
-                self.station.set_feed_pot(self.feed_knob.value)
+            if self.spindle_pot.turn(passed):
+                self.station.set_spindle_pot(self.spindle_pot.value)
+            if self.feed_pot.turn(passed):
+                self.station.set_feed_pot(self.feed_pot.value)
 
 
 def stepped(fraction: float, steps: int) -> float:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from datetime import datetime
 
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
+from app.desk.formats import local_time
 from app.desk.sheet import Key
 from app.editor.versions import DifferenceRow, VersionHistory
 from app.screen.look import LEFT, RIGHT, Look, Painter, put, put_raw
@@ -73,9 +73,10 @@ class VersionList(Panel):
         if marked:
             painter.fill(box, "lit")
         ink, soft = ("on_lit", "on_lit") if marked else ("text", "soft")
+        at = local_time(version.saved).replace(" ", "  ")
         upper = box.adjusted(u, 0.4 * u, -u, -box.height() / 2)
         painter.write(upper, f"{version.number}", 2.0, ink)
-        painter.write(upper.adjusted(5 * u, 0, 0, 0), local_time(version.saved), 1.8, ink, bold=False)
+        painter.write(upper.adjusted(5 * u, 0, 0, 0), at, 1.8, ink, bold=False)
         painter.write(upper, f"{version.size} bytes", 1.6, soft, at=RIGHT, bold=False)
         put(painter, upper.translated(5 * u, upper.height()), LEFT, version.why)
 
@@ -120,8 +121,3 @@ class VersionList(Panel):
 
     def _marker(self, place: int) -> Callable[[], None]:
         return lambda: self._history.mark(place)
-
-
-def local_time(saved: str) -> str:
-    """A UTC time of the store as the shop's clock shows it."""
-    return datetime.fromisoformat(saved).astimezone().strftime("%Y-%m-%d  %H:%M:%S")

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from app.desk.sheet import following
 from app.desk.translation import tr
 from app.jog.held_jog import BEGINS, RENEWED, HeldJog
 from app.jog.jog_speeds import CONTINUOUS, JogSpeeds
@@ -64,8 +65,7 @@ class JogHandwheel:
 
     def next_axis(self) -> None:
         """The key: the next axis, behind the last one nothing."""
-        order = ("", *self.names)
-        self.choose(order[(order.index(self.choice[0] if self.choice else "") + 1) % len(order)])
+        self.choose(following(("", *self.names), self.choice[0] if self.choice else ""))
 
     def choose(self, axis: str) -> None:
         """Select an axis by key or finger; an empty one lets the wheel go."""

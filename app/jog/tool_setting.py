@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError, value_of
 from app.desk.desk import Desk
+from app.desk.sheet import edited
 from app.desk.translation import tr
 from app.jog import jog_touch_off
 from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
@@ -168,13 +169,8 @@ class ToolSetting:
         """A key while something is asked; False when it means nothing in an entry."""
         if key == "Enter":
             self._enter()
-        elif key == "Back":
-            self.text = self.text[:-1]
-        elif key == "Delete":
-            self.text = ""
-        elif len(key) == 1 and self.takes(key):
-            if len(self.text) < (REMARK_LONGEST if self.asked == "remark" else LONGEST):
-                self.text += key
+        elif key in {"Back", "Delete"} or (len(key) == 1 and self.takes(key)):
+            self.text = edited(self.text, key, REMARK_LONGEST if self.asked == "remark" else LONGEST)
         elif key in {"l", "L"} and self.masters:
             self.touching.alone = not self.touching.alone
         else:

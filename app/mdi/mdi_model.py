@@ -18,19 +18,6 @@ from core.executor.snapshot import CYCLE, Snapshot, Starts, State
 from core.language.diagnostics import Diagnostic, Severity
 from core.store.store_errors import StoreError
 
-# --- prompt and findings ------------------------------------------------------------------------------
-
-
-def prompt(start: str, *, busy: bool, wrong: bool, ready: bool) -> str:
-    """What can be done at rest; ``start`` names what starts a cycle here."""
-    if busy:
-        return tr("PROVING THE LINE")
-    if wrong:
-        return tr("THE LINE DOES NOT RUN: MEND IT, OR ESC TO CLEAR IT")
-    if ready:
-        return tr("TO RUN THE LINE {start}; ESC TAKES IT BACK").format(start=start)
-    return tr("TYPE A LINE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS")
-
 
 def never_set(job: Job, proved: Proved) -> tuple[Diagnostic, ...]:
     """An error for each tool that the line calls and nobody has set."""
@@ -255,7 +242,13 @@ class MdiModel:
             return tr("DRIVES ARE OFF: PRESS F5 FOR DRIVES ON; A LINE CAN BE TYPED MEANWHILE")
         if snapshot.state is not State.IDLE:
             return ""
-        return prompt(start, busy=self.busy, wrong=bool(self.errors), ready=self.ready is not None)
+        if self.busy:
+            return tr("PROVING THE LINE")
+        if self.errors:
+            return tr("THE LINE DOES NOT RUN: MEND IT, OR ESC TO CLEAR IT")
+        if self.ready is not None:
+            return tr("TO RUN THE LINE {start}; ESC TAKES IT BACK").format(start=start)
+        return tr("TYPE A LINE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS")
 
     def barred(self) -> str:
         """Why the palms start nothing now; empty when they may."""

@@ -10,6 +10,7 @@ from typing import ClassVar
 
 from app.desk.arithmetic import LONGEST
 from app.desk.desk import Desk
+from app.desk.sheet import edited
 from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_history import OffsetHistory, refusal
@@ -131,12 +132,7 @@ class OffsetTable:
 
     def type_text(self, key: str, longest: int = LONGEST) -> None:
         """A character more, or less."""
-        if key == "Back":
-            self.text = self.text[:-1]
-        elif key == "Delete":
-            self.text = ""
-        elif len(self.text) < longest:
-            self.text += key
+        self.text = edited(self.text, key, longest)
 
     def undo(self) -> None:
         """Take the last change of this table back."""

@@ -12,7 +12,7 @@ from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
-from app.desk.sheet import STEPS, Entry, Key, Row, Sheet
+from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, following
 from app.programs.copy_rename_delete import COPY, NONE, RENAME, CopyRenameDelete
 from app.programs.import_export import ImportExport
 from app.programs.preview import Preview
@@ -161,8 +161,7 @@ class ProgramList:
 
     def sort(self) -> None:
         """F2: sort the list by the next of the orders."""
-        names = list(ORDERS)
-        self.order = names[(names.index(self.order) + 1) % len(names)]
+        self.order = following(ORDERS, self.order)
         self._narrow(self.here.name if self.here else "")
 
     def may_load(self) -> bool:

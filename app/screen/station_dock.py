@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk import formats
 from app.desk.desk import Desk
-from app.desk.station_hands import OVERRIDE_MOST
+from app.desk.station_hands import Pot
 from app.desk.translation import tr
 from app.screen.look import CENTRE, RIGHT, Look, Painter
 from app.screen.panel import Control, FingerPanel, Shown
@@ -37,7 +37,8 @@ class StationDock(FingerPanel):
         desk = self._desk
         self._auto = snapshot.spindle_auto
         palms = frozenset(desk.hands.palms.down)
-        self._shown = (desk.hands.estop_pressed, desk.hands.spindle_pot, desk.hands.feed_pot, palms)
+        pots = (desk.hands.spindle_pot.wanted, desk.hands.feed_pot.wanted)
+        self._shown = (desk.hands.estop_pressed, pots, palms)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Over a pot the wheel turns it."""
@@ -63,12 +64,11 @@ class StationDock(FingerPanel):
         desk = self._desk
         self._mushroom(painter)
         self._switch(painter)
-        self._label(
-            painter, self._row(28.6, 2.6), "SPINDLE SPEED", formats.percent(desk.hands.spindle_pot), "text"
-        )
-        self._pot(painter, self._spindle_box(), (",", "."), desk.hands.spindle_pot, 1.0)
-        self._label(painter, self._row(37.6, 2.6), "FEED RATE", formats.percent(desk.hands.feed_pot), "text")
-        self._pot(painter, self._feed_box(), ("−", "+"), desk.hands.feed_pot, OVERRIDE_MOST)
+        spindle, feed = desk.hands.spindle_pot, desk.hands.feed_pot
+        self._label(painter, self._row(28.6, 2.6), "SPINDLE SPEED", formats.percent(spindle.wanted), "text")
+        self._pot(painter, self._spindle_box(), (",", "."), spindle, desk.hands.turn_spindle_pot)
+        self._label(painter, self._row(37.6, 2.6), "FEED RATE", formats.percent(feed.wanted), "text")
+        self._pot(painter, self._feed_box(), ("−", "+"), feed, desk.override)
         self._hold(painter)
         self._start(painter)
 
@@ -130,9 +130,10 @@ class StationDock(FingerPanel):
     def _switcher(self, auto: bool) -> Callable[[QPointF], None]:
         return lambda _at: self._desk.hands.set_spindle_auto(auto)
 
-    def _pot(self, painter: Painter, box: QRectF, keys: tuple[str, str], value: float, most: float) -> None:
+    def _pot(
+        self, painter: Painter, box: QRectF, keys: tuple[str, str], pot: Pot, turn: Callable[[int], None]
+    ) -> None:
         u = self.look.u
-        turn = self._desk.override if most > 1 else self._desk.hands.turn_spindle_pot
         less = QRectF(box.x(), box.y(), 4.6 * u, box.height())
         more = QRectF(box.right() - 4.6 * u, box.y(), 4.6 * u, box.height())
         for at, key, steps in ((less, keys[0], -1), (more, keys[1], 1)):
@@ -141,11 +142,10 @@ class StationDock(FingerPanel):
             self.controls.append(Control(at, self._turner(turn, steps)))
         track = box.adjusted(5.2 * u, 0, -5.2 * u, 0)
         painter.box(track, "frame", 0.14, "panel")
-        self._slider(painter, track.adjusted(0.3 * u, 0.3 * u, -0.3 * u, -0.3 * u), value / most)
-        setter = self._desk.hands.set_feed_pot if most > 1 else self._desk.hands.set_spindle_pot
+        self._slider(painter, track.adjusted(0.3 * u, 0.3 * u, -0.3 * u, -0.3 * u), pot.wanted / pot.most)
 
         def slide(at: QPointF) -> None:
-            setter(round((at.x() - track.x()) / track.width() * most * 20) / 20)
+            pot.set(round((at.x() - track.x()) / track.width() * pot.most * 20) / 20)
 
         self.controls.append(Control(track, slide, slide))
 

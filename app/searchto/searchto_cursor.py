@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from app.desk.arithmetic import line_of
+from app.desk.sheet import edited
 
 _PASS = re.compile(r"\s*(\d+)\s*[Pp]\s*(\d+)\s*")
 LONGEST = 60  # characters of what is typed
@@ -50,16 +51,10 @@ class LineCursor:
 
     def type(self, key: str) -> bool:
         """A character or an editing key; False when it means nothing here."""
-        if key == "Back":
-            self.text = self.text[:-1]
-        elif key == "Delete":
-            self.text = ""
-        elif len(key) == 1 and key.isprintable():
-            self.text = (self.text + key)[:LONGEST]
-        else:
-            return False
-        self.found = False
-        return True
+        taken = key in {"Back", "Delete"} or (len(key) == 1 and key.isprintable())
+        if taken:
+            self.text, self.found = edited(self.text, key, LONGEST), False
+        return taken
 
     def find(self, way: int) -> bool:
         """To the next (1) or the previous (-1) line that holds the text, round the end; False: in none."""

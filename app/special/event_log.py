@@ -9,7 +9,7 @@ from app.desk.formats import local_time
 from app.desk.latest import Latest
 from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
-from app.desk.sheet import Entry, Key, Row, Sheet
+from app.desk.sheet import Entry, Key, Row, Sheet, following
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot
 from core.store.store_rows import EventRow
@@ -97,8 +97,7 @@ class LoggedEvents(SpecialFunction):
         self.desk.clear()
 
     def _filter(self) -> None:
-        names = list(FILTERS)
-        self.filter = names[(names.index(self.filter) + 1) % len(names)]
+        self.filter = following(FILTERS, self.filter)
         self.marked = 0
         self.look()
 

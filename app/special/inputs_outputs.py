@@ -8,7 +8,7 @@ from enum import StrEnum
 from app.desk.desk import Desk
 from app.desk.machine_status import Tone
 from app.desk.readouts import Lamp, lamps_of
-from app.desk.sheet import Key, Row, Sheet
+from app.desk.sheet import Key, Row, Sheet, following
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
 from core.executor.commands import ForceOutput
@@ -37,12 +37,6 @@ class Kind(StrEnum):
     OUTPUTS = "OUTPUTS"
     INPUTS = "INPUTS"
     LAMPS = "MACHINE LAMPS"
-
-    @property
-    def following(self) -> Kind:
-        """The list that the key goes on to."""
-        kinds = list(Kind)
-        return kinds[(kinds.index(self) + 1) % len(kinds)]
 
 
 class InputsOutputs(SpecialFunction):
@@ -104,11 +98,11 @@ class InputsOutputs(SpecialFunction):
     def keys(self) -> Mapping[str, Key]:
         """F4 shows the next list."""
         labels = {Kind.OUTPUTS: "OUTPUTS", Kind.INPUTS: "INPUTS", Kind.LAMPS: "LAMPS"}
-        return {"F4": Key(labels[self.kind.following], self._go_on)}
+        return {"F4": Key(labels[following(Kind, self.kind)], self._go_on)}
 
     def _go_on(self) -> None:
         self.desk.clear()
-        self.kind, self.marked = self.kind.following, 0
+        self.kind, self.marked = following(Kind, self.kind), 0
 
     def act(self) -> bool:
         """Switch the marked output over."""

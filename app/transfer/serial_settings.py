@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, fields, replace
-from typing import TypeVar
 
+from app.desk.sheet import following
 from app.desk.translation import tr
 from core.machine.serial_table import DncModel
 
@@ -19,14 +19,7 @@ _EOL_NAMES = {"\r\n": "CR LF", "\n": "LF", "\r": "CR"}
 _FLOW_NAMES = {"xonxoff": "XON/XOFF", "rtscts": "RTS/CTS", "none": "NONE"}
 
 Step = Callable[[DncModel, Sequence[str]], DncModel]
-T = TypeVar("T")
 Row = tuple[str, Callable[[DncModel], str], Step]
-
-
-def following(choices: Sequence[T], now: T) -> T:
-    """The next choice; the first after the last, and after one that is none of them."""
-    at = choices.index(now) + 1 if now in choices else 0
-    return choices[at % len(choices)]
 
 
 def _bits(model: DncModel) -> str:

@@ -10,6 +10,7 @@ import pytest
 
 from app.desk import interrupted_notice
 from app.desk.desk import Desk
+from app.desk.formats import wall_time
 from app.desk.program_loading import Loaded
 from app.desk.screen_settings import Units
 from app.programs.copy_rename_delete import RENAME
@@ -47,8 +48,8 @@ def test_line_tool_part_time_and_cause_stand_in_one_row() -> None:
 
 
 def test_yesterdays_job_has_its_date() -> None:
-    assert interrupted_notice.clock_time("2026-05-04T09:30:00Z").startswith("2026-05-0")
-    assert interrupted_notice.clock_time("half past nine") == "half past nine"
+    assert wall_time("2026-05-04T09:30:00Z").startswith("2026-05-0")
+    assert wall_time("half past nine") == "half past nine"
 
 
 def test_where_it_stood_and_where_it_stands_now() -> None:

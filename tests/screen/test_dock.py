@@ -73,9 +73,9 @@ def test_a_finger_that_slides_turns_the_pot(hands: Hands) -> None:
     track = dock.controls[9].box  # E-stop, twist, OFF, AUTO, less, more, spindle pot, less, more, feed pot
     end = QPointF(track.left(), track.center().y()).toPoint()
     fingers.press(0, track.center().toPoint())
-    assert hands.desk.hands.feed_pot == 0.75
+    assert hands.desk.hands.feed_pot.wanted == 0.75
     fingers.move(0, end)
-    assert hands.desk.hands.feed_pot == 0.0
+    assert hands.desk.hands.feed_pot.wanted == 0.0
     fingers.release(at=end)
 
 

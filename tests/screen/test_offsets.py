@@ -97,11 +97,11 @@ def test_what_is_refused_is_said_and_stays_to_be_mended(hands: Hands, store: Sto
 
 def test_signs_and_c_belong_to_the_entry_and_not_to_the_switches(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F9)
-    before = (hands.desk.hands.feed_pot, hands.desk.hands.spindle_pot)
+    before = (hands.desk.hands.feed_pot.wanted, hands.desk.hands.spindle_pot.wanted)
     hands.type("1+1-/.,")
     hands.type("c")
     assert not hands.machine.now.cycle_repeat
-    assert (hands.desk.hands.feed_pot, hands.desk.hands.spindle_pot) == before
+    assert (hands.desk.hands.feed_pot.wanted, hands.desk.hands.spindle_pot.wanted) == before
     assert page_of(hands).asked.asked.text == "1+1-/.,"
     hands.sees(lambda: {"C", "/", "S", "O", "D", "R"} <= hands.frame.strip.mute)
     hands.type("sodrt")  # no letter is a switch while figures are typed
