@@ -178,8 +178,12 @@ class Desk:
 
     def choose_setting(self, name: str, value: object) -> None:
         """Take a choice of the screen; where it cannot be kept it counts until the end, and that is said."""
+        self.keep(partial(self.settings.choose, name, value))
+
+    def keep(self, change: Callable[[], None]) -> None:
+        """Do what is to be kept; that it is not is said."""
         try:
-            self.settings.choose(name, value)
+            change()
         except StoreError as error:
             self.say(f"NOT KEPT: {error}")
 

@@ -32,10 +32,9 @@ class FindingList(Panel):
         """What was found, and the cursor's line."""
         if findings is self.findings and line == self._line:
             return
-        if findings is not self.findings or line != self._line:
-            here = next((n for n, d in enumerate(findings.diagnostics) if d.line == line), None)
-            if here is not None and not self._top <= here < self._top + self._rows:
-                self._top = here
+        here = next((n for n, d in enumerate(findings.diagnostics) if d.line == line), None)
+        if here is not None and not self._top <= here < self._top + self._rows:
+            self._top = here
         self.findings, self._line = findings, line
         self._top = max(0, min(self._top, len(findings.diagnostics) - self._rows))
         self.update()

@@ -12,7 +12,7 @@ from app.desk.formats import local_time
 from app.desk.sheet import Key
 from app.editor.versions import DifferenceRow, VersionHistory
 from app.screen.look import LEFT, RIGHT, Look, Painter, put, put_raw
-from app.screen.panel import Panel
+from app.screen.panel import Panel, Shown
 from core.store.store_rows import VersionRow
 
 ROW = 5.2  # units: a version, a fingertip high
@@ -25,29 +25,26 @@ class VersionList(Panel):
     """Redrawn when the history has another answer; marking one is the history's to do."""
 
     title = "HISTORY"
+    _shown: Shown[tuple[object, ...]] = Shown(())
+    _top = Shown(0)  # first line of the comparison
 
     def __init__(self, look: Look, history: VersionHistory, parent: QWidget) -> None:
         super().__init__(look, parent)
         self._history = history
-        self._shown: tuple[object, ...] = ()
-        self._top = 0  # first line of the comparison
         self.hide()
 
     def refresh(self) -> None:
         """Once a frame: redraw when the history has another answer."""
         history = self._history
         now = (history.rows, history.marked, history.changes, history.words())
-        if now != self._shown:
-            if now[:3] != self._shown[:3]:
-                self._top = 0
-            self._shown = now
-            self.update()
+        if now[:3] != self._shown[:3]:
+            self._top = 0
+        self._shown = now
 
     def look_at(self, lines: int) -> None:
         """Look further down in the comparison."""
         most = max(0, len(self._history.changes) - self.lines)
         self._top = max(0, min(most, self._top + lines))
-        self.update()
 
     @property
     def lines(self) -> int:

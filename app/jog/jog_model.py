@@ -184,6 +184,10 @@ class JogModel:
         state = self.desk.snapshot().state
         return tr("THE SLIDES ARE STILL MOVING") if state is State.JOG else why_no_jog(state)
 
+    def opened(self) -> None:
+        """The page comes up: what was changed on another is no news here."""
+        self.tool.history.opened()
+
     def typed(self, key: str) -> bool:
         """A typed key; False leaves it to the window."""
         if self.tool.asked:

@@ -17,7 +17,7 @@ from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z
 from app.jog.tool_setting_view import ToolPanel
 from app.screen import page_table
 from app.screen.entry_panel import EntryPanel, EntryWords, KeyPad
-from app.screen.page_base import Host, KeyActions, Page
+from app.screen.page_base import Host, KeyActions, ModelPage
 from core.executor.snapshot import Snapshot
 
 Key = Qt.Key
@@ -27,7 +27,7 @@ CHORDS = (
 WIDE, ASKED = 0.46, 12.0  # share of the pad, height of the question in units
 
 
-class JogPage(Page):
+class JogPage(ModelPage):
     """What is held is renewed from ``refresh``: a screen that stands still moves nothing for longer."""
 
     NAME = page_table.JOG
@@ -43,6 +43,8 @@ class JogPage(Page):
         "SECCMP",
         "UNDO",
     )
+
+    model: JogModel
 
     def __init__(self, host: Host, parent: QWidget) -> None:
         super().__init__(host, parent)
@@ -120,14 +122,6 @@ class JogPage(Page):
             "F10": model.tool.undo,
         }
 
-    def typed(self, key: str) -> bool:
-        """An entry, the answer to the home key, or a letter that asks something of the tool."""
-        return self.model.typed(key)
-
-    def takes(self, key: str) -> bool:
-        """What is text here, or a letter of this page."""
-        return self.model.takes(key)
-
     def has_field(self) -> bool:
         """A question about the tool."""
         return bool(self.model.tool.asked)
@@ -138,19 +132,11 @@ class JogPage(Page):
         """What the model has to say on the prompt line."""
         return self.model.prompt(self.desk.snapshot())
 
-    def opened(self) -> None:
-        """What was changed on another page is no news here."""
-        self.model.tool.history.opened()
-
     def leave(self) -> bool:
         """Nothing stays held or half entered."""
         self.pad.let_go()
         self.model.leave()
         return True
-
-    def escape(self) -> bool:
-        """Esc takes back what is open; then it holds the machine, as everywhere."""
-        return self.model.escape()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
         """Renew what is held, show what is so."""

@@ -17,7 +17,7 @@ from app.mdi.mdi_model import MdiModel
 from app.screen import page_table
 from app.screen.letter_keys import LINES, LetterPad
 from app.screen.look import Look, Painter
-from app.screen.page_base import Host, KeyActions, Page
+from app.screen.page_base import Host, KeyActions, ModelPage
 from app.screen.panel import Panel, Press, Shown
 from core.executor.snapshot import CYCLE, Snapshot, Starts
 from core.interpreter.checkpoint import Checkpoint
@@ -139,12 +139,13 @@ class ModalPanel(Panel):
 LINE, STATE = 15.6, 46.0  # units: height of the line, width of what is in force
 
 
-class MdiPage(Page):
-    """The model decides, this only shows it and hands the keys on."""
+class MdiPage(ModelPage):
+    """At rest, keys are text; while a line is under way the letters are the keys they are everywhere."""
 
     NAME = page_table.MDI
     LABELS = ("MENU", "AUTO", "", "READOUT", "DRIVES", "RESET", "ALARMS", "SPN STOP", "SECCMP", "")
     STARTS = True
+    model: MdiModel
 
     def __init__(self, host: Host, model: MdiModel, parent: QWidget) -> None:
         super().__init__(host, parent)
@@ -174,14 +175,6 @@ class MdiPage(Page):
         self.letters.setVisible(self.letters.isHidden())
         self.letters.raise_()
 
-    def typed(self, key: str) -> bool:
-        """At rest, text; while a line is under way the letters are the keys they are everywhere."""
-        return self.model.typed(key)
-
-    def takes(self, key: str) -> bool:
-        """Whether the line takes this character."""
-        return self.model.takes(key)
-
     def has_field(self) -> bool:
         """The line, while none is under way."""
         return self.model.has_keyboard
@@ -194,17 +187,9 @@ class MdiPage(Page):
         """Not while a program is under way."""
         return self.model.opens()
 
-    def opened(self) -> None:
-        """Cycle Start now means lines."""
-        self.model.opened()
-
     def leave(self) -> bool:
         """Not while a line is under way."""
         return self.model.leave()
-
-    def escape(self) -> bool:
-        """Take back a ready line, then the text."""
-        return self.model.escape()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
         """The line, what was found, and the state of this instant."""

@@ -162,6 +162,10 @@ class OffsetTable:
             return self.take_back()
         return True
 
+    def opened(self) -> None:
+        """The page comes up: what was changed on another is no news here."""
+        self.history.opened()
+
     def leave(self) -> None:
         """The page goes: nothing stays half entered."""
         self.drop()

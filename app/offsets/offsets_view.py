@@ -22,7 +22,7 @@ from app.path.path_view import PathView
 from app.screen import page_table
 from app.screen.entry_panel import EntryPanel, EntryWords, KeyPad
 from app.screen.look import Look, Painter
-from app.screen.page_base import Host, KeyActions, Page
+from app.screen.page_base import Host, KeyActions, ModelPage
 from app.screen.panel import Panel, Shown
 from core.executor.snapshot import Snapshot
 
@@ -119,8 +119,8 @@ class HistoryList(Panel):
         painter.write(below, f"{at}    {why}", 1.7, "soft", bold=False, fit=False)
 
 
-class OffsetPage(Page):
-    """The model decides, this only shows it and hands the keys on."""
+class OffsetPage(ModelPage):
+    """A table, its history and what a change does to the path: one of them is seen."""
 
     model: OffsetTable
     table: Panel
@@ -171,10 +171,6 @@ class OffsetPage(Page):
             return True
         return self.model.typed(key)
 
-    def takes(self, key: str) -> bool:
-        """Whether a character is text of the entry."""
-        return self.model.takes(key)
-
     def has_field(self) -> bool:
         """Figures are always typed here, but while one looks at what they do."""
         return not self.effect_model.open
@@ -188,10 +184,6 @@ class OffsetPage(Page):
     def dress(self) -> None:
         """The picture in the colours of now."""
         self.effect.restart()
-
-    def opened(self) -> None:
-        """What was changed on another page is no news here."""
-        self.model.history.opened()
 
     def leave(self) -> bool:
         """Nothing stays half entered."""

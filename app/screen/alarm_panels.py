@@ -14,7 +14,7 @@ from app.desk.machine_status import Tone
 from app.desk.prompt_line import exactly
 from app.desk.translation import tr
 from app.screen.look import Look, Painter, draw_sign
-from app.screen.panel import Panel
+from app.screen.panel import Panel, Shown
 from core.alarms import CATALOGUE, Reaction
 from core.executor.snapshot import Alarm
 
@@ -26,20 +26,17 @@ _HIGH, _WHEN, _FOOT = 7.0, 17.0, 6.8  # units: an entry, its column of times, th
 class Notice(Panel):
     """Alarms with causes, remedy and line, the first one large; or the message of M00/M01."""
 
+    message, _go_on = Shown(""), Shown("")
+    _alarms: Shown[tuple[Alarm, ...]] = Shown(())
+
     def __init__(self, look: Look, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
-        self.message = ""
-        self._go_on = ""
-        self._alarms: tuple[Alarm, ...] = ()
         self.hide()
 
     def show_notice(self, message: str, go_on: str, alarms: tuple[Alarm, ...] = ()) -> None:
         """An alarm goes before a message; with neither the notice is gone."""
-        if (message, go_on, alarms) == (self.message, self._go_on, self._alarms):
-            return
         self.message, self._go_on, self._alarms = message, go_on, alarms
         self.setVisible(bool(message or alarms))
-        self.update()
 
     def draw(self, painter: Painter) -> None:
         if self._alarms:
@@ -62,7 +59,7 @@ class Notice(Panel):
         u = self.look.u
         foot = QRectF(room.x(), room.bottom() - 3.4 * u, room.width(), 3.4 * u)
         room.setBottom(foot.top() - 0.6 * u)
-        self._wrapped(painter, room, self.message, 6.0, "text")
+        self._wrapped(painter, room, self.message, 6.0)
         painter.write(foot, self._go_on, 2.2, "accent")
 
     def _draw_alarm(self, painter: Painter, alarm: Alarm, *more: Alarm) -> None:
@@ -91,11 +88,11 @@ class Notice(Panel):
     def _labelled(self, painter: Painter, room: QRectF, label: str, text: str) -> None:
         u = self.look.u
         painter.write(QRectF(room.x(), room.y(), room.width(), 2.0 * u), label, 1.6, "soft")
-        self._wrapped(painter, room.adjusted(0, 2.1 * u, 0, 0), text, 2.3, "text")
+        self._wrapped(painter, room.adjusted(0, 2.1 * u, 0, 0), text, 2.3)
 
-    def _wrapped(self, painter: Painter, room: QRectF, text: str, size: float, colour: str) -> None:
+    def _wrapped(self, painter: Painter, room: QRectF, text: str, size: float) -> None:
         """Text in words, from ``size`` down as far as needed so that all of it is there."""
-        painter.setPen(self.look.colour(colour))
+        painter.setPen(self.look.colour("text"))
         while True:
             painter.setFont(self.look.font(size, bold=True))
             flags = int(WRAP.value) | WORDS
@@ -110,11 +107,11 @@ class AlarmList(Panel):
     """Every alarm, E-stop and stop, newest on top: when, what, why, what to do."""
 
     title = "ALARMS AND STOPS  ·  ESC CLOSES  ·  PAGE DOWN: OLDER"
+    _top = Shown(0)
 
     def __init__(self, look: Look, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
         self.entries: tuple[LoggedStop, ...] = ()
-        self._top = 0
         self.hide()
 
     def show_entries(self, entries: Sequence[LoggedStop]) -> None:
@@ -132,7 +129,6 @@ class AlarmList(Panel):
     def look_at(self, by: int) -> None:
         """Older ones, or newer ones."""
         self._top = max(0, min(self._top + by, len(self.entries) - self.rows))
-        self.update()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """The mouse wheel goes through the entries, as Page up and down do."""

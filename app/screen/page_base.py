@@ -37,7 +37,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Protocol
 
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QWidget
@@ -142,3 +142,37 @@ class Page(QWidget):
 
     def dress(self) -> None:
         """Other colours are in force."""
+
+
+class PageModel(Protocol):
+    """What such a page asks of its model; ``escape`` is False where nothing was taken back by it."""
+
+    def typed(self, key: str) -> bool: ...
+
+    def takes(self, key: str) -> bool: ...
+
+    def opened(self) -> None: ...
+
+    def escape(self) -> bool: ...
+
+
+class ModelPage(Page):
+    """The model decides, this only shows it and hands the keys on."""
+
+    model: PageModel
+
+    def typed(self, key: str) -> bool:
+        """To the entry, the list or whatever is open."""
+        return self.model.typed(key)
+
+    def takes(self, key: str) -> bool:
+        """Whether a character is text of what is open."""
+        return self.model.takes(key)
+
+    def opened(self) -> None:
+        """The page comes up."""
+        self.model.opened()
+
+    def escape(self) -> bool:
+        """One step back."""
+        return self.model.escape()

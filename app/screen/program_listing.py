@@ -6,10 +6,9 @@ from collections.abc import Mapping, Sequence
 
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QWheelEvent
-from PySide6.QtWidgets import QWidget
 
-from app.screen.look import RIGHT, Look, Painter
-from app.screen.panel import Panel
+from app.screen.look import RIGHT, Painter
+from app.screen.panel import Panel, Shown
 
 ROW = 2.9  # units from line to line
 
@@ -17,13 +16,11 @@ ROW = 2.9  # units from line to line
 class Listing(Panel):
     """Paints only the lines that are seen, so its cost does not grow with the program."""
 
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
-        super().__init__(look, parent)
-        self._lines: Sequence[str] = ()
-        self._bad: Mapping[int, str] = {}
-        self._line = 0
-        self._block = self._next = ""
-        self._top: int | None = None  # first row when scrolled by hand, None while it follows the run
+    _line = Shown(0)
+    _block, _next = Shown(""), Shown("")
+    _top: Shown[int | None] = Shown(None)  # first row when scrolled by hand, None while it follows the run
+    _bad: Shown[Mapping[int, str]] = Shown({})
+    _lines: Sequence[str] = ()
 
     def show_source(self, lines: Sequence[str], bad: Mapping[int, str]) -> None:
         """Another program; ``bad`` are messages by line number."""
@@ -39,9 +36,7 @@ class Listing(Panel):
         """
         if following and any(text.startswith(following) for text in self._lines[line : line + 1]):
             following = ""
-        if (line, block, following) != (self._line, self._block, self._next):
-            self._line, self._block, self._next = line, block, following
-            self.update()
+        self._line, self._block, self._next = line, block, following
 
     @property
     def rows(self) -> int:
@@ -68,13 +63,11 @@ class Listing(Panel):
     def follow(self) -> None:
         """Go along with the run again."""
         self._top = None
-        self.update()
 
     def look_at(self, rows: int) -> None:
         """Look elsewhere in the program; the run goes on."""
         most = max(0, len(self._lines) + self._extra - self.rows)
         self._top = max(0, min(most, self.top + rows))
-        self.update()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Three lines a notch."""

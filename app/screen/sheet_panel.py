@@ -14,30 +14,28 @@ from app.desk.sheet import Key, Row, Sheet
 from app.screen import page_table
 from app.screen.entry_panel import draw_entry_box
 from app.screen.look import LEFT, RIGHT, Look, Painter
-from app.screen.page_base import Host, Page
-from app.screen.panel import Panel
+from app.screen.page_base import Host, ModelPage, PageModel
+from app.screen.panel import Panel, Shown
 
 ROW, HEAD, ASKED, NOTE = 4.0, 2.6, 5.4, 2.4  # units
 LAMP = 3.2
-EMPTY = Sheet("", (), (), ())
 
 
 class SheetPanel(Panel):
     """Draws any sheet; a finger on a row chooses it. The mark stays in sight."""
 
+    sheet = Shown(Sheet("", (), (), ()))
+
     def __init__(self, look: Look, choose: Callable[[int], None], parent: QWidget) -> None:
         super().__init__(look, parent)
         self._choose = choose
-        self.sheet = EMPTY
         self.top = 0
 
     def show_sheet(self, sheet: Sheet) -> None:
-        """Redraw when something has changed."""
-        if sheet != self.sheet:
-            if sheet.title.split("  ·  ")[0] != self.sheet.title.split("  ·  ")[0]:
-                self.top = 0
-            self.sheet = sheet
-            self.update()
+        """Redraw when something has changed; another list begins at its top."""
+        if sheet.title.split("  ·  ")[0] != self.sheet.title.split("  ·  ")[0]:
+            self.top = 0
+        self.sheet = sheet
 
     @property
     def rows(self) -> int:
@@ -47,9 +45,7 @@ class SheetPanel(Panel):
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Three rows a notch."""
-        self._look_at(self.top - round(event.angleDelta().y() / 40))
-
-    def _look_at(self, top: int) -> None:
+        top = self.top - round(event.angleDelta().y() / 40)
         self.top = max(0, min(top, len(self.sheet.rows) - self.rows))
         self.update()
 
@@ -134,23 +130,15 @@ class SheetPanel(Panel):
 # --- a page that comes up with such a list -----------------------------------------------------------------
 
 
-class ListModel(Protocol):
+class ListModel(PageModel, Protocol):
     """What such a page asks of its model; ``escape`` is False where it stands on the list itself."""
-
-    def typed(self, key: str) -> bool: ...
-
-    def takes(self, key: str) -> bool: ...
 
     def prompt(self) -> str: ...
 
-    def opened(self) -> None: ...
-
     def leave(self) -> None: ...
 
-    def escape(self) -> bool: ...
 
-
-class ListPage(Page):
+class ListPage(ModelPage):
     """Hands keys on, and goes from the list back to the Automatic page."""
 
     model: ListModel
@@ -165,21 +153,9 @@ class ListPage(Page):
         named.update((name, key.label) for name, key in keys.items())
         return tuple(named.get(f"F{number}", "") for number in range(1, 11))
 
-    def typed(self, key: str) -> bool:
-        """To the list, or to what is open."""
-        return self.model.typed(key)
-
-    def takes(self, key: str) -> bool:
-        """Whether a character is text of the list or of what is open."""
-        return self.model.takes(key)
-
     def prompt(self) -> str:
         """The prompt line of the model."""
         return self.model.prompt()
-
-    def opened(self) -> None:
-        """The page comes up with its list."""
-        self.model.opened()
 
     def leave(self) -> bool:
         """Nothing stays half entered or half asked."""

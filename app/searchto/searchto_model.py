@@ -155,6 +155,10 @@ class SearchtoModel:
             self.number = number
             self.search()
 
+    def takes(self, key: str) -> bool:
+        """Whether a character is the question's: not while the tool is on its way out."""
+        return len(key) == 1 and self.has_keyboard
+
     def typed(self, key: str) -> bool:
         """A character or an editing key of the question; False when it means nothing here."""
         if not self.cursor.type(key):

@@ -18,7 +18,7 @@ from app.path.path_view import PathView
 from app.screen import page_table
 from app.screen.entry_panel import draw_entry
 from app.screen.look import Painter
-from app.screen.page_base import Host, KeyActions, Page
+from app.screen.page_base import Host, KeyActions, ModelPage
 from app.screen.panel import Panel, Shown
 from app.screen.program_listing import Listing
 from app.searchto.searchto_model import SearchtoModel, SearchtoStage
@@ -83,8 +83,8 @@ class StartsPanel(Panel):
 LIST, STATE, ASKED, STARTS = 0.26, 0.46, 4.6, 19.0  # shares of the width; units of height
 
 
-class SearchtoPage(Page):
-    """The model decides, this only shows it and hands the keys on."""
+class SearchtoPage(ModelPage):
+    """Lines are chosen by arrows, numbers and texts."""
 
     NAME = page_table.SEARCHTO
     LABELS = (
@@ -100,6 +100,7 @@ class SearchtoPage(Page):
         "CONFIRM",
     )
     STARTS = True
+    model: SearchtoModel
 
     def __init__(self, host: Host, model: SearchtoModel, parent: QWidget) -> None:
         super().__init__(host, parent)
@@ -129,10 +130,6 @@ class SearchtoPage(Page):
             "Zoom out": partial(self.path.zoom, -1),
         }
 
-    def takes(self, key: str) -> bool:
-        """Characters are the question's, but while the tool is on its way out."""
-        return len(key) == 1 and self.model.has_keyboard
-
     def typed(self, key: str) -> bool:
         """Arrows choose a line, everything else is typed."""
         if not self.model.has_keyboard:
@@ -160,10 +157,6 @@ class SearchtoPage(Page):
     def opens(self) -> bool:
         """With a proved program, and none under way."""
         return self.model.opens()
-
-    def opened(self) -> None:
-        """Cycle Start now means a confirmed restart."""
-        self.model.opened()
 
     def leave(self) -> bool:
         """Cycle Start means programs again."""

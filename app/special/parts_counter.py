@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial
 
 from app.desk import formats
@@ -12,7 +12,6 @@ from app.desk.translation import tr
 from app.special.part_count import MOST, PartCounter
 from app.special.special_functions import FigureFunction
 from core.executor.snapshot import Snapshot
-from core.store.store_errors import StoreError
 
 RESET = "PRESS Y TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT"
 NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT"
@@ -72,7 +71,7 @@ class PartsCounterFunction(FigureFunction):
             self.desk.say("THE COUNT IS AT NOUGHT")
         else:
             self.desk.clear()
-            self._save(lambda: self.counter.correct(by))
+            self.desk.keep(lambda: self.counter.correct(by))
 
     def reset(self) -> None:
         """Count to nought, after asking."""
@@ -81,7 +80,7 @@ class PartsCounterFunction(FigureFunction):
         elif self.counter.count == 0:
             self.desk.say("THE COUNT IS AT NOUGHT")
         else:
-            self.desk.ask(RESET, partial(self._save, self.counter.reset))
+            self.desk.ask(RESET, partial(self.desk.keep, self.counter.reset))
 
     def take(self, text: str) -> bool:
         """The target, from the count on; 0 takes it away."""
@@ -95,14 +94,8 @@ class PartsCounterFunction(FigureFunction):
                 tr("REFUSED: {made} PARTS ARE MADE ALREADY; F4 PUTS THE COUNT TO NOUGHT").format(made=made)
             )
             return False
-        self._save(lambda: self.counter.set_target(target))
+        self.desk.keep(lambda: self.counter.set_target(target))
         return True
-
-    def _save(self, change: Callable[[], None]) -> None:
-        try:
-            change()
-        except StoreError as error:
-            self.desk.say(f"NOT KEPT: {error}")
 
     def prompt(self) -> str:
         """How to set the target, for the prompt line."""

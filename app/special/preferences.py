@@ -5,7 +5,6 @@ from __future__ import annotations
 from app.desk.sheet import Row, Sheet
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot
-from core.store.store_errors import StoreError
 
 WORDS = {
     "units": "UNITS OF THE FIGURES",
@@ -65,10 +64,7 @@ class ScreenPreferences(SpecialFunction):
             self.desk.say("RELEASE THE E-STOP OF THE STATION BEFORE HIDING IT (U)")
             return
         self.desk.clear()
-        try:
-            settings.choose(name, settings.following(name))
-        except StoreError as error:
-            self.desk.say(f"NOT KEPT: {error}")
+        self.desk.choose_setting(name, settings.following(name))
 
     def prompt(self) -> str:
         """How to choose, for the prompt line."""
