@@ -17,14 +17,15 @@ _SAME = 0.05  # mm, degrees: nearer than this the tool still stands where it sto
 
 
 @dataclass(frozen=True, slots=True)
-class InterruptedNotice:
-    """One row: what stands, and the figures to it."""
+class NoticeRow:
+    """What stands until somebody acts: a text, figures under it, and keys beside it: name and label."""
 
     text: str
     figures: str = ""
+    keys: tuple[tuple[str, str], ...] = ()
 
 
-def notice_of(snapshot: Snapshot, loaded: Loaded, units: Units) -> InterruptedNotice | None:
+def notice_of(snapshot: Snapshot, loaded: Loaded, units: Units) -> NoticeRow | None:
     """Of the interrupted job; None when there is none."""
     found = snapshot.interrupted
     if found is None:
@@ -41,7 +42,7 @@ def notice_of(snapshot: Snapshot, loaded: Loaded, units: Units) -> InterruptedNo
         why=tr(found.why),
         changed=tr(" (ITS TEXT HAS CHANGED SINCE)") if _changed(found, loaded) else "",
     )
-    return InterruptedNotice(words, _places(found, snapshot, units))
+    return NoticeRow(words, _places(found, snapshot, units))
 
 
 def interrupted_prompt(snapshot: Snapshot, loaded: Loaded, start: str) -> str:

@@ -67,11 +67,9 @@ class MachineStatus:
     spindle: SpindleFigures
     modes: tuple[Lamp, ...]
     lamps: tuple[Lamp, ...]
-    parts: str
     cycle: str
     last_cycle: str
     line: int
-    block: int
     block_text: str
     next_text: str
     comment: str
@@ -101,11 +99,9 @@ def status_of(
         spindle=spindle_figures(snapshot, metric),
         modes=modes_of(snapshot),
         lamps=lamps_of(snapshot),
-        parts=str(snapshot.parts),
         cycle=formats.duration(snapshot.cycle_elapsed),
         last_cycle=formats.duration(snapshot.last_cycle) if snapshot.last_cycle else formats.NOTHING,
         line=snapshot.line,
-        block=snapshot.block,
         block_text=snapshot.block_text,
         next_text=snapshot.next_text,
         comment=snapshot.comment,

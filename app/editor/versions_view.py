@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QWheelEvent
@@ -62,7 +63,7 @@ class VersionList(Panel):
         for place, version in enumerate(history.rows[first : first + rows]):
             box = QRectF(1.2 * u, (3.0 + place * ROW) * u, (LIST - 1.2) * u, ROW * u)
             self._version(painter, box, version, first + place == history.marked)
-            self.place(box, self._marker(first + place))
+            self.place(box, partial(history.mark, first + place))
         self._comparison(painter)
 
     def _version(self, painter: Painter, box: QRectF, version: VersionRow, marked: bool) -> None:
@@ -115,6 +116,3 @@ class VersionList(Panel):
             Qt.Key.Key_PageUp: by[6],
             Qt.Key.Key_PageDown: by[7],
         }
-
-    def _marker(self, place: int) -> Callable[[], None]:
-        return lambda: self._history.mark(place)

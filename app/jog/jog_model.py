@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from app.desk import prompt_line
@@ -63,8 +62,8 @@ class JogModel:
             self._now,
             self.barred,
         )
-        names = tuple(dict.fromkeys(each.axis for each in self.directions))
-        names = tuple(sorted(names, key=_order(self.machine)))
+        moved = {each.axis for each in self.directions}
+        names = tuple(axis.name for axis in self.machine.axes if axis.name in moved)
         self.wheel = JogHandwheel(self.machine, self.hold, names, self._wheel_barred)
         self.home = HomingQuestion(self.machine, desk)
         self.tool = ToolSetting(desk, desk.book)
@@ -272,8 +271,3 @@ def jog_prompt(state: State, lost: list[str], wheel: str, step: int) -> str:
     if step != CONTINUOUS:
         return tr("EACH PRESS OF AN ARROW IS ONE STEP; F2 CHANGES ITS LENGTH")
     return tr("HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF")
-
-
-def _order(machine: Machine) -> Callable[[str], int]:
-    """As the machine file has its axes."""
-    return [axis.name for axis in machine.axes].index

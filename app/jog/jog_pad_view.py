@@ -17,7 +17,7 @@ from app.jog.jog_model import JogModel
 from app.jog.jog_speeds import CONTINUOUS, JogDirection, rapid_word, speed_words, step_words
 from app.offsets.offset_values import Mode
 from app.screen.look import CENTRE, Look, Painter, put
-from app.screen.panel import Control, FingerPanel, Shown
+from app.screen.panel import Control, FingerPanel, Shown, pressed
 from core.executor.snapshot import Snapshot
 
 # --- arrows and the middle ----------------------------------------------------------------------------
@@ -253,10 +253,7 @@ class JogPad(FingerPanel):
 
     def _tiles(self, painter: Painter, row: QRectF, tiles: Tiles) -> None:
         for box, press in draw_tiles(painter, row, tiles):
-            self.controls.append(Control(box, self._presser(press)))
-
-    def _presser(self, press: Callable[[], None]) -> Callable[[QPointF], None]:
-        return lambda _at: press()
+            self.controls.append(pressed(box, press))
 
     def _cross(self, painter: Painter, room: QRectF) -> None:
         u = self.look.u

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from PySide6.QtCore import QEvent, QObject, QRectF, Qt
 from PySide6.QtGui import QKeyEvent, QResizeEvent, QWheelEvent
@@ -173,13 +174,10 @@ class FilePrompt(Panel):
             painter.write(name, entry.name, 2.3, ink, bold=marked, raw=True, fit=False)
             folder, text = box.adjusted(box.width() - 30 * u, 0, -1.2 * u, 0), entry.path.parent.name
             painter.write(folder, text, 1.6, soft, at=RIGHT, bold=False, raw=True, fit=False)
-            self.place(box, self._picker(entry))
+            self.place(box, partial(self._try, str(entry.path)))
 
     def _not_found(self, painter: Painter) -> None:
         u = self.look.u
         box = QRectF(1.6 * u, 10 * u, self.width() - 3.2 * u, 7 * u)
         painter.fill(box, "alarm")
         painter.write(box, NOT_FOUND, 2.8, "on_state", at=CENTRE, margin=2)
-
-    def _picker(self, entry: ListedProgram) -> Callable[[], None]:
-        return lambda: self._try(str(entry.path))

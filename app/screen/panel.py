@@ -146,6 +146,11 @@ class Control:
     always: bool = False  # it stops the machine: it acts however late the finger is seen
 
 
+def pressed(box: QRectF, press: Press) -> Control:
+    """A control that acts as it goes down, wherever in its box."""
+    return Control(box, lambda _at: press())
+
+
 class FingerPanel(Panel):
     """Drawing declares the controls; fingers and the mouse find them."""
 

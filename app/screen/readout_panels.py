@@ -15,7 +15,6 @@ from app.desk.translation import tr
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter, draw_sign, put
 from app.screen.panel import Panel, Shown
 
-FIGURES = 9  # −12.34567
 LATHE_ROWS = 3
 ROOMY = 6.3  # units of height that figures of the full size need
 

@@ -14,7 +14,7 @@ from app.desk.desk import Desk
 from app.desk.station_hands import Pot
 from app.desk.translation import tr
 from app.screen.look import CENTRE, RIGHT, Look, Painter
-from app.screen.panel import Control, FingerPanel, Shown
+from app.screen.panel import Control, FingerPanel, Shown, pressed
 from core.executor.snapshot import Snapshot
 
 DRAWN_FOR = 71.6  # units of height; a taller dock gives every row its share
@@ -125,10 +125,8 @@ class StationDock(FingerPanel):
             at = QRectF(box.x() + number * half, box.y(), half, box.height())
             painter.box(at, "frame", 0.14, "lit" if on else "panel")
             painter.write(at, word, 2.2, "on_lit" if on else "soft", at=CENTRE)
-            self.controls.append(Control(at, self._switcher(word == "AUTO")))
-
-    def _switcher(self, auto: bool) -> Callable[[QPointF], None]:
-        return lambda _at: self._desk.hands.set_spindle_auto(auto)
+            press = partial(self._desk.hands.set_spindle_auto, word == "AUTO")
+            self.controls.append(pressed(at, press))
 
     def _pot(
         self, painter: Painter, box: QRectF, keys: tuple[str, str], pot: Pot, turn: Callable[[int], None]
@@ -139,7 +137,7 @@ class StationDock(FingerPanel):
         for at, key, steps in ((less, keys[0], -1), (more, keys[1], 1)):
             painter.fill(at, "key")
             painter.write(at, key, 2.8, "accent", at=CENTRE)
-            self.controls.append(Control(at, self._turner(turn, steps)))
+            self.controls.append(pressed(at, partial(turn, steps)))
         track = box.adjusted(5.2 * u, 0, -5.2 * u, 0)
         painter.box(track, "frame", 0.14, "panel")
         self._slider(painter, track.adjusted(0.3 * u, 0.3 * u, -0.3 * u, -0.3 * u), pot.wanted / pot.most)
@@ -148,9 +146,6 @@ class StationDock(FingerPanel):
             pot.set(round((at.x() - track.x()) / track.width() * pot.most * 20) / 20)
 
         self.controls.append(Control(track, slide, slide))
-
-    def _turner(self, turn: Callable[[int], None], steps: int) -> Callable[[QPointF], None]:
-        return lambda _at: turn(steps)
 
     def _slider(self, painter: Painter, inner: QRectF, share: float) -> None:
         u = self.look.u
@@ -187,7 +182,7 @@ class StationDock(FingerPanel):
         box = self._row(58.2, 12.4)
         if not desk.two_hand:
             self._palm(painter, box, "F12", down=False)
-            self.controls.append(Control(box, lambda _at: desk.start_button()))
+            self.controls.append(pressed(box, desk.start_button))
             return
         half = box.width() / 2
         for number, (side, key) in enumerate((("left", "F11"), ("right", "F12"))):

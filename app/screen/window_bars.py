@@ -5,13 +5,13 @@ function keys.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QFontMetricsF
 from PySide6.QtWidgets import QWidget
 
+from app.desk.interrupted_notice import NoticeRow
 from app.desk.machine_status import Tone
 from app.desk.readouts import Lamp
 from app.desk.translation import tr
@@ -198,15 +198,6 @@ class LampStrip(Panel):
 
 
 NOTICE_ROW, NOTICE_KEY = 5.0, 17.0  # units: height of a row, width of a key
-
-
-@dataclass(frozen=True, slots=True)
-class NoticeRow:
-    """A bold text, figures under it, and keys at its right: name and label."""
-
-    text: str
-    figures: str = ""
-    keys: tuple[tuple[str, str], ...] = ()
 
 
 class NoticeRows(Panel):

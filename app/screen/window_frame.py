@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 from PySide6.QtGui import QResizeEvent
@@ -11,7 +12,7 @@ from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
 from app.automatic.automatic_view import AutomaticPage
 from app.desk import formats, prompt_line
 from app.desk.desk import Desk
-from app.desk.interrupted_notice import may_go_on, notice_of
+from app.desk.interrupted_notice import NoticeRow, may_go_on, notice_of
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.readouts import Lamp
@@ -31,7 +32,7 @@ from app.screen.readout_panels import (
     ToolGauge,
 )
 from app.screen.station_dock import StationDock
-from app.screen.window_bars import FunctionKeys, LampStrip, NoticeRow, NoticeRows, PromptLine, TitleLine
+from app.screen.window_bars import FunctionKeys, LampStrip, NoticeRows, PromptLine, TitleLine
 from app.screen.window_layout import Places, Rect, low_places, places, unit, work_of
 from core.executor.snapshot import Snapshot, State
 
@@ -277,9 +278,7 @@ class Frame(QWidget):
         found = notice_of(snapshot, loaded, desk.settings.units)
         if found is not None:
             offered = here and snapshot.state is State.IDLE and bool(snapshot.interrupted_line)
-            rows.append(
-                NoticeRow(found.text, found.figures, _KEYS[not may_go_on(loaded) :] if offered else ())
-            )
+            rows.append(replace(found, keys=_KEYS[not may_go_on(loaded) :] if offered else ()))
         if desk.not_kept():
             held = desk.waiting()
             waits = tr("HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: {what}").format(what=held) if held else ""
