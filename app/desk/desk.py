@@ -85,7 +85,6 @@ class Desk:
     with_c: bool = True
     machine: str = ""
     lathe: Machine | None = None  # what the machine file says, for moves by hand
-    simulated: bool = True
     shut: Callable[[], None] = field(default=lambda: None)  # what drives the machine
     waiting: Callable[[], str] = str  # what of it waits in memory, in words
     differs: Callable[[], str] = str  # how the file on the disk is not the program on the desk

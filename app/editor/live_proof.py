@@ -82,11 +82,6 @@ class LiveProof:
         self.worker.ask(work, self._show, self._failed)
         return self._number
 
-    def settled(self, timeout: float) -> Findings:
-        """Wait until everything is proved and look; for scripts and tests, never for the screen."""
-        self.worker.settle(timeout)
-        return self._now
-
     def close(self) -> None:
         """Give up what is being proved and end the worker."""
         self.worker.close()

@@ -71,13 +71,13 @@ class Effect:
     draw: Draw
     now: Compared | None = None
     trouble: str = ""
-    _worker: Latest = field(default_factory=lambda: Latest("effect"))
+    worker: Latest = field(default_factory=lambda: Latest("effect"))
 
     @property
     def busy(self) -> bool:
         """Whether the worker is still at it; what went wrong there is ``trouble`` afterwards."""
-        self._worker.poll()
-        return self._worker.busy
+        self.worker.poll()
+        return self.worker.busy
 
     def ask(self, job: Job, before: Tables, after: Tables) -> None:
         """Draw this program both ways; what was being drawn before is given up."""
@@ -86,7 +86,7 @@ class Effect:
             return compared(*(self.draw(_with(job, each), before.tools, watch) for each in (before, after)))
 
         self.now, self.trouble = None, ""
-        self._worker.ask(pair, self._drawn, self._failed)
+        self.worker.ask(pair, self._drawn, self._failed)
 
     def _drawn(self, pair: Compared) -> None:
         self.now = pair
@@ -94,19 +94,14 @@ class Effect:
     def _failed(self, why: str) -> None:
         self.trouble = why
 
-    def settled(self, timeout: float) -> Compared | None:
-        """Wait until it is drawn and look; for scripts and tests, never for the screen."""
-        self._worker.settle(timeout)
-        return self.now
-
     def forget(self) -> None:
         """Give up what is being drawn, and forget what was drawn."""
-        self._worker.give_up()
+        self.worker.give_up()
         self.now, self.trouble = None, ""
 
     def close(self) -> None:
         """Give up whatever is being drawn and end the worker."""
-        self._worker.close()
+        self.worker.close()
 
 
 def _with(job: Job, tables: Tables) -> Job:

@@ -10,7 +10,7 @@ import pytest
 
 from app.desk.latest import Watch
 from app.desk.program_loading import Proved
-from app.editor.live_proof import LiveProof, by_line
+from app.editor.live_proof import Findings, LiveProof, by_line
 from core.executor.job import Job, Proof
 from core.language.diagnostics import Diagnostic, Severity
 from tests.editor.shop import GOOD, workshop
@@ -23,9 +23,14 @@ def checker() -> Iterator[LiveProof]:
     checker.close()
 
 
+def settled(checker: LiveProof) -> Findings:
+    checker.worker.settle(10)
+    return checker.now
+
+
 def test_a_good_program_is_proved_and_drawn(checker: LiveProof) -> None:
     number = checker.submit("a.nc", GOOD)
-    found = checker.settled(10)
+    found = settled(checker)
     assert (found.number, found.diagnostics, found.trouble) == (number, (), "")
     assert found.picture is not None
     assert found.cycle_time > 0
@@ -33,7 +38,7 @@ def test_a_good_program_is_proved_and_drawn(checker: LiveProof) -> None:
 
 def test_an_error_stands_at_its_line(checker: LiveProof) -> None:
     checker.submit("a.nc", GOOD.replace("Z-.5", "Z-.5.5"))
-    found = checker.settled(10)
+    found = settled(checker)
     assert set(found.by_line) == {5}
     assert found.by_line[5].severity is Severity.ERROR
     assert found.errors >= 1
@@ -41,7 +46,7 @@ def test_an_error_stands_at_its_line(checker: LiveProof) -> None:
 
 def test_an_empty_text_is_no_trouble(checker: LiveProof) -> None:
     number = checker.submit("a.nc", "")
-    found = checker.settled(10)
+    found = settled(checker)
     assert (found.number, found.trouble) == (number, "")
 
 
@@ -56,7 +61,7 @@ def test_only_the_latest_of_a_burst_is_proved() -> None:
     checker = LiveProof(replace(real, prove=prove))
     for n in range(30):
         checker.submit("a.nc", GOOD.replace("S1000", f"S{1000 + n}"))
-    assert checker.settled(10).number == 30
+    assert settled(checker).number == 30
     assert proved[-1] == GOOD.replace("S1000", "S1029")
     assert len(proved) < 30
     checker.close()
@@ -79,7 +84,7 @@ def test_a_long_proof_gives_way_to_a_newer_text() -> None:
     assert running.wait(10)
     checker.worker.clock = lambda: t[0] + 1000.0
     checker.submit("a.nc", "M30\n")
-    assert checker.settled(10).number == 2
+    assert settled(checker).number == 2
     assert tries == ["old", "M30\n"]
     checker.close()
 
@@ -105,10 +110,10 @@ def test_a_prover_that_fails_is_told_and_the_next_text_is_proved() -> None:
 
     checker = LiveProof(replace(workshop(), make_job=make_job))
     checker.submit("a.nc", GOOD)
-    assert checker.settled(10).trouble == "PROVING FAILED: the store is damaged"
+    assert settled(checker).trouble == "PROVING FAILED: the store is damaged"
     checker.workshop = workshop()
     checker.submit("a.nc", GOOD)
-    assert checker.settled(10).trouble == ""
+    assert settled(checker).trouble == ""
     checker.close()
 
 

@@ -11,7 +11,7 @@ from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from app.compose.workshop import drawer
 from app.desk.latest import Watch
-from app.offsets.offset_effect import Effect, Tables
+from app.offsets.offset_effect import Compared, Effect, Tables
 from app.path.path_picture import Picture
 from core.executor.job import Job, make_job
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
@@ -38,10 +38,15 @@ def effect() -> Iterator[Effect]:
     effect.close()
 
 
+def settled(effect: Effect) -> Compared | None:
+    effect.worker.settle(LIMIT)
+    return effect.now
+
+
 def test_a_tool_that_moves_moves_its_own_path_alone(effect: Effect) -> None:
     after = {**TOOLS, 1: ToolOffset(-1.0 + 0.03, -50.0 - 0.04)}
     effect.ask(job(), Tables(TOOLS), Tables(after))
-    pair = effect.settled(LIMIT)
+    pair = settled(effect)
     assert pair is not None
     assert pair.furthest == pytest.approx(0.05)  # 3, 4, 5
     dx, dz = pair.after.x - pair.before.x, pair.after.z - pair.before.z
@@ -57,7 +62,7 @@ def test_a_tool_that_moves_moves_its_own_path_alone(effect: Effect) -> None:
 def test_a_secondary_offset_moves_the_moves_that_it_is_called_for(effect: Effect) -> None:
     correction = {1: SecondaryOffset(-0.01, 0.0)}
     effect.ask(job(), Tables(TOOLS), Tables(TOOLS, correction))
-    pair = effect.settled(LIMIT)
+    pair = settled(effect)
     assert pair is not None
     assert pair.furthest == pytest.approx(0.01)
     moved = abs(pair.after.x - pair.before.x) > 1e-9
@@ -66,7 +71,7 @@ def test_a_secondary_offset_moves_the_moves_that_it_is_called_for(effect: Effect
 
 def test_no_difference_is_said(effect: Effect) -> None:
     effect.ask(job(), Tables(TOOLS), Tables({**TOOLS, 9: ToolOffset(5.0, 5.0)}))
-    pair = effect.settled(LIMIT)
+    pair = settled(effect)
     assert pair is not None
     assert pair.same
 
@@ -80,7 +85,7 @@ def test_a_path_of_another_kind_is_drawn_as_it_is() -> None:
 
     effect = Effect(draw)
     effect.ask(make_job(longer, job().setup), Tables(TOOLS), Tables(TOOLS, {1: SecondaryOffset(1.0)}))
-    pair = effect.settled(LIMIT)
+    pair = settled(effect)
     assert pair is not None
     assert math.isinf(pair.furthest)
     assert not pair.same
@@ -93,7 +98,7 @@ def test_a_worker_that_fails_is_told() -> None:
 
     effect = Effect(broken)
     effect.ask(job(), Tables(), Tables())
-    assert effect.settled(LIMIT) is None
+    assert settled(effect) is None
     assert effect.trouble == "no such path"
     effect.close()
 
@@ -101,5 +106,5 @@ def test_a_worker_that_fails_is_told() -> None:
 def test_what_nobody_looks_at_any_more_is_forgotten(effect: Effect) -> None:
     effect.ask(job(), Tables(TOOLS), Tables(TOOLS))
     effect.forget()
-    assert effect.settled(LIMIT) is None
+    assert settled(effect) is None
     assert effect.trouble == ""
