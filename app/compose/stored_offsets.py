@@ -52,19 +52,23 @@ def stored_offsets() -> Offsets:
 def stored_shapes() -> dict[int, ToolShape]:
     """The shapes of tools in the store; none where there is no store yet.
 
-    Raises CommandError when the store cannot be trusted.
+    Raises CommandError when the store cannot be trusted, or for shapes that cannot be.
     """
     folder = data_folder()
     if not folder.is_dir():
         return {}
-    from app.desk.tool_shapes import tool_shapes
+    from app.desk.tool_shapes import tool_shapes, wrong_shapes
     from core.store.store import Store, StoreError
 
     try:
         with Store.open(folder, read_only=True) as store:
-            return tool_shapes(store.shapes(), store.tools())
+            shapes, tools = store.shapes(), store.tools()
     except StoreError as error:
         raise CommandError(str(error)) from error
+    if wrong := wrong_shapes(shapes, tools):
+        way = "mend it on the page of its shape (F8), or with 'turndesk offsets set'"
+        raise CommandError(f"a tool shape of the store cannot be: {'; '.join(wrong)}; {way}")
+    return tool_shapes(shapes, tools)
 
 
 def offsets_of(store: Store) -> Offsets:

@@ -34,8 +34,24 @@ def shape_of(row: ShapeRow, tool: ToolRow | None) -> ToolShape:
 
 
 def tool_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -> dict[int, ToolShape]:
-    """All shapes by tool."""
-    return {number: shape_of(row, tools.get(number)) for number, row in shapes.items()}
+    """The shapes by tool, without those that cannot be: nothing can be drawn of them."""
+    return {
+        number: shape_of(row, tools.get(number))
+        for number, row in shapes.items()
+        if not row_mistakes(row, tools.get(number))
+    }
+
+
+def wrong_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -> tuple[str, ...]:
+    """A sentence for everything in the shapes that cannot be.
+
+    Each field was sound when it was entered; it is another that has changed since, or the tool's offset.
+    """
+    return tuple(
+        f"T{number} {wrong.field}: {wrong.text}"
+        for number, row in shapes.items()
+        for wrong in row_mistakes(row, tools.get(number))
+    )
 
 
 def row_mistakes(row: ShapeRow, tool: ToolRow | None) -> tuple[ShapeMistake, ...]:

@@ -96,6 +96,12 @@ class ToolShape:
         return self.kind is ToolKind.BORING or on_a_bar
 
     @property
+    def behind(self) -> bool:
+        """Whether it works at X negative: it says so, or its tip lies where only a tool behind has it."""
+        across = TIP_DIRECTIONS[self.tip][1]
+        return self.rear or (across != 0 and (across > 0) is not self.internal)
+
+    @property
     def direction(self) -> tuple[int, int]:
         """Where the tip points, (z, x): by the quadrant, and without one by kind, hand and side."""
         if self.turns_itself and self.tip in {0, 9}:

@@ -184,7 +184,7 @@ class Tools:
             return None  # a live tool across the spindle turns nothing
         lines = outline(shape)
         body = lines.body if self.described(number) else ()
-        return Cutter(lines.cutting, body, _side(shape), rear=shape.rear)
+        return Cutter(lines.cutting, body, _side(shape), rear=shape.behind)
 
     @property
     def back(self) -> float:
@@ -210,7 +210,7 @@ def _side(shape: ToolShape) -> Side:
         return Side.BORE
     if shape.direction == (-1, 0) and shape.kind is not ToolKind.TURNING:
         return Side.FACE
-    across = shape.direction[1] * (-1 if shape.rear else 1)
+    across = shape.direction[1] * (-1 if shape.behind else 1)
     return Side.BORE if across > 0 else Side.OUTSIDE
 
 

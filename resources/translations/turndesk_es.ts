@@ -299,6 +299,16 @@
       <translation>LAS COMPENSACIONES VIENEN DE UN ARCHIVO (--offsets) Y SON DE SÓLO LECTURA: CAMBIE EL ARCHIVO, O ARRANQUE SIN ÉL</translation>
     </message>
     <message>
+      <location filename="app/compose/stored_offsets.py" />
+      <source>a tool shape of the store cannot be: %1; %2</source>
+      <translation>una forma de herramienta del almacén no puede ser: %1; %2</translation>
+    </message>
+    <message>
+      <location filename="app/compose/stored_offsets.py" />
+      <source>mend it on the page of its shape (F8), or with 'turndesk offsets set'</source>
+      <translation>corríjala en la página de su forma (F8), o con 'turndesk offsets set'</translation>
+    </message>
+    <message>
       <location filename="app/desk/arithmetic.py" />
       <source>%1 at character %2 of %3; expected %4</source>
       <translation>%1 en el carácter %2 de %3; se esperaba %4</translation>
@@ -12475,6 +12485,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Another tool of the gang plate runs into the stock.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Change M03 and M04, or the hand that the tool's shape says.</source>
       <translation type="unfinished" />
     </message>
@@ -12545,6 +12560,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Take another way there, a shorter tool, or another place on the plate.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>The edge meets more than .001 in of metal in r and in Z.</source>
       <translation type="unfinished" />
     </message>
@@ -12594,6 +12614,11 @@
       <translation type="unfinished" />
     </message>
     <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>With [tooling] kind = "gang": its outline, placed by its tool offset, overlaps metal.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
       <location filename="core/proving/part_findings.py" />
       <source>%1 deep at Z %2 … %3</source>
       <translation type="unfinished" />
@@ -12616,6 +12641,11 @@
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>A rapid of a live tool goes into metal at %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>T%1 beside T%2 on the plate runs into the stock.</source>
       <translation type="unfinished" />
     </message>
     <message>

@@ -249,3 +249,19 @@ def test_contradiction_with_the_offset_of_the_tool_is_refused(capsys: Captured) 
     assert offsets("set", "T5", "x=1", "z=1", "quadrant=3") == 0
     assert "tip 3 is no end of a round tool" in refused(capsys, "set", "T5", "kind=drill")
     assert offsets("set", "T5", "kind=drill", "quadrant=7") == 0
+
+
+def test_shape_that_has_become_wrong_is_told_before_it_is_proved(capsys: Captured, tmp_path: Path) -> None:
+    """Its insert meant nothing while it grooved; the proof says which tool it is, and how to mend it."""
+    program = tmp_path / "p.nc"
+    program.write_text("G90G94F300G72\nT3\nX1Z.1\nM30\n", encoding="utf-8")
+    assert offsets("set", "T3", "kind=grooving", "insert=MGMN300", "x=1", "z=2") == 0
+    with Store.open(tmp_path / "home") as store:
+        store.set_offset(Kind.SHAPE, 3, "on the page", {"kind": "turning"}).result()
+    capsys.readouterr()
+    assert main(["prove", str(program), "--stock", "bar:1"]) == 2
+    told = capsys.readouterr().err
+    assert "T3 insert: MGMN300: character" in told
+    assert "mend it on the page of its shape (F8)" in told
+    assert offsets("set", "T3", "kind=none") == 0
+    assert main(["prove", str(program), "--stock", "bar:1"]) != 2

@@ -135,3 +135,23 @@ def test_boring_bars_by_code() -> None:
 )
 def test_other_texts_are_names(text: str) -> None:
     assert holder_of(text) is None
+
+
+@pytest.mark.parametrize(
+    ("kind", "tip", "rear", "behind"),
+    [
+        (ToolKind.TURNING, 3, False, False),
+        (ToolKind.TURNING, 2, False, True),
+        (ToolKind.TURNING, 0, True, True),
+        (ToolKind.PARTING, 6, False, True),
+        (ToolKind.BORING, 2, False, False),
+        (ToolKind.BORING, 3, False, True),
+        (ToolKind.DRILL, 7, False, False),
+        (ToolKind.END_MILL, 6, False, True),
+        (ToolKind.END_MILL, 8, False, False),
+    ],
+)
+def test_tool_behind_the_spindle_is_known_by_its_tip(
+    kind: ToolKind, tip: int, rear: bool, behind: bool
+) -> None:
+    assert ToolShape(kind, tip=tip, rear=rear).behind is behind

@@ -83,6 +83,7 @@ def test_cnmg_stands_at_95_degrees() -> None:
 @pytest.mark.parametrize(
     ("insert", "hand", "tip", "edges"),
     [
+        ("CNMG 120408", Hand.RIGHT, 3, (5, 85)),  # MCLN 95°
         ("DNMG 150608", Hand.RIGHT, 3, (32, 87)),  # DDJN 93°
         ("VNMG 160404", Hand.RIGHT, 3, (52, 87)),  # MVJN 93°
         ("VBMT 160404", Hand.NEUTRAL, 8, (72.5, 107.5)),  # SVVB 72.5°
@@ -294,3 +295,19 @@ def test_code_that_means_nothing_is_not_drawn() -> None:
 def test_outline_that_crosses_itself_is_not_drawn() -> None:
     with pytest.raises(ValueError, match="crosses itself"):
         outline(ToolShape(ToolKind.FORM, profile=((0.0, 0.0), (4.0, 4.0), (4.0, 0.0), (0.0, 5.0))))
+
+
+@pytest.mark.parametrize(
+    ("insert", "edges"),
+    [
+        ("CCMT 09T304", (-5, -85)),  # SCLC 95°
+        ("TCMT 110204", (-29, -89, -149)),  # STFC 91°
+        ("DCMT 070204", (-32, -87)),  # SDUC 93°
+    ],
+)
+def test_boring_inserts_stand_as_their_bars_hold_them(insert: str, edges: tuple[float, ...]) -> None:
+    (points,) = outline(ToolShape(ToolKind.BORING, tip=2, insert=insert, diameter=16.0)).cutting
+    sides = np.roll(points, -1, axis=0) - points
+    long = sides[np.hypot(*sides.T) > 3.0]
+    angles = sorted({round(float(a), 3) % 180 for a in np.degrees(np.arctan2(long[:, 1], long[:, 0]))})
+    assert angles == pytest.approx(sorted(angle % 180 for angle in edges), abs=0.01)
