@@ -132,6 +132,8 @@ class MilledPart:
         """
         met = NOTHING
         runs = list(self._runs(path, radius, height))
+        if not runs:
+            return met
         self._refine(runs, radius)
         for rise, r in _cone(radius, point):
             for run in runs:
@@ -194,12 +196,14 @@ class MilledPart:
                 yield run
                 run = []
             run.append(stroke)
-        yield run
+        if run:
+            yield run
 
     def _strokes(self, path: FloatArray, radius: float, height: float, outside: float) -> Iterator[Stroke]:
         path = _lines(path) * np.array([1.0, 1.0, math.pi / 180.0])
         spacing = math.sqrt(8.0 * radius * _SCALLOP)
-        for start, end in itertools.pairwise(path):
+        reach = np.array([self.field.edges[0] - radius, self.field.edges[-1] + radius])
+        for start, end in _inside(path, outside, reach):
             dr, dz, dc = (end - start).tolist()
             exact_turn = height == 0.0 and min(start[0], end[0]) >= 0.0
             if dc and (dz or not exact_turn):
@@ -287,6 +291,18 @@ def _cone(radius: float, point: float) -> Iterator[tuple[float, float]]:
     for k in range(count):
         yield point * k / count, radius * (k + 0.5) / count
     yield point, radius
+
+
+def _inside(path: FloatArray, outside: float, reach: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """The lines of a radial path as far as r is less than ``outside`` and Z within ``reach``."""
+    way = np.diff(path, axis=0)
+    first, last = np.zeros(len(way)), np.ones(len(way))
+    for axis, least, most in ((0, -math.inf, outside), (1, *reach.tolist())):
+        low, high = clipped(way[:, axis], least - path[:-1, axis], most - path[:-1, axis])
+        first, last = np.maximum(first, low), np.minimum(last, high)
+    for line in np.flatnonzero(first <= last).tolist():
+        start = path[line]
+        yield start + first[line] * way[line], start + last[line] * way[line]
 
 
 def _lifted(run: list[Stroke], rise: float) -> list[Stroke]:

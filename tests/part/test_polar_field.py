@@ -1,0 +1,147 @@
+"""The polar field: what becomes of a half section, how columns divide, and what is refused."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from core.part.polar_field import PolarField, in_order, turned_field
+
+ALL = slice(None)
+
+
+def ring(columns: int = 10, rays: int = 36, most: int = 40) -> PolarField:
+    """A tube of radii 2 and 5, 10 mm long."""
+    shape = (1, columns, rays)
+    return PolarField(np.linspace(-10.0, 0.0, columns + 1), np.full(shape, 2.0), np.full(shape, 5.0), most)
+
+
+def take(
+    field: PolarField, start: float, end: float, columns: slice | None = None, *, cut: bool = True
+) -> float:
+    there = columns or slice(0, len(field.middles))
+    return field.take(there, ALL, np.full((1, 1), start), np.full((1, 1), end), cut=cut).volume
+
+
+# --- from a half section
+
+
+@pytest.mark.parametrize("columns", [8, 100, 900])
+def test_cone_keeps_its_volume_in_few_columns(columns: int) -> None:
+    edges = np.linspace(-30.0, 0.0, 30_001)
+    high = -0.4 * 0.5 * (edges[1:] + edges[:-1])
+    field = turned_field(edges, np.zeros((1, 30_000)), high[None], columns)
+    assert len(field.middles) <= columns
+    assert field.volume == pytest.approx(math.pi * 144.0 * 30.0 / 3.0, rel=1e-6)
+
+
+def test_shoulder_stands_where_it_was_turned() -> None:
+    edges = np.linspace(-20.0, 0.0, 2001)
+    high = np.where(0.5 * (edges[1:] + edges[:-1]) > -7.33, 4.0, 9.0)
+    field = turned_field(edges, np.zeros((1, 2000)), high[None], 12)
+    assert np.min(np.abs(field.edges + 7.33)) < 1e-9
+    assert set(np.round(field.high[0, :, 0], 9)) == {4.0, 9.0}
+
+
+def test_air_at_both_ends_has_no_columns() -> None:
+    edges = np.linspace(-20.0, 5.0, 2501)
+    z = 0.5 * (edges[1:] + edges[:-1])
+    high = np.where((z < 0.0) & (z > -15.0), 6.0, 0.0)
+    field = turned_field(edges, np.zeros((1, 2500)), high[None])
+    assert (field.edges[0], field.edges[-1]) == pytest.approx((-15.0, 0.0))
+
+
+def test_layers_come_in_any_order_and_leave_in_that_of_r() -> None:
+    low = np.array([[7.0, 0.0], [1.0, 3.0]])
+    high = np.array([[9.0, 0.0], [2.0, 4.0]])
+    low, high = in_order(low, high)
+    assert low.tolist() == [[1.0, 3.0], [7.0, 0.0]]
+    assert high.tolist() == [[2.0, 4.0], [9.0, 0.0]]
+
+
+# --- cuts
+
+
+def test_ring_taken_from_the_middle_leaves_two() -> None:
+    field = ring()
+    whole = field.volume
+    assert take(field, 3.0, 4.0) == pytest.approx(math.pi * 7.0 * 10.0)
+    assert field.volume == pytest.approx(whole - math.pi * 7.0 * 10.0)
+    assert field.low[:, 0, 0].tolist() == [2.0, 4.0]
+    assert field.high[:, 0, 0].tolist() == [3.0, 5.0]
+
+
+def test_looking_takes_nothing() -> None:
+    field = ring()
+    assert take(field, 3.0, 4.0, cut=False) == pytest.approx(math.pi * 7.0 * 10.0)
+    assert field.changes == 0
+    assert field.volume == pytest.approx(math.pi * 21.0 * 10.0)
+
+
+@pytest.mark.parametrize(("start", "end"), [(0.0, 2.0), (5.0, 9.0), (4.0, 3.0), (math.inf, math.inf)])
+def test_cut_beside_the_metal_or_turned_about_takes_nothing(start: float, end: float) -> None:
+    field = ring()
+    assert take(field, start, end) == 0.0
+    assert field.changes == 0
+
+
+def test_cut_tells_where_it_was_and_how_deep() -> None:
+    field = ring()
+    told = field.take(slice(3, 6), ALL, np.full((3, 1), 4.5), np.full((3, 1), math.inf))
+    assert (told.back, told.front, told.depth) == pytest.approx((-7.0, -4.0, 0.5))
+
+
+def test_copy_does_not_feel_what_is_cut_afterwards() -> None:
+    field = ring()
+    copy = field.copied()
+    take(field, 0.0, 9.0)
+    assert field.volume == 0.0
+    assert copy.volume == pytest.approx(math.pi * 21.0 * 10.0)
+
+
+# --- columns that divide
+
+
+def test_dividing_moves_no_metal() -> None:
+    field = ring()
+    take(field, 4.0, 9.0, slice(2, 5))
+    before = field.volume
+    field.divide(np.array([-9.3, -6.5, -6.45]))
+    assert len(field.middles) == 13
+    assert field.volume == pytest.approx(before)
+
+
+@pytest.mark.parametrize("place", [-10.0, 0.0, 3.0, -4.0, -4.001, -math.inf])
+def test_no_column_divides_at_its_edge_or_beside_the_part(place: float) -> None:
+    field = ring()
+    field.divide(np.array([place]))
+    assert len(field.middles) == 10
+
+
+def test_field_has_no_more_columns_than_it_may() -> None:
+    field = ring(most=15)
+    field.divide(np.linspace(-9.9, -0.1, 500))
+    assert len(field.middles) == 15
+    field.divide(np.array([-3.21]))
+    assert len(field.middles) == 15
+
+
+# --- what is refused
+
+
+def test_section_without_metal_is_refused() -> None:
+    with pytest.raises(ValueError, match="no metal"):
+        turned_field(np.linspace(0.0, 1.0, 11), np.ones((1, 10)), np.ones((1, 10)))
+
+
+@pytest.mark.parametrize("edges", [[0.0, 1.0], [0.0, 1.0, 2.0, 3.0], [0.0, 2.0, 1.0], [0.0, 0.0, 1.0]])
+def test_edges_that_do_not_fit_or_do_not_rise_are_refused(edges: list[float]) -> None:
+    with pytest.raises(ValueError, match="edges"):
+        PolarField(np.array(edges), np.zeros((1, 2, 8)), np.ones((1, 2, 8)))
+
+
+def test_layers_that_differ_are_refused() -> None:
+    with pytest.raises(ValueError, match="column of rays"):
+        PolarField(np.array([0.0, 1.0]), np.zeros((1, 1, 8)), np.ones((2, 1, 8)))
