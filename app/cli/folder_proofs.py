@@ -9,6 +9,7 @@ import sys
 from collections.abc import Iterator
 from concurrent.futures import CancelledError, Executor, Future
 from dataclasses import dataclass
+from pathlib import Path
 
 from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 from app.cli.program_files import ProgramFiles, program_files
@@ -18,6 +19,7 @@ from app.cli.proof_cache import ProofCache
 from app.cli.proof_pool import KILLED, Proving, Workers, WorkerSource, cores
 from app.cli.proof_table import table
 from app.cli.proof_work import OtherVersionError, Proof, ProofJob, code_version, proof_of
+from app.cli.report_file import ReportFile, report_file
 from core.language.source import Source
 
 
@@ -25,8 +27,9 @@ def prove_many(args: argparse.Namespace, job: ProofJob) -> int:
     """Prove all programs; 1 when any has errors, 2 when one cannot be read."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     files = program_files(args.files)
-    run = _Run(args, job, files, _workers(args))
-    run.prove()
+    with report_file(args.report) as report:
+        run = _Run(args, job, files, _workers(args), report)
+        run.prove()
     return run.told()
 
 
@@ -51,11 +54,13 @@ class _Run:
     """One call: what is proved, and what has been told of it."""
 
     def __init__(
-        self, args: argparse.Namespace, job: ProofJob, files: ProgramFiles, workers: WorkerSource
-    ) -> None:
+        self, args: argparse.Namespace, job: ProofJob, files: ProgramFiles, workers: WorkerSource,
+        report: ReportFile | None,
+    ) -> None:  # fmt: skip
         from app.desk.data_folder import data_folder
 
         self._args, self._job, self._files, self._workers = args, job, files, workers
+        self._report = report
         self._version = code_version() if args.scheduler is not None else ""  # our own workers have ours
         self._cache = None if args.no_cache else ProofCache(data_folder() / "proofs", job)
         self._proofs: dict[int, Proof] = {}
@@ -98,7 +103,7 @@ class _Run:
             try:
                 source = read_source(path, self._args)
             except CommandError as error:
-                self._add(index, Proof({}, str(error)))
+                self._add(index, Proof({}, fault=str(error)))
                 continue
             key = self._cache.key(source) if self._cache is not None else ""
             found = self._cache.find(key) if self._cache is not None else None
@@ -109,7 +114,7 @@ class _Run:
 
     def _kept(self, unit: _Unit, made: Proof | BaseException) -> Proof:
         if isinstance(made, BaseException):
-            return Proof({}, f"{self._files.paths[unit.index]}: {self._why(made)}")
+            return Proof({}, fault=f"{self._files.paths[unit.index]}: {self._why(made)}")
         if self._cache is not None:
             self._cache.keep(unit.key, made)
         return made
@@ -133,17 +138,19 @@ class _Run:
             proof.report["file"] = str(self._files.paths[index])
         self._proofs[index] = proof
         while self._told in self._proofs:
-            self._tell(self._proofs[self._told])
+            self._tell(self._files.paths[self._told], self._proofs[self._told])
             self._told += 1
         self._progress.reach(len(self._proofs))
 
-    def _tell(self, proof: Proof) -> None:
+    def _tell(self, path: Path, proof: Proof) -> None:
         """In the order of names, as soon as all before it are there."""
         if proof.fault:
             sys.stderr.write(f"turndesk: {proof.fault}\n")
         elif self._args.json:
             sys.stdout.write(json.dumps(proof.report) + "\n")
             sys.stdout.flush()
+        if self._report is not None:
+            self._report.add(path, proof)
 
 
 def _status(proof: Proof) -> int:

@@ -50,7 +50,7 @@ class ProofCache:
         try:
             kept = json.loads(zlib.decompress(path.read_bytes()))
             os.utime(path)  # the oldest that nobody asks for go first
-            return Proof(kept["report"])
+            return Proof(kept["report"], kept["section"])
         except (OSError, zlib.error, ValueError, KeyError, TypeError):
             return None
 
@@ -59,10 +59,11 @@ class ProofCache:
         if self._full:
             return
         path = self._path(key)
+        kept = {"report": proof.report, "section": proof.section}
         aside = path.with_name(f"{path.name}.{os.getpid()}{_ASIDE}")
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            aside.write_bytes(zlib.compress(json.dumps({"report": proof.report}).encode()))
+            aside.write_bytes(zlib.compress(json.dumps(kept).encode()))
             aside.replace(path)
         except OSError as error:
             self._full = True

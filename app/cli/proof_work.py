@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import pickle
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from app.cli.figures import Json
     from core.interpreter.job_setup import Setup
     from core.language.source import Source
     from core.machine.machine_model import Machine
-    from core.proving.part_proof import PartSetting
+    from core.proving.part_proof import PartReport, PartSetting
+    from core.proving.proof_report import Report
 
 _ROOT = Path(__file__).parents[2]
-_ROOMS = ("app/cli", "app/compose", "core")  # what a proof is made by
+_ROOMS = ("app/cli", "app/compose", "app/report", "core")  # what a proof is made by
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,7 @@ class ProofJob:
     setting: PartSetting
     ideal: bool = False
     optional_stop: bool = False
+    reported: bool = False  # a section of a report is wanted too
 
     @cached_property
     def packed(self) -> bytes:
@@ -42,10 +44,12 @@ class ProofJob:
 class Proof:
     """What proving has found: the object of ``--json``, empty where ``fault`` says why there is none.
 
-    ``seconds`` is how long it took, 0 where it was kept from another time.
+    ``section`` is the program's part of a report, where one is wanted. ``seconds`` is how long it took, 0
+    where it was kept from another time.
     """
 
     report: Json
+    section: str = ""
     fault: str = ""
     seconds: float = 0.0
 
@@ -76,10 +80,34 @@ def proof_of(packed: bytes, version: str, source: Source) -> Proof:
 def proved(job: ProofJob, source: Source) -> Proof:
     """Prove one program here."""
     from app.cli.proof_json import report_json
+
+    found = findings(job, source)
+    json = report_json(source.name, found.report, found.part, optional_stop=job.optional_stop)
+    return Proof(json, found.section)
+
+
+class Findings(NamedTuple):
+    """What one pass through a program has found, and its section of a report (empty where none is wanted)."""
+
+    report: Report
+    part: PartReport | None
+    section: str = ""
+
+
+def findings(job: ProofJob, source: Source, progress: Callable[[float], None] | None = None) -> Findings:
+    """Prove one program, and report on it."""
     from core.proving.part_proof import prove_with_part
 
-    report, part = prove_with_part(source, job.setup, job.machine, job.setting, ideal=job.ideal)
-    return Proof(report_json(source.name, report, part, optional_stop=job.optional_stop))
+    around, setting = (job.setup, job.machine), job.setting
+    if not job.reported:
+        return Findings(*prove_with_part(source, *around, setting, progress, ideal=job.ideal))
+    from app.report.report_page import ProgramReport
+    from app.report.run_record import RunRecord
+
+    record = RunRecord(setting)
+    report, part = prove_with_part(source, *around, setting, progress, ideal=job.ideal, seen=record.see)
+    section = ProgramReport(source, report, part, record, job.machine, job.setup)
+    return Findings(report, part, section.html())
 
 
 @lru_cache(maxsize=4)

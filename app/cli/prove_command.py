@@ -23,7 +23,9 @@ MOST_JOBS = 256
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.cli.proof_work import ProofJob
+    from app.cli.proof_work import Findings, ProofJob
+    from app.cli.report_file import ReportFile
+    from core.language.source import Source
     from core.proving.part_proof import PartReport
     from core.proving.proof_report import Report
 
@@ -41,6 +43,9 @@ def add_parser(subparsers: SubParsers) -> None:
         "--stick-out", type=float, metavar="IN", help="from the front of chuck or collet to Z0, inches"
     )
     parser.add_argument("--stock", metavar="SPEC", help=f"what the part is made of: {FORMS}")
+    parser.add_argument(
+        "--report", metavar="FILE", help="HTML file with drawings, findings, tools, times, stops and offsets"
+    )
     add_folder_options(parser)
 
 
@@ -68,7 +73,10 @@ def run(args: argparse.Namespace) -> int:
         from app.cli.folder_proofs import prove_many
 
         return prove_many(args, job)
-    return max(_status(Path(name), job, args) for name in args.files)
+    from app.cli.report_file import report_file
+
+    with report_file(args.report) as report:
+        return max(_status(Path(name), job, args, report) for name in args.files)
 
 
 def _for_workers(args: argparse.Namespace) -> bool:
@@ -89,35 +97,42 @@ def _job(args: argparse.Namespace) -> ProofJob:
 
     around = circumstances(args)
     setting = part_setting(args, around)
-    return ProofJob(around.machine, around.setup, setting, args.ideal, args.optional_stop)
+    reported = args.report is not None
+    return ProofJob(around.machine, around.setup, setting, args.ideal, args.optional_stop, reported)
 
 
-def _status(path: Path, job: ProofJob, args: argparse.Namespace) -> int:
+def _status(path: Path, job: ProofJob, args: argparse.Namespace, report: ReportFile | None) -> int:
     """Prove one file; one that cannot be read does not keep the others from their proof."""
+    from app.cli.proof_work import Proof
+
     try:
-        return EXIT_ERRORS if _prove(path, job, args).errors else EXIT_OK
+        source = read_source(path, args)
     except CommandError as error:
         sys.stderr.write(f"turndesk: {error}\n")
+        if report is not None:
+            report.add(path, Proof({}, fault=str(error)))
         return EXIT_USAGE
+    found = _prove(path, source, job, args)
+    if report is not None:
+        report.add(path, Proof({}, found.section))
+    return EXIT_ERRORS if found.report.errors else EXIT_OK
 
 
-def _prove(path: Path, job: ProofJob, args: argparse.Namespace) -> Report:
+def _prove(path: Path, source: Source, job: ProofJob, args: argparse.Namespace) -> Findings:
     from app.cli.proof_json import report_json, stops_of
-    from core.proving.part_proof import prove_with_part
+    from app.cli.proof_work import findings
 
-    source = read_source(path, args)
     with Progress(f"proving {path.name}") as progress:
-        report, part = prove_with_part(
-            source, job.setup, job.machine, job.setting, progress.reach, ideal=job.ideal
-        )
+        found = findings(job, source, progress.reach)
+    report, part, _ = found
     if args.json:
-        found = report_json(str(path), report, part, optional_stop=args.optional_stop)
-        sys.stdout.write(json.dumps(found) + "\n")
+        told = report_json(str(path), report, part, optional_stop=args.optional_stop)
+        sys.stdout.write(json.dumps(told) + "\n")
     else:
         sys.stdout.write(_sheet(path, report, part))
         stops = stops_of(report, optional_stop=args.optional_stop)
         sys.stdout.write(f"  stops {stops} times for the operator\n" if stops else "")
-    return report
+    return found
 
 
 def _reached(report: Report, length: Callable[[float], float], unit: str) -> str:

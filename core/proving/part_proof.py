@@ -5,7 +5,7 @@ All moves are gathered first, because stock and tools that nobody has described 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from core.interpreter.actions import Collet, ToolChange
@@ -103,16 +103,30 @@ class PartProof:
 
     def report(self) -> PartReport:
         """The part, when the whole program has been seen."""
+        making, steps = self._begun()
+        for step in steps:
+            making.see(step)
+        return making.report()
+
+    def metal_at(self, blocks: Collection[int]) -> dict[int, Piece]:
+        """What was held before each of these elementary blocks, by number; live tools are left out."""
+        making, steps = self._begun()
+        held: dict[int, Piece] = {}
+        for step in steps:
+            if isinstance(step, TipMove) and step.n in blocks and making.part is not None:
+                held.setdefault(step.n, making.part.rest())
+            making.see(step)
+        return held
+
+    def _begun(self) -> tuple[Making, list[Step]]:
+        """The stock in the chuck, and the steps to come."""
         reading = Steps()
         steps = [step for part in self._parts for step in reading.of(part)]
         tools = Tools(steps, self._setting)
         stock = self._setting.stock or tools.assumed_stock()
         if isinstance(stock, StockSpec):
             stock = stock.stock(tools.back)
-        making = Making(tools, stock, self._setting)
-        for step in steps:
-            making.see(step)
-        return making.report()
+        return Making(tools, stock, self._setting), steps
 
 
 class Tools:

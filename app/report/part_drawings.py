@@ -1,0 +1,136 @@
+"""The drawings of a report: the part before and after in section, the path, a finding's place, a tool."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from app.report.svg_drawing import Drawing, Point, window
+from core.interpreter.elementary_blocks import Kind
+from core.part.clamping import Clamping
+from core.part.insert_codes import InsertCodeError
+from core.part.stock import Stock
+from core.part.tool_outline import ToolOutline, outline
+from core.part.tool_shape import ToolShape
+from core.part.turned_part import Piece
+from core.proving.tip_moves import TipMove
+
+_WIDE, _HIGH = 900.0, 420.0  # pixels
+_PLACE = 340.0
+_TOOL = 110.0
+_AROUND = 12.0  # mm of metal around a finding, at most
+_BEFORE_PART = 6.0  # mm of path in front of and around the stock that is drawn
+
+
+def section(stock: Stock, after: Piece | None, clamping: Clamping | None) -> str:
+    """The stock and what is left of it, cut open along the axis."""
+    drawing = _framed(stock, clamping)
+    _chuck(drawing, clamping)
+    _metal(drawing, stock.outside, stock.bore or None, "stock")
+    if after is not None:
+        _metal(drawing, after.outside, after.bore, "part")
+    drawing.axis()
+    return drawing.svg("Section: stock and finished part")
+
+
+def path(stock: Stock, after: Piece | None, clamping: Clamping | None, moves: Sequence[TipMove]) -> str:
+    """The way of the tools' tips: cuts full, rapids dashed."""
+    drawing = _framed(stock, clamping)
+    _chuck(drawing, clamping)
+    if after is not None:
+        _metal(drawing, after.outside, after.bore, "faint")
+    drawing.axis()
+    for points, look in _ways(moves):
+        drawing.polyline(points, look)
+    return drawing.svg("Path of the tools")
+
+
+def place(move: TipMove, metal: Piece, tool: ToolShape | None, clamping: Clamping | None) -> str:
+    """Where a finding is: the metal before the move, the move, and the tool at its end."""
+    near = _bounded(move.points, metal.outside)
+    drawing = Drawing(*window(near, 3.0, 8.0), width=_PLACE, highest=_PLACE)
+    _chuck(drawing, clamping)
+    _metal(drawing, metal.outside, metal.bore, "part")
+    drawing.axis()
+    lines = _outline(tool)
+    z, r = move.points[-1]
+    if lines is not None:
+        for look, polygons in (("holder", lines.body), ("insert", lines.cutting)):
+            for polygon in polygons:
+                drawing.polygon([(z + dz, r + dr) for dz, dr in polygon.tolist()], look)
+    drawing.polyline(move.points, "wrong")
+    drawing.dot(move.points[-1], "wrong-end")
+    return drawing.svg("Place of the finding")
+
+
+def tool_picture(shape: ToolShape | None) -> str:
+    """A tool's outline about its control point; empty where nothing is known of it."""
+    lines = _outline(shape)
+    if lines is None or not lines.cutting:
+        return ""
+    edge = [(z, r) for polygon in lines.cutting for z, r in polygon.tolist()]
+    size = max(max(p[k] for p in edge) - min(p[k] for p in edge) for k in (0, 1))
+    drawing = Drawing(*window([*edge, (0.0, 0.0)], 0.35 * size, 2.0), width=_TOOL, highest=_TOOL)
+    for look, polygons in (("holder", lines.body), ("insert", lines.cutting)):
+        for polygon in polygons:
+            drawing.polygon([(z, r) for z, r in polygon.tolist()], look)
+    drawing.dot((0.0, 0.0), "control")
+    return drawing.svg("Outline of the tool")
+
+
+def _outline(shape: ToolShape | None) -> ToolOutline | None:
+    try:
+        return outline(shape) if shape is not None else None
+    except InsertCodeError:
+        return None
+
+
+def _framed(stock: Stock, clamping: Clamping | None) -> Drawing:
+    around = [(stock.back, -stock.radius), (stock.front, stock.radius)]
+    if clamping is not None and clamping.diameter:
+        reach = max(clamping.diameter, clamping.jaw_diameter) / 2
+        around += [(-clamping.stick_out - 5.0, -min(reach, 2 * stock.radius))]
+        around += [(-clamping.stick_out, min(reach, 2 * stock.radius))]
+    return Drawing(*window(around, _BEFORE_PART), width=_WIDE, highest=_HIGH)
+
+
+def _chuck(drawing: Drawing, clamping: Clamping | None) -> None:
+    if clamping is None or not clamping.diameter:
+        return
+    upper = [*clamping.outline, (clamping.outline[-1][0], 0.0), (clamping.outline[0][0], 0.0)]
+    drawing.polygon(upper, "chuck")
+    drawing.polygon([(z, -r) for z, r in upper], "chuck")
+
+
+def _metal(drawing: Drawing, outside: Sequence[Point], bore: Sequence[Point] | None, look: str) -> None:
+    """Both halves of a section, with the edges that are seen between them."""
+    if not outside:
+        return
+    ends = (outside[-1][0], 0.0), (outside[0][0], 0.0)
+    inner = [*ends] if bore is None else list(reversed(bore))
+    half = [*outside, *inner]
+    drawing.polygon(half, look)
+    drawing.polygon([(z, -r) for z, r in half], look)
+
+
+def _ways(moves: Sequence[TipMove]) -> Iterator[tuple[list[Point], str]]:
+    """Moves that are drawn alike, in one line each; the way from where the slides stood is left out."""
+    points: list[Point] = []
+    look = ""
+    for move in moves[1:]:
+        now = "thread" if move.kind is Kind.THREAD else "rapid" if move.quick else "cut"
+        if now != look or (points and points[-1] != move.points[0]):
+            if points:
+                yield points, look
+            points, look = [move.points[0]], now
+        points.extend(move.points[1:])
+    if points:
+        yield points, look
+
+
+def _bounded(points: Sequence[Point], outside: Sequence[Point]) -> list[Point]:
+    """The part of a move that lies near the metal."""
+    if not outside:
+        return list(points[-1:])
+    back, front = outside[-1][0] - _AROUND, outside[0][0] + _AROUND
+    high = max(r for _, r in outside) + _AROUND
+    return [(min(max(z, back), front), min(max(r, -high), high)) for z, r in points]

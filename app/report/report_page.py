@@ -1,0 +1,262 @@
+"""The report of a proof as HTML: verdict, drawings, findings, tools, times, stops and offsets on one page.
+
+Everything that comes from a program or a file is escaped: a comment may hold HTML. Nothing is loaded from
+anywhere, and nothing runs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from hashlib import sha256
+from html import escape
+from typing import TYPE_CHECKING
+
+from app.report import part_drawings
+from app.report.page_style import STYLE
+from app.report.run_record import RunRecord
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.source import Dialect, Source
+from core.part.tool_shape import ToolShape
+
+if TYPE_CHECKING:
+    from core.interpreter.job_setup import Setup
+    from core.machine.machine_model import Machine
+    from core.proving.part_proof import PartReport
+    from core.proving.proof_report import Report
+
+_PICTURES = 30  # of findings; each of them stands where its line is told
+_MM_PER_INCH = 25.4
+_NOTHING_LOADED = "default-src 'none'; style-src 'unsafe-inline'"
+
+
+class ProgramReport:
+    """The section of one program."""
+
+    def __init__(
+        self, source: Source, report: Report, part: PartReport | None, record: RunRecord,
+        machine: Machine, setup: Setup,
+    ) -> None:  # fmt: skip
+        self._source, self._report, self._part, self._record = source, report, part, record
+        self._machine, self._setup = machine, setup
+        self._metric = report.metric or report.dialect is not Dialect.OMNITURN
+
+    def html(self) -> str:
+        """All of it, as it stands in the page."""
+        return "".join(
+            (
+                self._head(), self._drawings(), self._findings(), self._tools(), self._stops(),
+                self._offsets(),
+            )
+        )  # fmt: skip
+
+    # --- figures
+
+    def _length(self, mm: float) -> str:
+        return f"{mm:.3f} mm" if self._metric else f"{mm / _MM_PER_INCH:.4f} in"
+
+    def _volume(self, mm3: float) -> str:
+        return f"{mm3:.1f} mm³" if self._metric else f"{mm3 / _MM_PER_INCH**3:.4f} in³"
+
+    # --- what it has come to
+
+    def _head(self) -> str:
+        report, times = self._report, self._report.times
+        errors, warnings = len(report.errors), self._count(Severity.WARNING)
+        verdict = _many(errors, "error") + ": will not run" if errors else "Proved"
+        verdict += f", {_many(warnings, 'warning')}" if warnings else ""
+        rows = [
+            ("Machine", f"{self._machine.name} ({self._machine.source})"),
+            ("Program", f"{report.blocks} blocks, {report.elementary} elementary, {report.dialect}"),
+            ("Text (SHA-256)", sha256(self._source.text.encode("utf-8", "surrogatepass")).hexdigest()),
+            ("Cycle", f"{_clock(times.cycle)}: cutting {times.cutting:.1f} s, rapid {times.rapid:.1f} s, "
+             f"dwell {times.dwell:.1f} s, waiting {times.wait:.1f} s"),
+            *self._stock_rows(),
+        ]  # fmt: skip
+        look = "bad" if errors else "doubt" if warnings else "good"
+        return f'<p class="verdict {look}">{escape(verdict)}</p>{_pairs(rows)}'
+
+    def _count(self, severity: Severity) -> int:
+        return sum(each.severity is severity for each in self._report.diagnostics)
+
+    def _stock_rows(self) -> list[tuple[str, str]]:
+        part = self._part
+        if part is None or part.stock is None:
+            return []
+        stock = part.stock
+        name = stock.given or f"taken as a bar of Ø {self._length(2 * stock.radius)}, as nobody has said it"
+        rows = [
+            ("Stock", f"{name}; {self._volume(part.volume)}"),
+            ("Cut away", self._volume(part.removed)),
+        ]
+        if part.last is not None and part.last.outside:
+            outside = part.last.outside
+            size = self._length(2 * max(r for _, r in outside))
+            rows.append(("Part", f"Ø {size} × {self._length(outside[0][0] - outside[-1][0])}"))
+        if part.pieces:
+            rows.append(("Parted off", _many(len(part.pieces), "piece")))
+        return rows + [("Assumed", words) for words in part.assumed]
+
+    # --- drawings
+
+    def _drawings(self) -> str:
+        part, record = self._part, self._record
+        if part is None or part.stock is None:
+            return "<p>Nothing is turned here that a section would show.</p>"
+        clamping = record.setting.clamping
+        short = f"; the first {len(record.moves):,} moves" if record.cut_short else ""
+        milled = "; what live tools mill is not in it" if part.milled else ""
+        cut_open = _figure(
+            part_drawings.section(part.stock, part.last, clamping),
+            f"Section: stock light, finished part dark{milled}",
+        )
+        if not record.moves:
+            return cut_open
+        return cut_open + _figure(
+            part_drawings.path(part.stock, part.last, clamping, record.moves),
+            f"Path of the tools: cuts full, rapids dashed, threads thick{short}",
+        )
+
+    # --- findings
+
+    def _findings(self) -> str:
+        found = self._report.diagnostics
+        if not found:
+            return "<h3>Findings</h3><p>None.</p>"
+        places = self._places(found)
+        return "<h3>Findings</h3>" + "".join(self._finding(each, places.get(each.n, "")) for each in found)
+
+    def _finding(self, each: Diagnostic, picture: str) -> str:
+        lines = self._source.lines
+        text = lines[each.line - 1] if 0 < each.line <= len(lines) else ""
+        where = f"Line {each.line}" if each.line else "Program"
+        code = f"<pre>{escape(text)}</pre>" if text.strip() else ""
+        hint = f'<p class="hint">{escape(each.hint)}</p>' if each.hint else ""
+        return (
+            f'<div class="finding {each.severity}"><div><p><b>{where}</b> {each.severity} '
+            f"<code>{escape(each.code)}</code></p>{code}<p>{escape(each.text)}</p>{hint}</div>{picture}</div>"
+        )
+
+    def _places(self, found: Sequence[Diagnostic]) -> dict[int, str]:
+        """Pictures of the findings that the part has, by elementary block."""
+        wanted = list(dict.fromkeys(each.n for each in found if each.n))[:_PICTURES]
+        if self._part is None or not wanted:
+            return {}
+        held = self._record.metal_at(wanted)
+        moves = {move.n: move for move in self._record.moves if move.n in held}
+        shapes, clamping = self._part.shapes, self._record.setting.clamping
+        return {
+            n: part_drawings.place(move, held[n], shapes.get(move.modal.tool), clamping)
+            for n, move in moves.items()
+        }
+
+    # --- tables
+
+    def _tools(self) -> str:
+        shapes = self._part.shapes if self._part is not None else {}
+        numbers = sorted({*self._report.tools, *(n for n, time in self._record.times.items() if time.total)})
+        rows = [self._tool(n, shapes.get(n)) for n in numbers]
+        return "<h3>Tools, and their times</h3>" + _table(
+            ("Tool", "Outline", "Shape", "Cutting s", "Rapid s", "At rest s"), rows
+        )
+
+    def _tool(self, number: int, shape: ToolShape | None) -> tuple[str, ...]:
+        time = self._record.times.get(number)
+        seconds = (time.cutting, time.rapid, time.rest) if time is not None else (0.0, 0.0, 0.0)
+        name = f"T{number}" if number else "no tool"
+        said = "" if number in self._record.setting.shapes or shape is None else " (assumed)"
+        words = escape(self._shape(shape) + said)
+        return name, part_drawings.tool_picture(shape), words, *(f"{each:.1f}" for each in seconds)
+
+    def _shape(self, shape: ToolShape | None) -> str:
+        """A tool in words: what of it is stated."""
+        if shape is None:
+            return "not known"
+        sizes = (
+            ("Ø", shape.diameter), ("width", shape.width), ("nose radius", shape.nose_radius),
+            ("pitch", shape.pitch), ("cuts", shape.length), ("stick-out", shape.stick_out),
+        )  # fmt: skip
+        words = [str(shape.kind), shape.insert, shape.holder and f"in {shape.holder}"]
+        words += [f"{name} {self._length(mm)}" for name, mm in sizes if mm]
+        words += [f"point {shape.point:g}°"] if shape.point else []
+        words += [f"tip quadrant {shape.tip}"] if shape.tip else []
+        return ", ".join(filter(None, words))
+
+    def _stops(self) -> str:
+        rows = [
+            (f"M0{int(stop.optional)}", str(stop.line), _clock(stop.at), escape(stop.message))
+            for stop in self._record.stops
+        ]
+        head = ("Stop", "Line", "After", "What the operator reads")
+        return "<h3>Stops</h3>" + (_table(head, rows) if rows else "<p>None.</p>")
+
+    def _offsets(self) -> str:
+        setup, length = self._setup, self._length
+        rows = [
+            (f"T{n}", length(row.x), length(row.z), f"nose radius {length(row.nose_radius)}")
+            for n in self._report.tools
+            if (row := setup.tools.get(n)) is not None
+        ]
+        rows += [(f"T{n}", "not set", "not set", "taken as 0") for n in self._report.missing_tools]
+        rows += [
+            (f"D{n}", length(d.x), length(d.z), f"radius {length(d.r)}")
+            for n in sorted(self._record.secondary)
+            if (d := setup.secondary.get(n)) is not None
+        ]
+        rows += [
+            (f"G{n}", length(zero.x), length(zero.z), f"C {zero.c:g}°")
+            for n in sorted(self._record.settable)
+            if (zero := setup.zero.get(n)) is not None
+        ]
+        return "<h3>Offsets</h3>" + _table(("Offset", "X (radius)", "Z", ""), rows)
+
+
+# --- the page
+
+
+def page_head(title: str, made: str) -> str:
+    """What stands before the first program; ``made`` is the date."""
+    return (
+        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width">'
+        f'<meta http-equiv="Content-Security-Policy" content="{_NOTHING_LOADED}">'
+        f"<title>{escape(title)}</title><style>{STYLE}</style></head><body>"
+        f'<h1>{escape(title)}</h1><p class="made">{escape(made)}</p>\n'
+    )
+
+
+def program_part(name: str, section: str) -> str:
+    """One program under its name."""
+    return f"<section><h2>{escape(name)}</h2>{section}</section>\n"
+
+
+def not_proved(why: str) -> str:
+    """The section of a program that there is no proof of."""
+    return f'<p class="verdict bad">Not proved</p><p>{escape(why)}</p>'
+
+
+PAGE_END = "</body></html>\n"
+
+
+def _figure(drawing: str, caption: str) -> str:
+    return f"<figure>{drawing}<figcaption>{escape(caption)}</figcaption></figure>"
+
+
+def _pairs(rows: Iterable[tuple[str, str]]) -> str:
+    lines = "".join(f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows)
+    return f'<table class="facts">{lines}</table>'
+
+
+def _table(head: Iterable[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table; the cells are HTML already."""
+    top = "".join(f"<th>{escape(each)}</th>" for each in head)
+    lines = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
+    return f"<table><tr>{top}</tr>{lines}</table>"
+
+
+def _many(count: int, what: str) -> str:
+    return f"{count} {what}{'s' * (count != 1)}"
+
+
+def _clock(seconds: float) -> str:
+    minutes, rest = divmod(seconds, 60.0)
+    return f"{minutes:.0f} min {rest:04.1f} s" if minutes else f"{rest:.1f} s"

@@ -1,0 +1,109 @@
+"""What a report needs of the pass that proves a program: moves, times by tool, stops, metal."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, field
+
+from core.interpreter.actions import ProgramStop
+from core.interpreter.elementary_blocks import Block, TimedSeries
+from core.part.turned_part import Piece
+from core.proving.part_proof import PartProof, PartSetting
+from core.proving.program_timeline import MotionSpan, RestSpan
+from core.proving.tip_moves import Steps, TipMove
+
+MOST_MOVES = 20_000  # that are drawn
+_MOST_STOPS = 500
+
+
+@dataclass(slots=True)
+class ToolTime:
+    """Seconds that one tool is at work: cutting, in rapids, and at rest."""
+
+    cutting: float = 0.0
+    rapid: float = 0.0
+    rest: float = 0.0
+
+    @property
+    def total(self) -> float:
+        """All of it."""
+        return self.cutting + self.rapid + self.rest
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """An M00, or M01 where ``optional``: its line, when it comes, s, and what the operator reads."""
+
+    line: int
+    at: float
+    optional: bool
+    message: str
+
+
+@dataclass(slots=True)
+class RunRecord:
+    """Sees the spans of a pass in their order."""
+
+    setting: PartSetting
+    moves: list[TipMove] = field(default_factory=list)
+    times: dict[int, ToolTime] = field(default_factory=dict)
+    stops: list[Stop] = field(default_factory=list)
+    secondary: set[int] = field(default_factory=set)  # D numbers that are called
+    settable: set[int] = field(default_factory=set)  # zero offsets, 54 to 59
+    cut_short: bool = False  # there are more moves than are drawn
+    _steps: Steps = field(default_factory=Steps)
+    _part: PartProof = field(init=False)
+    _tool: int = 0
+
+    def __post_init__(self) -> None:
+        self._part = PartProof(self.setting)
+
+    def see(self, span: MotionSpan | RestSpan) -> None:
+        """The next span of the program."""
+        self._part.see(span)
+        for each in span.times_of_parts():
+            if isinstance(each, TimedSeries):
+                self._count(each.series.pattern, float((each.t1 - each.t0).sum()))
+            else:
+                block, t0, t1 = each
+                self._count(block, t1 - t0)
+                self._stop(block, t0)
+        if isinstance(span, MotionSpan):
+            self._draw(span)
+        elif span.block is not None:
+            list(self._steps.of([span.block]))
+        else:
+            self._time.rest += span.t1 - span.t0
+
+    @property
+    def _time(self) -> ToolTime:
+        return self.times.setdefault(self._tool, ToolTime())
+
+    def _count(self, block: Block, seconds: float) -> None:
+        modal = block.modal
+        self._tool = modal.tool
+        self.secondary |= {modal.secondary} - {0}
+        self.settable |= {modal.settable} - {0}
+        time = self._time
+        if not block.moves:
+            time.rest += seconds
+        elif block.rapid:
+            time.rapid += seconds
+        else:
+            time.cutting += seconds
+
+    def _stop(self, block: Block, at: float) -> None:
+        action = block.action
+        if isinstance(action, ProgramStop) and len(self.stops) < _MOST_STOPS:
+            self.stops.append(Stop(block.line, at, action.optional, action.message))
+
+    def _draw(self, span: MotionSpan) -> None:
+        for part in span.parts:
+            if len(self.moves) > MOST_MOVES:
+                self.cut_short = True
+                return
+            self.moves += [step for step in self._steps.of(part) if isinstance(step, TipMove)]
+
+    def metal_at(self, blocks: Collection[int]) -> dict[int, Piece]:
+        """What the chuck held before each of these elementary blocks, where a tool moved in X and Z."""
+        return self._part.metal_at(blocks)
