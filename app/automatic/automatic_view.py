@@ -10,8 +10,9 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
-from app.desk.prompt_line import MOVING, NONE_NAMED
+from app.desk.prompt_line import MOVING, NONE_NAMED, UNDER_WAY
 from app.path.measuring import measuring_words
+from app.path.part_player import player_of
 from app.path.path_aspects import tip_of
 from app.path.path_view import PathView
 from app.programs.file_prompt_view import FilePrompt
@@ -52,7 +53,7 @@ class AutomaticPage(Page):
         self._moving = False
         self.listing = Listing(look, self)
         self.comment = CommentLine(look, self)
-        self.path = PathView(look, self)
+        self.path = PathView(look, self, player=player_of(desk))
         self.space = WorkingPlaneView(look, self)  # takes the path's place where the machine is a mill
         self.files = FilePrompt(look, desk.program_folders, desk.choose, self._files_closed, self)
 
@@ -98,6 +99,8 @@ class AutomaticPage(Page):
         if self.files.isVisible() and snapshot.state in {State.RUN, State.WAIT}:
             self.files.dismiss()  # a cycle was started at the station: the keys belong to it
         self._moving = snapshot.state in MOVING
+        if self.path.player is not None:
+            self.path.player.bound = snapshot.state in UNDER_WAY
         self._show_program(loaded)
         self.comment.text = view.comment
         self.listing.show_run(view.line or snapshot.interrupted_line, view.block_text, view.next_text)
@@ -143,6 +146,7 @@ class AutomaticPage(Page):
             "Zoom out": partial(looked_at.zoom, -1),
             "Measure": self.path.measure,
             "View": looked_at.next_view,
+            **self._part_keys(),
             "Pan left": partial(looked_at.pan, -1, 0),
             "Pan right": partial(looked_at.pan, 1, 0),
             "Pan up": partial(looked_at.pan, 0, -1),
@@ -151,6 +155,24 @@ class AutomaticPage(Page):
             "Page down": lambda: self.listing.look_at(self.listing.rows),
             "Follow": self.listing.follow,
         }
+
+    def _part_keys(self) -> KeyActions:
+        """Keys of the time line; they mean something while the part is looked at."""
+        player = self.path.player
+        if player is None or not self.path.shows_part:
+            return {}
+        return {
+            "Play": player.play_or_pause,
+            "Play fast": player.faster,
+            "Step back": partial(player.step, -1),
+            "Step on": partial(player.step, 1),
+            "To line": self._part_to_line,
+        }
+
+    def _part_to_line(self) -> None:
+        """The part as the first line that the program window shows leaves it."""
+        if self.path.player is not None:
+            self.path.player.to_line(self.listing.top + 1)
 
     def _edit(self) -> None:
         """The program on the desk, or whatever name stands in the question for a file."""

@@ -17,7 +17,7 @@ from app.compose.journal import Journal
 from app.compose.machine_setup import read_machine
 from app.compose.shop_floor import keep_status, open_shop_floor
 from app.compose.special_functions import furnish
-from app.compose.stored_offsets import Offsets, book_of, stored_offsets
+from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_offsets
 from app.compose.workshop import drawer, give_mdi, give_searchto, samples, workshop
 from app.desk.alarm_log import KEPT, KINDS
 from app.desk.data_folder import data_folder
@@ -188,7 +188,7 @@ def _desk(
         post=guarded(executor.post, changed, partial(say, "refused")),
         snapshot=lambda: executor.snapshot,
         session=ProgramLoader(
-            workshop(machine, offsets, journal, left=left),
+            workshop(machine, offsets, journal, left=left, shapes=shapes_at_hand),
             executor.post,
         ),
         program_folders=ProgramFolders((data_folder() / "programs", samples())),
@@ -201,7 +201,7 @@ def _desk(
         book=book_of(offsets, journal),
     )
     desk.attach(Effect(drawer(machine)))
-    desk.attach(_editor(workshop(machine, offsets, left=left), journal))
+    desk.attach(_editor(workshop(machine, offsets, left=left, shapes=shapes_at_hand), journal))
     furnish(desk, machine, keep, workshop(machine, offsets, left=left))
     give_mdi(desk, machine, offsets, keep)
     give_searchto(desk, machine)

@@ -71,6 +71,14 @@ def stored_shapes() -> dict[int, ToolShape]:
     return tool_shapes(shapes, tools)
 
 
+def shapes_at_hand() -> dict[int, ToolShape]:
+    """The same for a picture: none where the store cannot be read, which is told elsewhere."""
+    try:
+        return stored_shapes()
+    except CommandError:
+        return {}
+
+
 def offsets_of(store: Store) -> Offsets:
     """What an open store holds, by value."""
     return _of_rows(store.tools(), store.secondary(), store.zero_offsets())

@@ -33,7 +33,13 @@ if TYPE_CHECKING:
     from app.offsets.offset_effect import Draw
     from app.path.path_picture import Picture, Timed
     from core.interpreter.restart.state_rebuild import StateRebuild
+    from core.part.tool_shape import ToolShape
+    from core.proving.part_proof import PartSetting
     from core.proving.program_timeline import MotionSpan, RestSpan
+
+
+Shapes = Callable[[], Mapping[int, "ToolShape"]]
+"""The shapes of tools, by T, as they are when it is called; on the worker."""
 
 
 def samples() -> Path:
@@ -47,10 +53,11 @@ def workshop(
     journal: Journal | None = None,
     *,
     left: Callable[[], Modal] | None = None,
+    shapes: Shapes = dict,
     pictures: bool = True,
 ) -> LoadingSteps:
-    """What loading needs; offsets, and unit and rapid rate that the job before has ``left``, are those of
-    the moment of loading. ``pictures``: what is proved will be drawn."""
+    """What loading needs; offsets, shapes of tools, and unit and rapid rate that the job before has ``left``,
+    are those of the moment of loading. ``pictures``: what is proved will be drawn."""
 
     def new_job(source: Source, block_delete: bool) -> Job:
         if journal is not None:
@@ -67,31 +74,38 @@ def workshop(
         setup = replace(job.setup, tools=tools, secondary=secondary, zero=zero)
         return replace(make_job(job.source, setup), reading=job.reading)
 
-    passes = _ProofAndPicture(machine, pictures=pictures)
+    passes = _ProofAndPicture(machine, shapes, pictures=pictures)
     return LoadingSteps(_read, new_job, passes.prove, passes.draw, renewed)
 
 
 class _ProofAndPicture:
     """One pass through a program proves it and draws it; the picture is kept until it is asked for."""
 
-    def __init__(self, machine: Machine, *, pictures: bool) -> None:
-        self._machine = machine
+    def __init__(self, machine: Machine, shapes: Shapes, *, pictures: bool) -> None:
+        self._machine, self._shapes = machine, shapes
         self._pictures = pictures
         self._drawn: tuple[Job, Picture] | None = None  # of the job that was proved last
 
     def prove(self, job: Job, watch: Watch) -> Proved:
         from app.path.path_picture import PictureBuilder
+        from core.proving.part_history import PartGathering
         from core.proving.prove_program import prove
 
         self._drawn, sketch = None, PictureBuilder()
+        gathered = None
+        if self._pictures and self._machine.kind == "lathe":
+            gathered = PartGathering(_part_setting(job, self._machine, self._shapes()))
 
         def seen(span: MotionSpan | RestSpan) -> None:
             for each in span.times_of_parts():
                 sketch.add_timed(each)
+            if gathered is not None:
+                gathered.see(span)
 
         report = prove(job.reading, job.setup, self._machine, watch, seen=seen if self._pictures else None)
         if self._pictures:
-            self._drawn = job, sketch.picture()
+            part = gathered.moves() if gathered is not None else None
+            self._drawn = job, replace(sketch.picture(), part=part)
         return Proved(proof_of(job, report), report.diagnostics)
 
     def draw(self, job: Job, watch: Watch) -> Picture:
@@ -102,6 +116,24 @@ class _ProofAndPicture:
         if drawn is not None and drawn[0] is job:
             return drawn[1]
         return picture_of(timed_series(Timeline.of(job.reading, job.setup, self._machine)), watch)
+
+
+def _part_setting(job: Job, machine: Machine, shapes: Mapping[int, ToolShape]) -> PartSetting:
+    """What is known of tools and of what holds the stock."""
+    from core.part.clamping import Clamping
+    from core.proving.part_proof import PartSetting
+
+    held, tools = machine.clamping, job.setup.tools
+    clamping = None
+    if held.stick_out and held.diameter:
+        jaws = held.jaw_diameter or held.diameter
+        clamping = Clamping(held.diameter, held.stick_out, held.jaws, jaws, held.max_rpm)
+    return PartSetting(
+        shapes=shapes,
+        nose_radii={number: tool.nose_radius for number, tool in tools.items()},
+        clamping=clamping,
+        gang={n: (tool.z, tool.x) for n, tool in tools.items()} if machine.tooling == "gang" else {},
+    )
 
 
 def _read(path: Path) -> Source:

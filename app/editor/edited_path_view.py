@@ -15,6 +15,7 @@ from app.path.path_view import PathView
 from app.screen.look import Look
 
 if TYPE_CHECKING:
+    from app.path.part_player import PartPlayer
     from app.path.path_pane_view import Pane, Place
     from app.path.path_picture import Picture
 
@@ -28,8 +29,10 @@ class EditedPath(PathView):
     title = "PATH TO THE CURSOR"
     keeps = True
 
-    def __init__(self, look: Look, go_to: Callable[[int], None], parent: QWidget) -> None:
-        super().__init__(look, parent, self._picked_block)
+    def __init__(
+        self, look: Look, go_to: Callable[[int], None], parent: QWidget, player: PartPlayer | None = None
+    ) -> None:
+        super().__init__(look, parent, self._picked_block, player)
         self._go_to = go_to
         self._followed: tuple[Picture | None, int] = (None, 0)
 

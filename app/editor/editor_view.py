@@ -29,6 +29,7 @@ from app.editor.text_view import TextField, TypedText
 from app.editor.versions import VersionHistory
 from app.editor.versions_view import VersionList
 from app.path.measuring import measuring_words
+from app.path.part_player import player_of
 from app.screen import page_table
 from app.screen.letter_keys import PROGRAMS, LetterPad, strike
 from app.screen.page_base import Host, KeyActions, Page
@@ -78,7 +79,7 @@ class EditorPage(Page):
         self.head = HeadLine(look, self.turn_letters, self)
         self.letters = LetterPad(look, self._strike, self, PROGRAMS)
         self.field = TextField(look, self)
-        self.path = EditedPath(look, self.go_to, self)
+        self.path = EditedPath(look, self.go_to, self, player_of(host.desk))
         self.space = WorkingPlaneView(look, self)  # takes the path's place where the program is for a mill
         self.findings = FindingList(look, self.go_to, self)
         self.history = VersionHistory(editor.archive, editor.worker)

@@ -14,11 +14,15 @@ if TYPE_CHECKING:
 
 
 class Aspect(Enum):
-    """From above (X+ down, Z+ right), onto the end of the part, onto its side unrolled (Z+ right, C+ up)."""
+    """From above (X+ down, Z+ right), onto the end of the part, onto its side unrolled (Z+ right, C+ up).
+
+    ``SECTION`` is the part itself, cut along its axis, as from above.
+    """
 
     PATH = "PATH"
     FACE = "FACE"
     SIDE = "SIDE"
+    SECTION = "SECTION"
 
 
 class Tip(NamedTuple):
@@ -56,16 +60,18 @@ def tip_of(snapshot: Snapshot, job: Job | None = None) -> Tip:
 
 def polyline_of(picture: Picture | None, aspect: Aspect) -> Polyline | None:
     """What is to be seen from there."""
-    if picture is None or aspect is Aspect.PATH:
+    if picture is None or aspect in {Aspect.PATH, Aspect.SECTION}:
         return picture
     return picture.face if aspect is Aspect.FACE else picture.side
 
 
-def views_of(picture: Picture) -> list[View]:
-    """What the view key goes through: the path with what is cut at C beside it, then each alone."""
+def views_of(picture: Picture, *, part: bool = False) -> list[View]:
+    """What the view key goes through: the path with what is cut at C beside it, then each alone; then the
+    ``part``, where there is one to be shown."""
     more = [aspect for aspect in (Aspect.FACE, Aspect.SIDE) if polyline_of(picture, aspect) is not None]
     both = [(Aspect.PATH, aspect) for aspect in more]
-    return [*both, *((aspect,) for aspect in more), (Aspect.PATH,)]
+    views = [*both, *((aspect,) for aspect in more), (Aspect.PATH,)]
+    return [*views, (Aspect.SECTION,)] if part and picture.part is not None else views
 
 
 # --- legs of an approach ------------------------------------------------------------------------------

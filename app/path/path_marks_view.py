@@ -20,6 +20,7 @@ from app.path.path_projection import Projection, scale_length
 from app.path.polyline import Polyline
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Press
+from core.language.diagnostics import Severity
 
 BUTTON = (6.6, 6.6, 7.0)  # units: width, height, from one to the next; a fingertip
 LOW = 5.0  # units: from one to the next at least
@@ -179,8 +180,25 @@ def apart_words(apart: Apart, in_mm: bool) -> str:
     )
 
 
+def part_words(pane: Pane) -> str:
+    """What is wrong by now, or else which tool cuts."""
+    player = getattr(pane, "player", None)
+    shown = player.shown if player is not None else None
+    if player is None or shown is None:
+        return player.trouble if player is not None and player.trouble else tr("PART  ·  BEING MADE")
+    wrong = [each for each in shown.instant.findings if each.severity is Severity.ERROR]
+    if wrong:
+        return tr("LINE {line}: {what}").format(line=wrong[-1].line, what=wrong[-1].message)
+    if shown.instant.stock is None:
+        return tr("PART  ·  NOTHING IS CUT")
+    tool = shown.instant.tool
+    return tr("PART  ·  T{tool}").format(tool=tool.number) if tool is not None else tr("PART  ·  THE STOCK")
+
+
 def pane_words(pane: Pane, in_mm: bool) -> str:
     """Which side of the part a pane shows."""
+    if pane.aspect is Aspect.SECTION:
+        return part_words(pane)
     if pane.aspect is Aspect.FACE:
         return tr("FACE  ·  SEEN FROM THE TAILSTOCK")
     diameter = formats.length(pane.polyline.round * 360.0 / math.pi, in_mm)
@@ -198,7 +216,7 @@ def draw_centre_lines(
 
     The painter's origin is the corner of the pane.
     """
-    if aspect is Aspect.PATH:
+    if aspect in {Aspect.PATH, Aspect.SECTION}:
         _cross(painter, look, projection)
     elif aspect is Aspect.FACE:
         _cross(painter, look, projection)

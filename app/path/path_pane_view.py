@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPainter, QPolygonF
@@ -190,7 +190,7 @@ class Pane:
 
     def place_of(self, tip: Tip) -> Place | None:
         """Where the machine's tip is seen here; a face keeps what it showed while C turns as the spindle."""
-        if self.aspect is Aspect.PATH:
+        if self.aspect in {Aspect.PATH, Aspect.SECTION}:
             return tip.z, tip.x
         if tip.c is None:
             return self._place
@@ -274,17 +274,18 @@ def _around(one: Bounds, other: Bounds) -> Bounds:
     return low[0], high[1], low[2], high[3]
 
 
+Make = Callable[[Aspect, Polyline, Polyline | None], Pane]
 LEAST = 40  # pixels: in less room nothing is laid out
 
 
 class Panes:
     """``picture`` and, where two are compared, what it was ``before``; one of several views onto them.
 
-    ``keeps``: what is looked at by hand stays when the picture changes.
+    ``keeps``: what is looked at by hand stays when the picture changes. ``make`` makes a pane.
     """
 
-    def __init__(self, look: Look, keeps: bool) -> None:
-        self._look, self._keeps = look, keeps
+    def __init__(self, keeps: bool, make: Make, *, with_part: bool = False) -> None:
+        self._keeps, self._make, self._with_part = keeps, make, with_part
         self.picture: Picture | None = None
         self.before: Picture | None = None
         self.now: list[Pane] = []
@@ -295,7 +296,8 @@ class Panes:
     def show(self, picture: Picture | None, before: Picture | None) -> None:
         """Other pictures; the same view where there still is one."""
         self.picture, self.before = picture, before
-        views = views_of(picture) if picture is not None else []
+        with_part = self._with_part and before is None
+        views = views_of(picture, part=with_part) if picture is not None else []
         if views != self._views:
             self._views, self._view = views, 0
         self._fill()
@@ -338,7 +340,7 @@ class Panes:
             assert polyline is not None
             pane = kept.get(aspect)
             if pane is None:
-                pane = Pane(self._look, aspect, polyline, before)
+                pane = self._make(aspect, polyline, before)
             else:
                 pane.take(polyline, before)
             panes.append(pane)

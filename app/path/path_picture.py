@@ -24,6 +24,7 @@ from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries
 
 if TYPE_CHECKING:
     from core.geometry.virtual_mill import PlaneMove, Spot
+    from core.proving.part_history import PartMoves
 
 WATCHED = 2000  # blocks between two looks at whether the work is still wanted
 
@@ -46,6 +47,7 @@ class Picture(Polyline):
     side: Polyline | None = None
     metric: bool = False
     scene: Scene | None = None  # of a mill
+    part: PartMoves | None = None  # what the part can be made of
 
     def block_of_line(self, line: int) -> int:
         """The block that ends the first pass through a source line, or through the nearest one before that

@@ -13,6 +13,7 @@ from PySide6.QtGui import QNativeGestureEvent, QTouchEvent
 from app.screen.look import Look
 
 if TYPE_CHECKING:
+    from app.path.part_bar_view import PartBar
     from app.path.path_pane_view import Pane
 
 STILL = 0.8  # units: a press that moves less is a touch, not a drag
@@ -21,15 +22,15 @@ NEAR = 8.0  # pixels: fingers that lie closer tell no spread
 
 @dataclass(slots=True, eq=False)
 class Pointer:
-    """Tells drags from touches. ``pressed`` says on which pane the pointer went down; None: on none."""
+    """Tells drags from touches. ``pressed`` says on which pane, or time line, it went down, if any."""
 
     look: Look
-    pressed: Callable[[QPointF], Pane | None]
+    pressed: Callable[[QPointF], Pane | PartBar | None]
     hovers: Callable[[QPointF], None]  # it moves over the view and is not held down
-    dragged: Callable[[Pane, QPointF], None]  # by so many pixels
-    touched: Callable[[Pane, QPointF], None]  # it came up where it went down
+    dragged: Callable[[Pane | PartBar, QPointF], None]  # by so many pixels
+    touched: Callable[[Pane | PartBar, QPointF], None]  # it came up where it went down
     magnify: Callable[[float, QPointF], None]  # by two fingers, about a point
-    _pane: Pane | None = None  # that was pressed
+    _pane: Pane | PartBar | None = None  # that was pressed
     _down: QPointF = field(default_factory=QPointF)
     _last: QPointF = field(default_factory=QPointF)
     _dragging: bool = False

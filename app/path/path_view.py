@@ -23,11 +23,15 @@ from app.screen.panel import Panel
 if TYPE_CHECKING:
     from app.path import path_marks_view as marks
     from app.path.measuring_view import Measure
+    from app.path.part_bar_view import PartBar
+    from app.path.part_player import PartPlayer
     from app.path.path_pane_view import Pane, Panes, Place
     from app.path.path_picture import Picture
     from app.path.path_projection import Projection
+    from app.path.polyline import Polyline
 
 COLUMN = 6.4  # units at the right of a view that are the buttons'
+BAR = 6.8  # units under the part that are the time line's
 Picked = Callable[[int], None]
 
 
@@ -41,9 +45,17 @@ class PathView(Panel):
     title = "PATH"
     keeps = False  # whether what is looked at by hand stays when the picture changes
 
-    def __init__(self, look: Look, parent: QWidget | None = None, picked: Picked | None = None) -> None:
+    def __init__(
+        self,
+        look: Look,
+        parent: QWidget | None = None,
+        picked: Picked | None = None,
+        player: PartPlayer | None = None,
+    ) -> None:
         super().__init__(look, parent)
         self._picked = picked
+        self.player = player  # of the part; without one it is not shown here
+        self._bar: PartBar | None = None  # the time line, once the part was shown
         self._set: Panes | None = None  # comes with the first picture, and what draws it with it
         self._tip: Tip | None = None  # not drawn before somebody tells it
         self.legs: tuple[DrawnLeg, ...] = ()  # of an approach
@@ -75,6 +87,11 @@ class PathView(Panel):
     def picture(self) -> Picture | None:
         """The picture that is shown; None while there is none."""
         return self._set.picture if self._set is not None else None
+
+    @property
+    def shows_part(self) -> bool:
+        """Whether the part is what is looked at."""
+        return any(pane.aspect is Aspect.SECTION for pane in self.panes)
 
     @property
     def drawn(self) -> bool:
@@ -128,17 +145,28 @@ class PathView(Panel):
         from app.path.path_pane_view import Panes
 
         if self._set is None:
-            self._set = Panes(self.look, self.keeps)
+            self._set = Panes(self.keeps, self._make, with_part=self.player is not None)
         if picture is self._set.picture and before is self._set.before:
             return
         if self._tip is not None:
             self._tip = self._tip._replace(block=0)
+        if self.player is not None:
+            self.player.show(picture if before is None else None)
         self._set.show(picture, before)
         if self.ruler is not None and self.ruler.pane in self.panes:
             self.ruler.renew()  # what is held stays where it is
         else:
             self.measure(on=False)
         self._lay_out()
+
+    def _make(self, aspect: Aspect, polyline: Polyline, before: Polyline | None) -> Pane:
+        if aspect is Aspect.SECTION and self.player is not None:
+            from app.path.part_pane_view import PartPane
+
+            return PartPane(self.look, aspect, polyline, self.player)
+        from app.path.path_pane_view import Pane
+
+        return Pane(self.look, aspect, polyline, before)
 
     def _lay_out(self) -> None:
         if self._set is not None:
@@ -181,7 +209,8 @@ class PathView(Panel):
     def room(self) -> QRectF:
         """The view within its frame; the panes share what the column of buttons leaves of it."""
         u = self.look.u
-        return self.area().adjusted(0.2 * u, 1.2 * u, -0.2 * u, -0.2 * u).toRect().toRectF()
+        bar = BAR if self.shows_part else 0.0
+        return self.area().adjusted(0.2 * u, 1.2 * u, -0.2 * u, -(0.2 + bar) * u).toRect().toRectF()
 
     # --- looking around ------------------------------------------------------------------------------
 
@@ -246,21 +275,29 @@ class PathView(Panel):
         self.setMouseTracking(True)
         return ruler
 
-    def _pressed(self, at: QPointF) -> Pane | None:
-        """On a pane, unless it is on a button of the view."""
-        return None if self.touch(at) else self.pane_at(at)
+    def _pressed(self, at: QPointF) -> Pane | PartBar | None:
+        """On the time line or a pane, unless it is on a button of the view."""
+        if self.touch(at):
+            return None
+        if self._bar is not None and self.shows_part and self._bar.takes(at):
+            return self._bar
+        return self.pane_at(at)
 
     def _hovers(self, at: QPointF) -> None:
         if self.ruler is not None and self.ruler.pane.room.contains(at):
             self.ruler.point(at)
             self.update()
 
-    def _dragged(self, pane: Pane, by: QPointF) -> None:
-        pane.drag(by)
+    def _dragged(self, held: Pane | PartBar, by: QPointF) -> None:
+        held.drag(by)
         self.update()
 
-    def _touched(self, pane: Pane, at: QPointF) -> None:
+    def _touched(self, pane: Pane | PartBar, at: QPointF) -> None:
         """A point to measure from, or the block that is drawn there."""
+        from app.path.path_pane_view import Pane
+
+        if not isinstance(pane, Pane):
+            return
         if self.ruler is not None:
             ruler = self.ruler if self.ruler.pane is pane else self._measure_in(pane)
             ruler.point(at)
@@ -325,11 +362,24 @@ class PathView(Panel):
             self.ruler.draw_figures(painter, beside.room, self.in_mm)
         self._draw_title(painter)
         marks.draw_buttons(painter, look, self.room(), self._buttons(), self.place)
+        if self.shows_part:
+            self._draw_bar(painter)
+            return
         legend = marks.compared_legend(look) if self.comparing else marks.run_legend(look)
         marks.draw_legend(painter, look, panes[0].room, legend)
         apart = panes[0].apart
         if apart is not None:
             marks.draw_words(painter, look, panes[0].room, marks.apart_words(apart, self.in_mm))
+
+    def _draw_bar(self, painter: QPainter) -> None:
+        """The time line of the part."""
+        from app.path.part_bar_view import PartBar
+
+        assert self.player is not None
+        if self._bar is None:
+            self._bar = PartBar(self.look, self.player)
+        room, u = self.room(), self.look.u
+        self._bar.draw(painter, QRectF(room.x(), room.bottom(), room.width(), BAR * u), self.place)
 
     def _draw_pane(self, painter: QPainter, pane: Pane) -> None:
         from app.path import path_marks_view as marks
@@ -347,7 +397,7 @@ class PathView(Panel):
         if self.ruler is not None and self.ruler.pane is pane:
             self.ruler.draw(painter)
         painter.restore()
-        if pane.projection is not None:
+        if pane.projection is not None and pane.aspect is not Aspect.SECTION:
             marks.draw_scale(painter, look, pane.room, pane.projection, self.in_mm)
         if pane.aspect is not Aspect.PATH:
             marks.draw_words(painter, look, pane.room, marks.pane_words(pane, self.in_mm))

@@ -39,6 +39,11 @@ NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_Z, SHIFT): "Zoom out",
     (Key.Key_M, NONE): "Measure",
     (Key.Key_V, NONE): "View",
+    (Key.Key_J, NONE): "Step back",
+    (Key.Key_K, NONE): "Play",
+    (Key.Key_K, SHIFT): "Play fast",
+    (Key.Key_L, NONE): "Step on",
+    (Key.Key_N, NONE): "To line",
     (Key.Key_Left, CTRL): "Pan left",
     (Key.Key_Right, CTRL): "Pan right",
     (Key.Key_Up, CTRL): "Pan up",
@@ -49,7 +54,7 @@ NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
 }
 REPEATING = frozenset(
     {"+", "-", ",", ".", "Zoom in", "Zoom out", "Page up", "Page down"}
-    | {"Pan left", "Pan right", "Pan up", "Pan down"}
+    | {"Pan left", "Pan right", "Pan up", "Pan down", "Step back", "Step on"}
 )
 # What stops the machine does so with any modifier.
 _STOPS = {Key.Key_H: "H", Key.Key_Space: "H", Key.Key_E: "E"}

@@ -36,6 +36,11 @@ class Milling:
         return self._part.field
 
     @property
+    def nbytes(self) -> int:
+        """Memory of the field."""
+        return self._part.field.low.nbytes + self._part.field.high.nbytes
+
+    @property
     def left(self) -> float:
         """mm³ that the chuck holds."""
         return self.field.volume

@@ -5,6 +5,7 @@ All moves are gathered first, because stock and tools that nobody has described 
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -250,6 +251,35 @@ class Making:
         )
         self.milling: Milling | None = None  # from the first cut of a live tool on
         self.part = TurnedPart(stock) if stock is not None and not tools.feeds_first else None
+
+    @property
+    def tool(self) -> int:
+        """T of the tool that is in work; 0: none."""
+        return self._tool
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the collet is."""
+        return self._is_open
+
+    @property
+    def fallen(self) -> int:
+        """How many pieces have been parted off."""
+        return len(self._pieces) + (len(self.part.pieces) if self.part is not None else 0)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the metal, about."""
+        part, milling = self.part, self.milling
+        turned = part.low.nbytes + part.high.nbytes if part is not None else 0
+        return turned + (milling.nbytes if milling is not None else 0)
+
+    def copy(self) -> Making:
+        """The same once more, to be gone on with later; what never changes is shared."""
+        found = self.findings
+        shared: tuple[object, ...] = (self._tools, self._stock, found.clamping, found.neighbours)
+        shared += (*self._cutters.values(), *found.found)
+        return copy.deepcopy(self, {id(each): each for each in shared})
 
     def see(self, step: Step) -> None:
         """The next block."""

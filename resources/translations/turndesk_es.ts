@@ -215,6 +215,11 @@
     </message>
     <message>
       <location filename="app/automatic/automatic_view.py" />
+      <source>Play fast</source>
+      <translation>Reproducir rápido</translation>
+    </message>
+    <message>
+      <location filename="app/automatic/automatic_view.py" />
       <source>READOUT</source>
       <translation>LECTURA</translation>
     </message>
@@ -235,8 +240,23 @@
     </message>
     <message>
       <location filename="app/automatic/automatic_view.py" />
+      <source>Step back</source>
+      <translation>Paso atrás</translation>
+    </message>
+    <message>
+      <location filename="app/automatic/automatic_view.py" />
+      <source>Step on</source>
+      <translation>Paso adelante</translation>
+    </message>
+    <message>
+      <location filename="app/automatic/automatic_view.py" />
       <source>TOOLS</source>
       <translation>HERRAM</translation>
+    </message>
+    <message>
+      <location filename="app/automatic/automatic_view.py" />
+      <source>To line</source>
+      <translation>A la línea</translation>
     </message>
     <message>
       <location filename="app/compose/journal.py" />
@@ -2854,6 +2874,11 @@
       <translation>A LA Z</translation>
     </message>
     <message>
+      <location filename="app/path/part_bar_view.py" />
+      <source>LINE {line}</source>
+      <translation>LÍNEA {line}</translation>
+    </message>
+    <message>
       <location filename="app/path/path_aspects.py" />
       <source>FACE</source>
       <translation>CARA</translation>
@@ -2862,6 +2887,11 @@
       <location filename="app/path/path_aspects.py" />
       <source>PATH</source>
       <translation>TRAYECTORIA</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_aspects.py" />
+      <source>SECTION</source>
+      <translation>SECCIÓN</translation>
     </message>
     <message>
       <location filename="app/path/path_aspects.py" />
@@ -2880,8 +2910,33 @@
     </message>
     <message>
       <location filename="app/path/path_marks_view.py" />
+      <source>LINE {line}: {what}</source>
+      <translation>LÍNEA {line}: {what}</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_marks_view.py" />
       <source>NOTHING THAT IS CUT HAS CHANGED</source>
       <translation>NO CAMBIÓ NADA DE LO QUE SE CORTA</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_marks_view.py" />
+      <source>PART  ·  BEING MADE</source>
+      <translation>PIEZA  ·  HACIÉNDOSE</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_marks_view.py" />
+      <source>PART  ·  NOTHING IS CUT</source>
+      <translation>PIEZA  ·  NO SE CORTA NADA</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_marks_view.py" />
+      <source>PART  ·  THE STOCK</source>
+      <translation>PIEZA  ·  EL MATERIAL</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_marks_view.py" />
+      <source>PART  ·  T{tool}</source>
+      <translation>PIEZA  ·  T{tool}</translation>
     </message>
     <message>
       <location filename="app/path/path_marks_view.py" />
@@ -12255,11 +12310,6 @@
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
-      <source>a %1 tool</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="core/proving/assumed_tools.py" />
       <source>an end mill</source>
       <translation type="unfinished" />
     </message>
@@ -12271,21 +12321,6 @@
     <message>
       <location filename="core/proving/assumed_tools.py" />
       <source>by its moves</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="core/proving/assumed_tools.py" />
-      <source>drill tool</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="core/proving/assumed_tools.py" />
-      <source>reamer tool</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="core/proving/assumed_tools.py" />
-      <source>tap tool</source>
       <translation type="unfinished" />
     </message>
     <message>
@@ -12515,7 +12550,7 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>It stays more than .08 in from all metal for 3 s and .2 in of its way.</source>
+      <source>It stays more than .08 in from all metal for 5 s and .2 in of its way.</source>
       <translation type="unfinished" />
     </message>
     <message>

@@ -1,0 +1,212 @@
+"""The pane of the part: its section as a drawing, stock and tool with it, red where something is hit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QBrush, QPainter, QPolygonF
+
+from app.path.part_player import PartPlayer, Shown
+from app.path.part_section import Line, Metal, hit_areas, metal_of, stock_outline
+from app.path.path_aspects import Aspect
+from app.path.path_layers_view import polygon
+from app.path.path_pane_view import Pane, Place
+from app.path.path_projection import Floats, Projection, fitted
+from app.path.polyline import Polyline
+from app.screen.look import CENTRE, LEFT, Look, put
+
+_MARGIN = 5.0  # units round the part: for the scales
+_TICK = 6.0  # units from one figure of a scale to the next, at least
+_STEPS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
+
+
+class PartPane(Pane):
+    """Shows what the player shows. Everything is drawn anew when the part, the tool or the view changes."""
+
+    def __init__(self, look: Look, aspect: Aspect, polyline: Polyline, player: PartPlayer) -> None:
+        self.player = player
+        self.metric = False
+        self._drawn: tuple[Shown, Projection] | None = None  # what the outlines are of
+        self._metal: list[tuple[QPolygonF, list[QPolygonF]]] = []
+        self._hits: list[QPolygonF] = []
+        self._stock: list[QPolygonF] = []
+        self._chuck: list[QPolygonF] = []
+        self._fitted = False
+        super().__init__(look, aspect, polyline)
+
+    # --- what is seen --------------------------------------------------------------------------------
+
+    def whole(self) -> Projection:
+        """The stock, and what is cut beside it."""
+        z0, z1, x0, x1 = self.polyline.bounds
+        shown = self.player.shown
+        if shown is not None and (stock := shown.instant.stock) is not None:
+            z0, z1 = min(z0, stock.back), max(z1, stock.front)
+            x1 = max(x1, stock.radius)
+        room, margin = self.room, _MARGIN * self.look.u
+        return fitted((z0, z1, x0, x1), int(room.width()), int(room.height()), margin)
+
+    def look_at(self, projection: Projection) -> None:
+        """This is seen from now on."""
+        self.projection = projection
+
+    def stand(self, block: int, place: Place | None, stood: Place | None = None) -> None:
+        """The run is in a block, its tool at a place of the path; no block: nothing runs."""
+        if block and place is not None and (block, place) != (self._block, self._place):
+            end = self.end_of(block) or place
+            at = stood or place
+            self.player.follow(block, (at[0] - end[0], at[1] - end[1]))
+        self._block, self._place = block, place
+
+    def advance(self) -> bool:
+        """Take up what the worker has made; whether there is anything new."""
+        new = self.player.look()
+        if self.player.shown is not None and not self._fitted:
+            self._fitted = True
+            if not self.by_hand:
+                self.fit()
+        return new
+
+    def take(self, polyline: Polyline, before: Polyline | None) -> None:
+        """Another program, or the same with another text; its stock may be another one."""
+        self._fitted = False
+        super().take(polyline, before)
+
+    @property
+    def complete(self) -> bool:
+        """Whether what is wanted is shown."""
+        return not self.player.behind
+
+    # --- drawing -------------------------------------------------------------------------------------
+
+    def draw_path(self, painter: QPainter) -> None:
+        """The section; the painter's origin is the corner of the pane."""
+        shown, projection = self.player.shown, self.projection
+        if shown is None or projection is None:
+            return
+        self._outline(shown, projection)
+        look = self.look
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        pen = look.pen("todo", 0.12)
+        pen.setDashPattern([5, 4])
+        painter.setPen(pen)
+        for line in self._stock:
+            painter.drawPolyline(line)
+        painter.setPen(look.pen("off", 0.14))
+        painter.setBrush(QBrush(look.colour("off"), Qt.BrushStyle.FDiagPattern))
+        for area in self._chuck:
+            painter.drawPolygon(area)
+        self._fill(painter, self._hits, QBrush(look.colour("alarm")))
+        areas = [area for area, _ in self._metal]
+        self._fill(painter, areas, QBrush(look.colour("key")))
+        self._fill(painter, areas, QBrush(look.colour("todo"), Qt.BrushStyle.BDiagPattern))
+        painter.setPen(look.pen("text", 0.2))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        for _, edges in self._metal:
+            for edge in edges:
+                painter.drawPolyline(edge)
+
+    def draw_run(self, painter: QPainter) -> None:
+        """The tool, and the outline of what was hit over all else."""
+        shown, projection = self.player.shown, self.projection
+        if shown is None or projection is None:
+            return
+        look = self.look
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(look.pen("alarm", 0.3))
+        for area in self._hits:
+            painter.drawPolygon(area)
+        self._tool(painter, shown, projection)
+        self._scales(painter, projection)
+
+    def _outline(self, shown: Shown, projection: Projection) -> None:
+        if self._drawn is not None and self._drawn[0] is shown and self._drawn[1] == projection:
+            return
+        self._drawn = shown, projection
+        instant = shown.instant
+        metal: list[Metal] = []
+        for half, far in ((instant.near, False), (instant.far, True)):
+            if half is not None:
+                metal += metal_of(half, projection, far=far)
+        self._metal = [(_polygon(each.area), [_polygon(edge) for edge in each.edges]) for each in metal]
+        self._hits = [_polygon(area) for hit in instant.hits for area in hit_areas(hit, projection)]
+        stock = instant.stock
+        self._stock = (
+            [_polygon(line) for line in stock_outline(stock, projection)] if stock is not None else []
+        )
+
+    @staticmethod
+    def _fill(painter: QPainter, areas: Iterable[QPolygonF], brush: QBrush) -> None:
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(brush)
+        for area in areas:
+            painter.drawPolygon(area)
+
+    def _tool(self, painter: QPainter, shown: Shown, projection: Projection) -> None:
+        tool, look = shown.instant.tool, self.look
+        if tool is None:
+            return
+        pen = look.pen("off", 0.14)
+        if tool.assumed:
+            pen.setDashPattern([4, 3])
+        painter.setPen(pen)
+        body = look.colour("off")
+        body.setAlphaF(0.12 if tool.assumed else 0.45)
+        painter.setBrush(body)
+        for shape in tool.body:
+            painter.drawPolygon(_placed(shape, projection))
+        painter.setPen(look.pen("panel", 0.1))
+        painter.setBrush(look.colour("pause"))
+        for shape in tool.cutting:
+            painter.drawPolygon(_placed(shape, projection))
+        at = self.spot(*tool.at)
+        u = look.u
+        painter.setPen(look.pen("tip", 0.2))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawEllipse(at, 0.5 * u, 0.5 * u)
+        painter.drawLine(at - QPointF(1.1 * u, 0), at + QPointF(1.1 * u, 0))
+        painter.drawLine(at - QPointF(0, 1.1 * u), at + QPointF(0, 1.1 * u))
+
+    # --- scales --------------------------------------------------------------------------------------
+
+    def _scales(self, painter: QPainter, projection: Projection) -> None:
+        """Z along the lower edge, diameters or radii of X at the left, in the unit of the program."""
+        look, u = self.look, self.look.u
+        painter.setFont(look.font(1.4))
+        unit = 1.0 if self.metric else 25.4
+        step = next((s for s in _STEPS if s * unit * projection.scale >= _TICK * u), _STEPS[-1])
+        bottom, width = float(projection.height), float(projection.width)
+        painter.setPen(look.pen("soft", 0.1))
+        for value in _ticks(projection.z, width / projection.scale, step * unit):
+            at = float(projection.across(value * unit * step))
+            painter.drawLine(QPointF(at, bottom), QPointF(at, bottom - 0.6 * u))
+            words = _figure(value * step)
+            put(painter, QRectF(at - 4 * u, bottom - 2.2 * u, 8 * u, 1.4 * u), CENTRE, words)
+        for value in _ticks(projection.x, bottom / projection.scale, step * unit):
+            at = float(projection.down(value * unit * step))
+            if 1.5 * u < at < bottom - 3.5 * u:
+                painter.drawLine(QPointF(0, at), QPointF(0.6 * u, at))
+                put(painter, QRectF(0.9 * u, at - u, 8 * u, 2 * u), LEFT, _figure(abs(value * step)))
+
+
+def _ticks(middle: float, length: float, step: float) -> range:
+    first, last = (middle - length / 2) / step, (middle + length / 2) / step
+    return range(math.ceil(first), math.floor(last) + 1)
+
+
+def _figure(value: float) -> str:
+    """As shops write it: no nought before the point."""
+    text = f"{value:.3f}".rstrip("0").rstrip(".")
+    return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
+
+
+def _polygon(line: Line) -> QPolygonF:
+    return polygon(line.columns, line.rows)
+
+
+def _placed(shape: Floats, projection: Projection) -> QPolygonF:
+    return QPolygonF(
+        [QPointF(float(projection.across(z)), float(projection.down(r))) for z, r in shape.tolist()]
+    )

@@ -1,0 +1,373 @@
+"""The part at any time of a program, replayed from copies that were kept on the way.
+
+What is given out are arrays of their own: whoever shows them may be another thread.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from core.language.diagnostics import Diagnostic, Severity
+from core.part.clamping import Clamping
+from core.part.stock import Stock
+from core.part.stock_spec import StockSpec
+from core.part.swept_edge import FloatArray, Point
+from core.part.tool_outline import ToolOutline, outline
+from core.part.turned_part import TurnedPart
+from core.proving.part_proof import Making, PartSetting, Tools
+from core.proving.program_timeline import MotionSpan, Part, RestSpan
+from core.proving.tip_moves import LiveStep, Step, Steps, TipMove
+
+MOST_BLOCKS = 60_000
+"""Blocks of a program whose part is kept; of a longer one there is none."""
+
+_EVERY = 16  # blocks from one copy to the next, at first
+_MOST_COPIES = 96
+_MOST_BYTES = 96e6  # of all copies
+_LOOKED = 20  # blocks between two looks at whether the work is still wanted
+_TOUCH = 1e-6  # mm
+
+Go = Callable[[], None]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PartMoves:
+    """All blocks of a program in their order, and what has been said about stock and tools."""
+
+    parts: tuple[Part, ...]
+    setting: PartSetting
+
+
+@dataclass(slots=True)
+class PartGathering:
+    """Collects the blocks of a pass through a program, as long as they are not too many."""
+
+    setting: PartSetting
+    _parts: list[Part] = field(default_factory=list)
+    _blocks: int = 0
+
+    def see(self, span: MotionSpan | RestSpan) -> None:
+        """The next span of the program."""
+        if isinstance(span, MotionSpan):
+            parts = span.parts
+        else:
+            parts = ([span.block],) if span.block is not None else ()
+        self._blocks += sum(len(part) for part in parts)
+        if self._blocks <= MOST_BLOCKS:
+            self._parts += parts
+        else:
+            self._parts.clear()
+
+    def moves(self) -> PartMoves | None:
+        """What was gathered; None: nothing, or too much."""
+        return PartMoves(tuple(self._parts), self.setting) if self._parts else None
+
+
+class Half(NamedTuple):
+    """One side of the section: ``edges`` (columns + 1,) of Z, rising; metal from ``low`` to ``high`` (layers,
+    columns), radii; mm."""
+
+    edges: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+
+class Hit(NamedTuple):
+    """Metal that was met where nothing may be met: ``finding``, and from ``low`` to ``high`` at each ``z``
+    (n,), ``wide`` mm of Z each."""
+
+    finding: Diagnostic
+    z: FloatArray
+    low: FloatArray
+    high: FloatArray
+    wide: float
+
+
+class PlacedTool(NamedTuple):
+    """A tool where it stands: its control point ``at``, its outlines (k, 2) of Z and r, mm.
+
+    ``assumed``: nobody has described it, its body is what such tools have.
+    """
+
+    number: int
+    at: Point
+    cutting: tuple[FloatArray, ...]
+    body: tuple[FloatArray, ...]
+    assumed: bool
+
+
+class PartInstant(NamedTuple):
+    """The part when ``block`` blocks are done and ``share`` of the next.
+
+    ``near`` is the side of the section at X+, ``far`` that beyond the axis; None: there is no metal.
+    ``hits`` and ``findings`` are those that have come up by then.
+    """
+
+    block: int
+    share: float
+    line: int
+    near: Half | None
+    far: Half | None
+    stock: Stock | None
+    tool: PlacedTool | None
+    hits: tuple[Hit, ...]
+    findings: tuple[Diagnostic, ...]
+    pieces: int
+    clamping: Clamping | None = None
+    is_open: bool = False
+
+
+class PartHistory:
+    """Goes through a program forwards and, by what it has kept, backwards. For one thread at a time."""
+
+    def __init__(self, moves: PartMoves) -> None:
+        reading = Steps()
+        self.steps: list[Step] = [step for part in moves.parts for step in reading.of(part)]
+        self._numbers = np.array([_number(step) for step in self.steps], dtype=np.int64)
+        self._tools = Tools(self.steps, moves.setting)
+        stock = moves.setting.stock or self._tools.assumed_stock()
+        self.stock = stock.stock(self._tools.back) if isinstance(stock, StockSpec) else stock
+        self._outlines: dict[int, ToolOutline | None] = {}
+        self._hits: dict[tuple[str, int], Hit] = {}
+        self._kept = _Copies()
+        self._clamping = moves.setting.clamping
+        self._making = Making(self._tools, self.stock, moves.setting)
+        self._done = 0  # steps
+        self._kept.keep(0, self._making)
+
+    def at(self, block: int, share: float = 0.0, watch: Go | None = None) -> PartInstant:
+        """The part when so many blocks are done, and ``share`` (0 … 1) of the next one.
+
+        ``watch`` is called now and then on a long way and may raise: what was made until then is kept.
+        """
+        done = int(np.searchsorted(self._numbers, block, side="right"))
+        self._go_to(done, watch)
+        under_way = self.steps[done] if done < len(self.steps) and share > 0.0 else None
+        return self._instant(block, share, under_way)
+
+    def share_at(self, block: int, behind_end: Point) -> float:
+        """How much of a block is done when the tool is ``behind_end`` (Z, r; mm) off the place of its end."""
+        step = self._step(block)
+        if not isinstance(step, TipMove):
+            return 0.0
+        end = step.points[-1]
+        return share_along(step.points, (end[0] + behind_end[0], end[1] + behind_end[1]))
+
+    def now(self) -> PartInstant:
+        """The part as far as it has been made on a long way."""
+        done = self._done
+        return self._instant(int(self._numbers[done - 1]) if done else 0, 0.0, None)
+
+    def _step(self, block: int) -> Step | None:
+        there = int(np.searchsorted(self._numbers, block))
+        return self.steps[there] if there < len(self.steps) and self._numbers[there] == block else None
+
+    # --- going through the program
+
+    def _go_to(self, done: int, watch: Go | None) -> None:
+        kept = self._kept.before(done)
+        if not kept <= self._done <= done:
+            self._making, self._done = self._kept.copy(kept), kept
+        while self._done < done:
+            if watch is not None and self._done % _LOOKED == 0:
+                watch()
+            self._see(self.steps[self._done])
+            self._done += 1
+            self._kept.perhaps(self._done, self._making)
+
+    def _see(self, step: Step) -> None:
+        """The next block; what it hits is kept, to be seen."""
+        making, known = self._making, len(self._making.findings.found)
+        before = _copy_of(making.part)
+        making.see(step)
+        for found in making.findings.found[known:]:
+            if found.severity is Severity.ERROR and before is not None and making.part is not None:
+                hit = _hit(found, before, making.part)
+                if hit is not None:
+                    self._hits[found.check, found.line] = hit
+
+    # --- what is to be seen
+
+    def _instant(self, block: int, share: float, under_way: Step | None) -> PartInstant:
+        making, place = self._making, self._place()
+        if isinstance(under_way, TipMove):
+            cut = _begun(under_way, share)
+            place = cut.points[-1]
+            if making.milling is None:
+                making = making.copy()
+                making.see(cut)
+        elif isinstance(under_way, LiveStep):
+            start, end = _ends(under_way)
+            place = start[0] + (end[0] - start[0]) * share, start[1] + (end[1] - start[1]) * share
+        found = making.findings.found
+        near, far = _halves(making)
+        return PartInstant(
+            block=block,
+            share=share,
+            line=_line(under_way or (self.steps[self._done - 1] if self._done else None)),
+            near=near,
+            far=far,
+            stock=self.stock,
+            tool=self._tool(making.tool, place),
+            hits=tuple(
+                self._hits[each.check, each.line] for each in found if (each.check, each.line) in self._hits
+            ),
+            findings=found,
+            pieces=making.fallen,
+            clamping=self._clamping,
+            is_open=making.is_open,
+        )
+
+    def _hits_of(self, found: Sequence[Diagnostic]) -> tuple[Hit, ...]:
+        hits = (self._hits.get((each.check, each.line)) for each in found)
+        return tuple(hit for hit in hits if hit is not None)
+
+    def _place(self) -> Point | None:
+        """Where the last block that moves has ended."""
+        for step in reversed(self.steps[max(0, self._done - 200) : self._done]):
+            if isinstance(step, TipMove):
+                return step.points[-1]
+            if isinstance(step, LiveStep):
+                return _ends(step)[1]
+        return None
+
+    def _tool(self, number: int, place: Point | None) -> PlacedTool | None:
+        if place is None:
+            return None
+        if number not in self._outlines:
+            shape = self._tools.shape(number)
+            self._outlines[number] = outline(shape) if shape is not None else None
+        lines = self._outlines[number]
+        if lines is None:
+            return PlacedTool(number, place, (), (), assumed=True)
+        cutting, body = (
+            tuple(each + np.array(place) for each in group) for group in (lines.cutting, lines.body)
+        )
+        return PlacedTool(number, place, cutting, body, assumed=not self._tools.described(number))
+
+
+class _Copies:
+    """Copies of a part in the making, by how many steps were done; of too many every other goes."""
+
+    def __init__(self) -> None:
+        self._copies: dict[int, Making] = {}
+        self._sizes: dict[int, int] = {}
+        self._every = _EVERY
+
+    def before(self, done: int) -> int:
+        """The last copy that is not behind so many steps."""
+        return max(each for each in self._copies if each <= done)
+
+    def copy(self, done: int) -> Making:
+        """One to go on from."""
+        return self._copies[done].copy()
+
+    def perhaps(self, done: int, making: Making) -> None:
+        """Keep one when it is time."""
+        if done % self._every == 0 and done not in self._copies:
+            self.keep(done, making)
+
+    def keep(self, done: int, making: Making) -> None:
+        """Keep a copy of what there is after so many steps."""
+        self._copies[done], self._sizes[done] = making.copy(), making.nbytes
+        while len(self._copies) > _MOST_COPIES or (
+            sum(self._sizes.values()) > _MOST_BYTES and len(self._copies) > 2
+        ):
+            self._every *= 2
+            for each in [each for each in self._copies if each % self._every]:
+                del self._copies[each], self._sizes[each]
+
+
+def share_along(points: Sequence[Point], at: Point) -> float:
+    """How much of the way along points lies behind the place of it that is nearest to a point."""
+    gone = best = 0.0
+    least = math.inf
+    total = sum(math.dist(a, b) for a, b in pairwise(points))
+    for a, b in pairwise(points):
+        dz, dr, size = b[0] - a[0], b[1] - a[1], math.dist(a, b)
+        along = ((at[0] - a[0]) * dz + (at[1] - a[1]) * dr) / (size * size) if size else 0.0
+        along = min(max(along, 0.0), 1.0)
+        off = math.dist(at, (a[0] + along * dz, a[1] + along * dr))
+        if off < least:
+            least, best = off, gone + along * size
+        gone += size
+    return best / total if total else 0.0
+
+
+def _begun(move: TipMove, share: float) -> TipMove:
+    """The beginning of a move."""
+    left, points = share * move.length, [move.points[0]]
+    for a, b in pairwise(move.points):
+        size = math.dist(a, b)
+        if size >= left:
+            part = left / size if size else 0.0
+            points.append((a[0] + (b[0] - a[0]) * part, a[1] + (b[1] - a[1]) * part))
+            break
+        points.append(b)
+        left -= size
+    return move._replace(points=tuple(points) if len(points) > 1 else move.points[:1] * 2)
+
+
+def _number(step: Step) -> int:
+    return step.block.n if isinstance(step, LiveStep) else step.n
+
+
+def _line(step: Step | None) -> int:
+    if step is None:
+        return 0
+    return step.block.line if isinstance(step, LiveStep) else step.line
+
+
+def _ends(step: LiveStep) -> tuple[Point, Point]:
+    """Where the slides begin and end a block of a live tool."""
+    (dx, dz), block = step.place, step.block
+    return (block.z0 + dz, block.x0 + dx), (block.z + dz, block.x + dx)
+
+
+def _copy_of(part: TurnedPart | None) -> tuple[FloatArray, FloatArray] | None:
+    return None if part is None else (part.low.copy(), part.high.copy())
+
+
+def _hit(found: Diagnostic, before: tuple[FloatArray, FloatArray], part: TurnedPart) -> Hit | None:
+    """What a block has taken off, from the lowest to the highest of each column."""
+    layers = len(before[0])
+    low, high = part.low[:layers], part.high[:layers]
+    was = before[1] > before[0]
+    above = was & (before[1] - high > _TOUCH)
+    below = was & (low - before[0] > _TOUCH)
+    touched = (above | below).any(axis=0)
+    if not touched.any():
+        return None
+    least = np.minimum(
+        np.where(above, np.maximum(high, before[0]), np.inf).min(axis=0),
+        np.where(below, before[0], np.inf).min(axis=0),
+    )
+    most = np.maximum(
+        np.where(above, before[1], 0.0).max(axis=0),
+        np.where(below, np.minimum(low, before[1]), 0.0).max(axis=0),
+    )
+    z = part.columns.middles[touched]
+    return Hit(found, z, least[touched], most[touched], part.columns.step)
+
+
+def _halves(making: Making) -> tuple[Half | None, Half | None]:
+    part = making.part
+    if part is None:
+        return None, None
+    if making.milling is not None:
+        field, rays = making.milling.field, making.milling.field.low.shape[2]
+        sides = [
+            Half(field.edges.copy(), field.low[:, :, ray].copy(), field.high[:, :, ray].copy())
+            for ray in (rays // 2, 0)  # X+ of the lathe with C at 0 lies at 180° of the part
+        ]
+        return sides[0], sides[1]
+    columns = part.columns
+    edges: FloatArray = columns.first + columns.step * (np.arange(columns.number + 1, dtype=np.float64) - 0.5)
+    half = Half(edges, part.low.copy(), part.high.copy())
+    return half, half

@@ -1,0 +1,198 @@
+"""The player of the part view: along the time line, while the run leads, and where there is no part."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+import resources
+from app.compose.machine_files import load_machine, parse_machine
+from app.compose.workshop import workshop
+from app.path.part_player import FAST, PartPlayer, PartPlayers
+from app.path.path_picture import Picture
+from core.interpreter.job_setup import ToolOffset
+from core.language.source import Source
+
+HEAD = "G90G94F300\nM03S1500\nT1\n"
+SHAFT = HEAD + "X.6Z.05\nX.4\nG95F.004Z-.5\nX.45Z-.6\nX.55\nG94F300Z.05\nX.3\nG95F.004Z-.3\nX.55\nM30\n"
+RAPID = SHAFT.replace("G95F.004Z-.3", "G00Z-.3")
+
+
+def picture(text: str) -> Picture:
+    tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 4)}
+    machine = load_machine(None)
+    steps = workshop(machine, lambda: (tools, {}, {}))
+    job = steps.make_job(Source("part.nc", text), False)
+    steps.prove(job, lambda _count: None)
+    return steps.draw(job, lambda _count: None)
+
+
+class Clock:
+    now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock() -> Clock:
+    return Clock()
+
+
+@pytest.fixture
+def player(clock: Clock) -> Iterator[PartPlayer]:
+    made = PartPlayer(clock=clock)
+    yield made
+    made.close()
+
+
+def settled(player: PartPlayer) -> PartPlayer:
+    player.settle(20.0)
+    return player
+
+
+def line(player: PartPlayer) -> int:
+    shown = settled(player).shown
+    assert shown is not None
+    return shown.instant.line
+
+
+def test_a_program_is_first_seen_at_its_end(player: PartPlayer) -> None:
+    player.show(picture(SHAFT))
+    assert player.t == player.duration > 5.0
+    assert line(player) == 13
+
+
+def test_without_a_program_nothing_is_shown_and_no_key_does_anything(player: PartPlayer) -> None:
+    player.play_or_pause()
+    player.step(1)
+    player.to_line(3)
+    player.look()
+    assert (player.shown, player.playing, player.t, player.behind) == (None, False, 0.0, False)
+
+
+def test_a_program_that_is_taken_away_is_gone(player: PartPlayer) -> None:
+    player.show(picture(SHAFT))
+    settled(player)
+    player.show(None)
+    player.look()
+    assert player.shown is None
+
+
+def test_playing_begins_anew_at_the_end_and_goes_with_the_clock(player: PartPlayer, clock: Clock) -> None:
+    player.show(picture(SHAFT))
+    player.play_or_pause()
+    assert player.t == 0.0
+    clock.now += 0.2
+    player.look()
+    assert player.t == pytest.approx(0.2)
+    player.faster()
+    clock.now += 0.2
+    player.look()
+    assert player.t == pytest.approx(0.2 + 0.2 * FAST)
+    player.play_or_pause()
+    clock.now += 0.2
+    player.look()
+    assert player.t == pytest.approx(0.2 + 0.2 * FAST)
+
+
+def test_playing_stays_at_the_end(player: PartPlayer, clock: Clock) -> None:
+    player.show(picture(SHAFT))
+    player.seek(player.duration - 0.1)
+    player.play_or_pause()
+    clock.now += 0.2
+    player.look()
+    assert (player.playing, player.t) == (False, player.duration)
+
+
+def test_a_screen_that_stood_still_does_not_jump(player: PartPlayer, clock: Clock) -> None:
+    player.show(picture(SHAFT))
+    player.play_or_pause()
+    clock.now += 5.0
+    player.look()
+    assert player.t <= 0.25
+
+
+def test_steps_go_from_block_to_block(player: PartPlayer) -> None:
+    player.show(picture(SHAFT))
+    player.seek(0.0)
+    lines = []
+    for _ in range(4):
+        player.step(1)
+        lines.append(line(player))
+    assert lines == [4, 5, 6, 7]
+    player.step(-1)
+    assert line(player) == 6
+    for _ in range(9):
+        player.step(-1)
+    assert player.t == 0.0
+
+
+def test_to_a_line(player: PartPlayer) -> None:
+    player.show(picture(SHAFT))
+    player.to_line(6)
+    assert line(player) == 6
+    shown = player.shown
+    assert shown is not None
+    assert shown.instant.tool is not None
+    assert shown.instant.tool.at == pytest.approx((-12.7, 10.16))
+
+
+def test_while_the_run_leads_the_keys_do_nothing(player: PartPlayer) -> None:
+    player.show(picture(SHAFT))
+    player.bound = True
+    at = player.t
+    player.play_or_pause()
+    player.step(-1)
+    player.to_line(1)
+    assert (player.t, player.playing) == (at, False)
+
+
+def test_the_run_is_followed_to_where_the_tool_is(player: PartPlayer) -> None:
+    player.show(picture(SHAFT))
+    player.bound = True
+    turning = player._picture.block_of_line(6) if player._picture else 0
+    player.follow(turning, (0.55 * 25.4 / 2, 0.0))
+    shown = settled(player).shown
+    assert shown is not None
+    assert shown.instant.tool is not None
+    assert shown.instant.tool.at == pytest.approx((-0.225 * 25.4, 10.16))
+
+
+def test_errors_have_their_time(player: PartPlayer) -> None:
+    made = picture(RAPID)
+    player.show(made)
+    settled(player)
+    (mark,) = player.marks().tolist()
+    assert mark == made.ends[made.block_of_line(11)]
+
+
+def test_what_cannot_be_made_is_told(player: PartPlayer, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_given: object) -> None:
+        raise ValueError("no such tool")
+
+    monkeypatch.setattr("core.proving.part_history.PartHistory.__init__", broken)
+    player.show(picture(SHAFT))
+    settled(player)
+    assert (player.shown, player.trouble) == (None, "no such tool")
+
+
+def test_a_program_with_errors_is_shown_as_far_as_it_goes(player: PartPlayer) -> None:
+    player.show(picture(SHAFT.replace("X.45Z-.6", "X.45Q7Z-.6")))
+    assert line(player) >= 6
+
+
+def test_a_mill_has_no_part() -> None:
+    machine = parse_machine(resources.machine_file("ac-table-mill.toml"), "mill")
+    steps = workshop(machine, lambda: ({}, {}, {}))
+    job = steps.make_job(Source("roof.h", "BEGIN PGM A MM\nL X+1 Y+1 Z+1 F100\nEND PGM A MM\n"), False)
+    steps.prove(job, lambda _count: None)
+    assert steps.draw(job, lambda _count: None).part is None
+
+
+def test_players_end_with_the_desk() -> None:
+    players = PartPlayers([PartPlayer()])
+    players.close()
+    players[0].show(picture(SHAFT))
+    assert not players[0].worker.busy

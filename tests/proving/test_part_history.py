@@ -1,0 +1,192 @@
+"""The part at any time: what is replayed is what making it straight through gives, forwards and backwards."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from app.compose.machine_files import load_machine
+from app.compose.machine_setup import setup_for
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.language.source import Source
+from core.part.stock import bar
+from core.part.tool_shape import ToolKind, ToolShape
+from core.proving import part_history
+from core.proving.part_history import PartGathering, PartHistory, PartMoves, share_along
+from core.proving.part_proof import Making, PartSetting, Tools
+from core.proving.prove_program import prove
+
+INCH = 25.4
+TURNING = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.0, insert="DCMT11T304")
+BLADE = ToolShape(ToolKind.PARTING, tip=3, width=2.0, stick_out=30.0)
+SETTING = PartSetting(bar(INCH, 0.0, -2.0 * INCH), {1: TURNING, 2: BLADE})
+HEAD = "G90G94F300\nM03S1500\nT1\n"
+SHAFT = HEAD + "X.6Z.05\nX.4\nG95F.004Z-.5\nX.45Z-.6\nX.55\nG94F300Z.05\nX.3\nG95F.004Z-.3\nX.55\nM30\n"
+RAPID = SHAFT.replace("G95F.004Z-.3", "G00Z-.3")
+SLOT = HEAD + "X.6Z.1\nM05\nC0\nM30\n"
+
+
+def moves(text: str, setting: PartSetting = SETTING) -> PartMoves | None:
+    tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 4)}
+    setup = setup_for(load_machine(None), tools=tools, secondary={1: SecondaryOffset()})
+    gathered = PartGathering(setting)
+    prove(Source("PART", text), setup, load_machine(None), seen=gathered.see)
+    return gathered.moves()
+
+
+def history(text: str, setting: PartSetting = SETTING) -> PartHistory:
+    found = moves(text, setting)
+    assert found is not None
+    return PartHistory(found)
+
+
+def straight_through(seen: PartHistory, blocks: int) -> Making:
+    making = Making(Tools(seen.steps, SETTING), seen.stock, SETTING)
+    for step in seen.steps[:blocks]:
+        making.see(step)
+    return making
+
+
+@pytest.mark.parametrize("every", [1, 3, 16])
+def test_any_block_in_any_order_is_as_made_straight_through(
+    every: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(part_history, "_EVERY", every)
+    seen = history(SHAFT)
+    count = len(seen.steps)
+    for block in [count, 3, 7, 2, count - 1, 0, 5, 5, 6, count]:
+        instant, made = seen.at(block), straight_through(seen, block)
+        assert made.part is not None
+        assert instant.near is not None
+        np.testing.assert_array_equal(instant.near.low, made.part.low)
+        np.testing.assert_array_equal(instant.near.high, made.part.high)
+        assert instant.findings == made.findings.found
+
+
+def test_half_of_a_cut_has_taken_half_of_the_metal() -> None:
+    seen = history(SHAFT)
+    turning = next(k for k, step in enumerate(seen.steps) if step.line == 6)
+    instant = seen.at(turning, 0.5)
+    assert instant.near is not None
+    assert instant.tool is not None
+    # from Z.05 to Z-.5 it is half way at Z-.225, and what lies behind is still a bar of 1 in
+    z, r = instant.tool.at
+    assert (z, r) == pytest.approx((-0.225 * INCH, 0.4 * INCH))
+    edges, high = instant.near.edges, instant.near.high[0]
+    there = (edges[1:] + edges[:-1]) / 2
+    assert high[there > -0.2 * INCH] == pytest.approx(0.4 * INCH)  # beside the round of its nose
+    assert high[there < -0.24 * INCH] == pytest.approx(0.5 * INCH)
+
+
+def test_what_is_shown_does_not_change_with_what_is_made_next() -> None:
+    seen = history(SHAFT)
+    before = seen.at(3)
+    assert before.near is not None
+    high = before.near.high.copy()
+    seen.at(len(seen.steps))
+    np.testing.assert_array_equal(before.near.high, high)
+
+
+def test_a_rapid_into_metal_has_its_place() -> None:
+    seen = history(RAPID)
+    (hit,) = seen.at(len(seen.steps)).hits
+    assert (hit.finding.check, hit.finding.line) == ("rapid-into-stock", 11)
+    # from the face to Z-.3, between the radius of the rapid and that of the cut before
+    assert hit.z.max() == pytest.approx(0.0, abs=0.01)
+    assert hit.z.min() == pytest.approx(-0.3 * INCH, abs=0.02)
+    assert hit.low[hit.z > -0.28 * INCH] == pytest.approx(
+        0.3 * INCH, abs=0.001
+    )  # beside the round of its nose
+    assert hit.high == pytest.approx(0.4 * INCH, abs=0.001)
+
+
+def test_before_it_happens_nothing_is_hit() -> None:
+    seen = history(RAPID)
+    seen.at(len(seen.steps))
+    assert seen.at(4).hits == ()
+    assert seen.at(4).findings == ()
+
+
+def test_the_sound_twin_has_no_hits() -> None:
+    seen = history(SHAFT)
+    assert seen.at(len(seen.steps)).hits == ()
+
+
+def test_a_parted_piece_is_gone() -> None:
+    seen = history(SHAFT.replace("M30", "T2\nX.6Z-.2\nG95F.002X-.01\nG94F300X.6\nM30"))
+    instant = seen.at(len(seen.steps))
+    assert instant.pieces == 1
+    assert instant.near is not None
+    edges, high = instant.near.edges, instant.near.high[0]
+    assert not high[edges[1:] > -0.19 * INCH].any()
+
+
+def test_copies_stay_within_their_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(part_history, "_EVERY", 1)
+    monkeypatch.setattr(part_history, "_MOST_COPIES", 4)
+    seen = history(SHAFT)
+    seen.at(len(seen.steps))
+    assert len(seen._kept._copies) <= 4
+    instant, made = seen.at(7), straight_through(seen, 7)
+    assert instant.near is not None
+    assert made.part is not None
+    np.testing.assert_array_equal(instant.near.high, made.part.high)
+
+
+class _EnoughError(Exception):
+    pass
+
+
+def test_work_that_is_given_up_can_be_gone_on_with() -> None:
+    seen = history(SHAFT)
+
+    def enough() -> None:
+        raise _EnoughError
+
+    with pytest.raises(_EnoughError):
+        seen.at(len(seen.steps), 0.0, enough)
+    instant, made = seen.at(len(seen.steps)), straight_through(seen, len(seen.steps))
+    assert instant.near is not None
+    assert made.part is not None
+    np.testing.assert_array_equal(instant.near.high, made.part.high)
+
+
+def test_of_a_program_that_is_too_long_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(part_history, "MOST_BLOCKS", 5)
+    assert moves(SHAFT) is None
+
+
+def test_of_a_program_without_blocks_there_is_none() -> None:
+    assert PartGathering(SETTING).moves() is None
+
+
+def test_where_nothing_is_cut_there_is_no_stock_and_no_metal() -> None:
+    seen = history(HEAD + "X2Z2\nM30\n", PartSetting())
+    instant = seen.at(len(seen.steps))
+    assert (instant.stock, instant.near, instant.far) == (None, None, None)
+
+
+def test_before_the_first_move_no_tool_stands_anywhere() -> None:
+    assert history(SHAFT).at(0).tool is None
+
+
+def test_a_block_that_is_none_is_done_to_no_share() -> None:
+    assert history(SHAFT).share_at(999, (0.0, 0.0)) == 0.0
+
+
+def test_the_share_of_a_block_is_told_by_how_far_its_end_is() -> None:
+    seen = history(SHAFT)
+    turning = next(k for k, step in enumerate(seen.steps) if step.line == 6) + 1
+    assert seen.share_at(turning, (0.0, 0.0)) == pytest.approx(1.0)
+    assert seen.share_at(turning, (0.55 * INCH / 4, 0.0)) == pytest.approx(0.75)
+    assert seen.share_at(turning, (0.55 * INCH / 4, 0.02)) == pytest.approx(0.75)  # beside its path
+
+
+def test_shares_along_a_corner() -> None:
+    corner = [(0.0, 0.0), (3.0, 0.0), (3.0, 1.0)]
+    assert share_along(corner, (1.0, -1.0)) == pytest.approx(0.25)
+    assert share_along(corner, (5.0, 0.5)) == pytest.approx(3.5 / 4.0)
+    assert share_along([(1.0, 1.0), (1.0, 1.0)], (0.0, 0.0)) == 0.0
+    assert not math.isnan(share_along([(1.0, 1.0)], (0.0, 0.0)))

@@ -1,0 +1,168 @@
+"""The part view: what stands where in the section, its time line by fingers, and where there is no part."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtGui import QColor, QImage
+from PySide6.QtTest import QTest
+from pytestqt.qtbot import QtBot
+
+from app.path.part_player import PartPlayer
+from app.path.path_aspects import Aspect, Tip
+from app.path.path_marks_view import part_words
+from app.path.path_view import PathView
+from app.screen.look import Look
+from app.screen.theme import DARK, LIGHT
+from tests.path.test_part_player import RAPID, SHAFT, Clock, picture
+
+INCH = 25.4
+LEFT = Qt.MouseButton.LeftButton
+
+
+@pytest.fixture
+def view(qtbot: QtBot) -> Iterator[PathView]:
+    """A path view with a player of the part."""
+    player = PartPlayer(clock=Clock())
+    made = PathView(Look(DARK, 8.0), player=player)
+    made.resize(800, 400)
+    with qtbot.waitExposed(made):
+        made.show()
+    yield made
+    made.hide()
+    made.deleteLater()
+    player.close()
+
+
+def shown(view: PathView, program: str) -> QImage:
+    """The part at the end of a program."""
+    view.show_picture(picture(program))
+    while not view.shows_part:
+        view.next_view()
+    return settled(view)
+
+
+def settled(view: PathView) -> QImage:
+    assert view.player is not None
+    view.player.settle(20.0)
+    view.advance()
+    view.player.settle(20.0)
+    view.advance()
+    return view.grab().toImage()
+
+
+def colour(view: PathView, image: QImage, z: float, x: float) -> set[str]:
+    """The colours round a place of the section, inches."""
+    pane = view.panes[0]
+    at = (pane.room.topLeft() + pane.spot(z * INCH, x * INCH)).toPoint()
+    return {QColor(image.pixel(at.x() + k, at.y() + j)).name() for k in range(-3, 4) for j in range(-3, 4)}
+
+
+@pytest.mark.parametrize("x", [0.2, -0.2])
+def test_metal_is_on_both_sides_of_the_centre_line(view: PathView, x: float) -> None:
+    image = shown(view, SHAFT)
+    assert DARK.key in colour(view, image, -0.2, x)  # hatched metal
+    assert DARK.key in colour(view, image, -0.4, 2 * x * 0.9)
+    assert DARK.key not in colour(view, image, -0.2, 1.8 * x)  # turned off
+    assert DARK.key not in colour(view, image, 0.15, x)  # before the face
+
+
+def test_in_the_light_theme_too(view: PathView) -> None:
+    view.look.repaint(LIGHT)
+    view.restart()
+    image = shown(view, SHAFT)
+    assert LIGHT.key in colour(view, image, -0.2, 0.2)
+
+
+@pytest.mark.parametrize("x", [0.35, -0.35])
+def test_what_a_rapid_has_hit_is_red(view: PathView, x: float) -> None:
+    image = shown(view, RAPID)
+    assert DARK.alarm in colour(view, image, -0.2, x)
+    assert DARK.alarm not in colour(view, shown(view, SHAFT), -0.2, x)
+
+
+def test_fingers_play_and_step_and_go_along_the_line(view: PathView) -> None:
+    shown(view, SHAFT)
+    player = view.player
+    assert player is not None
+    words = {press.__name__: rect for rect, press in view._places if hasattr(press, "__name__")}
+    QTest.mouseClick(view, LEFT, pos=words["play_or_pause"].center().toPoint())
+    assert player.playing
+    assert player.t == 0.0
+    assert view._bar is not None
+    track = view._bar._track
+    middle = QPoint(round(track.center().x()), round(track.center().y()))
+    QTest.mousePress(view, LEFT, pos=middle)
+    assert not player.playing
+    assert player.t == pytest.approx(player.duration / 2, rel=0.01)
+    QTest.mouseMove(view, QPoint(round(track.right()), middle.y()))
+    QTest.mouseRelease(view, LEFT, pos=QPoint(round(track.right()), middle.y()))
+    assert player.t == pytest.approx(player.duration, rel=0.01)
+
+
+def test_while_the_run_leads_the_line_is_not_for_fingers(view: PathView) -> None:
+    shown(view, SHAFT)
+    player = view.player
+    assert player is not None
+    player.bound, before = True, player.t
+    assert view._bar is not None
+    track = view._bar._track
+    QTest.mouseClick(view, LEFT, pos=track.center().toPoint())
+    assert player.t == before
+
+
+def test_the_tool_stands_where_the_run_is(view: PathView) -> None:
+    shown(view, SHAFT)
+    assert view.picture is not None
+    assert view.player is not None
+    block = view.picture.block_of_line(6)
+    view.show_tip(Tip(block, -0.225 * INCH, 0.4 * INCH))
+    settled(view)
+    now = view.player.shown
+    assert now is not None
+    assert now.instant.tool is not None
+    assert now.instant.tool.at == pytest.approx((-0.225 * INCH, 0.4 * INCH))
+
+
+def test_zoom_pan_and_fit_are_those_of_the_path(view: PathView) -> None:
+    shown(view, SHAFT)
+    before = view.view
+    view.zoom(1)
+    view.pan(1, 0)
+    assert view.view != before
+    view.fit()
+    assert view.view == before
+
+
+def test_another_program_leaves_the_part_in_view(view: PathView) -> None:
+    shown(view, SHAFT)
+    view.show_picture(picture(RAPID))
+    assert view.shows_part
+    assert DARK.alarm in colour(view, settled(view), -0.2, 0.35)
+
+
+def test_without_a_player_there_is_only_the_path(qtbot: QtBot) -> None:
+    made = PathView(Look(DARK, 8.0))
+    qtbot.addWidget(made)
+    made.show_picture(picture(SHAFT))
+    made.next_view()
+    assert [pane.aspect for pane in made.panes] == [Aspect.PATH]
+    assert not made.several
+
+
+def test_what_cannot_be_made_is_told_in_the_pane(view: PathView, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_given: object) -> None:
+        raise ValueError("no such tool")
+
+    monkeypatch.setattr("core.proving.part_history.PartHistory.__init__", broken)
+    shown(view, SHAFT)
+    assert part_words(view.panes[0]) == "no such tool"
+
+
+def test_without_a_program_nothing_is_played(view: PathView) -> None:
+    view.show_picture(None)
+    view.advance()
+    view.next_view()
+    assert not view.shows_part
