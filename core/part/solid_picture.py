@@ -32,6 +32,7 @@ _LIGHT = (-0.38, 0.62, 0.69)  # to the right, up, towards the viewer
 _BISECTOR = (-0.207, 0.337, 0.919)  # half way between light and viewer
 _SHADES = 256
 _STEEP = 0.5  # cosine between a wall's normal and the radius below which it is no round of the part
+_EDGE = 8.0  # pixels of depth
 _FACING = 0.02  # radians beyond the horizon that are drawn too
 
 
@@ -243,6 +244,7 @@ class _Drawing:
         level = np.clip(shade * np.float32(_SHADES), 0, _SHADES - 1).astype(np.int16)
         codes[pixel] = np.where(shade < 0.0, _AWAY, level + colour * _SHADES)
         codes = _without_specks(codes.reshape(self.height, self.width))
+        _draw_edges(codes, (inside >> _POINT).astype(np.int32).reshape(codes.shape))
         return np.append(table.ravel(), np.uint32(ground))[np.maximum(codes, -1)]
 
     def _smooth(self, pixel: IntArray, shade: Floats, rough: Bools) -> None:
@@ -372,6 +374,20 @@ def _without_specks(codes: Codes) -> Codes:
         low, high = np.minimum(before, behind), np.maximum(before, behind)
         turned[1:-1] = np.maximum(low, np.minimum(high, own))
     return codes
+
+
+def _draw_edges(codes: Codes, depth: npt.NDArray[np.int32]) -> None:
+    """Darken what lies behind an edge, so that a step shows between two faces that are lit alike.
+
+    Behind an edge is a point that lies deeper than the middle of its two neighbours by more than ``_EDGE``.
+    """
+    for picture, deep in ((codes, depth), (codes.T, depth.T)):
+        sunk = deep[:-2] + deep[2:]
+        sunk -= 2 * deep[1:-1]
+        behind = sunk > _EDGE * _DEPTH
+        behind &= picture[1:-1] >= 0
+        own = picture[1:-1]
+        own[behind] -= (own[behind] & (_SHADES - 1)) // 3
 
 
 def _shades(colours: Colours) -> Image:

@@ -222,3 +222,19 @@ def test_quick_picture_has_the_same_outline() -> None:
     fine, quick = (picture.draw(solid, view, 421, 301, quick=quick) for quick in (False, True))
     assert quick.shape == fine.shape == (301, 421)
     assert np.count_nonzero((fine != 0) != (quick != 0)) < 0.02 * np.count_nonzero(fine)
+
+
+def test_step_between_faces_that_are_lit_alike_has_an_edge() -> None:
+    """An island on the face: seen from nearly in front its far rim stands before a floor as light."""
+    part = milled()
+    turn = np.linspace(0.0, 2.0 * math.pi, 200)
+    part.mill_axial(np.column_stack([7.5 * np.cos(turn), 7.5 * np.sin(turn), np.full(200, -4.0)]), 2.5)
+    view = SolidView(azimuth=60.0, tilt=0.0, scale=12.0, centre=-4.0)
+    image = draw(solid_of(part.field), view)
+    # At phi 180 on the rim of the island, and 3 pixels within and beyond it.
+    column = round(
+        WIDTH / 2 + 12.0 * (4.0 * math.cos(math.radians(60.0)) + 5.0 * math.sin(math.radians(60.0)))
+    )
+    light = ((image[HEIGHT // 2, column - 5 : column + 6] >> 8) & 255).astype(int)
+    assert abs(light[0] - light[-1]) <= 2
+    assert light.min() < 0.8 * light[0]
