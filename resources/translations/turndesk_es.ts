@@ -12281,47 +12281,47 @@
     <message>
       <location filename="core/proving/assumed_tools.py" />
       <source>%1, its diameter as %2 in</source>
-      <translation type="unfinished" />
+      <translation>%1, con %2 in de diámetro</translation>
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
       <source>, %1 in</source>
-      <translation type="unfinished" />
+      <translation>, %1 in</translation>
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
       <source>RIGHT EDGE</source>
-      <translation type="unfinished" />
+      <translation>RIGHT EDGE</translation>
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
       <source>RIGHT SIDE</source>
-      <translation type="unfinished" />
+      <translation>RIGHT SIDE</translation>
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
       <source>T%1 is taken for %2 (%3)</source>
-      <translation type="unfinished" />
+      <translation>T%1 se toma por %2 (%3)</translation>
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
       <source>T%1 is taken for a bar stop</source>
-      <translation type="unfinished" />
+      <translation>T%1 se toma por un tope de barra</translation>
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
       <source>an end mill</source>
-      <translation type="unfinished" />
+      <translation>una fresa de mango</translation>
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
       <source>by its comment</source>
-      <translation type="unfinished" />
+      <translation>por su comentario</translation>
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
       <source>by its moves</source>
-      <translation type="unfinished" />
+      <translation>por sus movimientos</translation>
     </message>
     <message>
       <location filename="core/proving/block_delete.py" />
@@ -12331,7 +12331,7 @@
     <message>
       <location filename="core/proving/checks_page.py" />
       <source>Found when: %1  </source>
-      <translation type="unfinished" />
+      <translation>Se halla cuando: %1  </translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -12461,277 +12461,277 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>A commanded speed over max_rpm under [clamping] of the machine file.</source>
-      <translation type="unfinished" />
+      <translation>Una velocidad mandada por encima de max_rpm en [clamping] del archivo de máquina.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>A cutting move leads away from the part, and nothing is cut where the program seems to mean it.</source>
-      <translation type="unfinished" />
+      <translation>Un movimiento de corte se aleja de la pieza y no se corta nada donde el programa parece quererlo.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>A drill goes deeper than its flutes are long.</source>
-      <translation type="unfinished" />
+      <translation>Una broca entra más que la longitud de sus canales.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>A feed along Z beside the stock, .1 in and longer, stays .08 in and more outside of it.</source>
-      <translation type="unfinished" />
+      <translation>Un avance a lo largo de Z junto al material, de .1 in o más, queda .08 in o más por fuera.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>A feed goes on where there is no metal.</source>
-      <translation type="unfinished" />
+      <translation>Un avance sigue donde no hay metal.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>A feed of .1 in and more leads away from the part and cuts nothing, and the next goes on there.</source>
-      <translation type="unfinished" />
+      <translation>Un avance de .1 in o más se aleja de la pieza y no corta nada, y el siguiente continúa allí.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>A feed per turn over .8 of the nose radius along a turned face.</source>
-      <translation type="unfinished" />
+      <translation>Un avance por vuelta superior a .8 del radio de punta.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>A rapid right behind a cut takes off metal at a smaller radius than the cut.</source>
-      <translation type="unfinished" />
+      <translation>Un rápido justo después de un corte arranca metal a un radio menor que el corte.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>A rapid, or a feed of 100 in/min and more, takes off metal.</source>
-      <translation type="unfinished" />
+      <translation>Un rápido, o un avance de 100 in/min o más, arranca metal.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>A tool, or its holder, runs into chuck, jaws or collet.</source>
-      <translation type="unfinished" />
+      <translation>Una herramienta, o su portaherramientas, choca con el plato, las garras o la pinza.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>An outline comes into the contour that the machine file gives under [clamping].</source>
-      <translation type="unfinished" />
+      <translation>Un perfil entra en el contorno que el archivo de máquina da en [clamping].</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>An outline that cannot cut overlaps metal by more than .001 in.</source>
-      <translation type="unfinished" />
+      <translation>Un perfil que no puede cortar solapa el metal en más de .001 in.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Another tool of the gang plate runs into the stock.</source>
-      <translation type="unfinished" />
+      <translation>Otra herramienta de la placa choca con el material.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Change M03 and M04, or the hand that the tool's shape says.</source>
-      <translation type="unfinished" />
+      <translation>Cambie M03 y M04, o la mano que dice la forma de la herramienta.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Check the stock, and X as a radius or a diameter.</source>
-      <translation type="unfinished" />
+      <translation>Compruebe el material, y X como radio o como diámetro.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Go out along X before Z, or in a bore along Z before X.</source>
-      <translation type="unfinished" />
+      <translation>Salga por X antes que por Z; en un agujero, por Z antes que por X.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Holder, shank or boring bar runs into metal at a rapid or at a feed.</source>
-      <translation type="unfinished" />
+      <translation>El portaherramientas, el mango o la barra de mandrinar choca con el metal en rápido o en avance.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>It is longer than five times its diameter.</source>
-      <translation type="unfinished" />
+      <translation>Es más larga que cinco veces su diámetro.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>It stays more than .08 in from all metal for 5 s and .2 in of its way.</source>
-      <translation type="unfinished" />
+      <translation>Queda a más de .08 in de todo metal durante 5 s y .2 in de su recorrido.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Let the part stick out further, or stop earlier.</source>
-      <translation type="unfinished" />
+      <translation>Deje que la pieza sobresalga más, o pare antes.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Look for a lost minus (Z.5 for Z-.5) or a lost decimal point (X4 for X.4).</source>
-      <translation type="unfinished" />
+      <translation>Busque un signo menos perdido (Z.5 por Z-.5) o un punto decimal perdido (X4 por X.4).</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Look for a lost minus or decimal point; move there by a rapid.</source>
-      <translation type="unfinished" />
+      <translation>Busque un signo menos o un punto decimal perdido; vaya allí en rápido.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Lower F, or look for a lost decimal point (F.03 for F.003).</source>
-      <translation type="unfinished" />
+      <translation>Baje F, o busque un punto decimal perdido (F.03 por F.003).</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Lower S, or limit G96 by G77.</source>
-      <translation type="unfinished" />
+      <translation>Baje S, o limite G96 con G77.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>M04 with a right-hand drill, tap or reamer; M03 with a left-hand one.</source>
-      <translation type="unfinished" />
+      <translation>M04 con broca, macho o escariador a derechas; M03 con uno a izquierdas.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Stop short of the metal and feed in: look for a G00 left on, and for a sign or a decimal point.</source>
-      <translation type="unfinished" />
+      <translation>Pare antes del metal y entre en avance: busque un G00 que sigue activo, un signo o un punto decimal.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Support it, or part it off in two steps.</source>
-      <translation type="unfinished" />
+      <translation>Sujétela, o trónzela en dos pasos.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Take another way there, a shorter tool, or another place on the plate.</source>
-      <translation type="unfinished" />
+      <translation>Vaya por otro camino, con una herramienta más corta, o póngala en otro sitio de la placa.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>The edge meets more than .001 in of metal in r and in Z.</source>
-      <translation type="unfinished" />
+      <translation>El filo encuentra más de .001 in de metal en r y en Z.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>The feed is larger than the nose can cut.</source>
-      <translation type="unfinished" />
+      <translation>El avance es mayor de lo que la punta puede cortar.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>The hole is deeper than the cutting length of the drill.</source>
-      <translation type="unfinished" />
+      <translation>El agujero es más profundo que la longitud de corte de la broca.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>The part is larger than its stock: a contour is cut in the air outside the bar.</source>
-      <translation type="unfinished" />
+      <translation>La pieza es mayor que su material: se corta un contorno en el aire, fuera de la barra.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>The spindle turns against the cutting edge.</source>
-      <translation type="unfinished" />
+      <translation>El husillo gira contra el filo.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>The spindle turns faster than chuck or collet may.</source>
-      <translation type="unfinished" />
+      <translation>El husillo gira más deprisa de lo que permite el plato o la pinza.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>The tool retracts through the part.</source>
-      <translation type="unfinished" />
+      <translation>La herramienta se retira a través de la pieza.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Use a longer drill, or peck and check the length that was entered.</source>
-      <translation type="unfinished" />
+      <translation>Use una broca más larga, o taladre por picadas y compruebe la longitud introducida.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Use a longer or slimmer tool, or another direction of cut.</source>
-      <translation type="unfinished" />
+      <translation>Use una herramienta más larga o más delgada, u otra dirección de corte.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>What is parted off is long and held by nothing.</source>
-      <translation type="unfinished" />
+      <translation>Lo que se tronza es largo y nada lo sujeta.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>With [tooling] kind = "gang": its outline, placed by its tool offset, overlaps metal.</source>
-      <translation type="unfinished" />
+      <translation>Con [tooling] kind = "gang": su perfil, situado por su corrector, solapa el metal.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>%1 deep at Z %2 … %3</source>
-      <translation type="unfinished" />
+      <translation>%1 de profundidad en Z %2 … %3</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>%1 goes into metal, %2.</source>
-      <translation type="unfinished" />
+      <translation>%1 entra en el metal, %2.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>%1 leaves a cut through the part, %2.</source>
-      <translation type="unfinished" />
+      <translation>%1 sale de un corte a través de la pieza, %2.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>A feed as fast as a rapid</source>
-      <translation type="unfinished" />
+      <translation>Un avance tan rápido como un rápido</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>A rapid of a live tool goes into metal at %1.</source>
-      <translation type="unfinished" />
+      <translation>Un rápido de una herramienta motorizada entra en el metal en %1.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>T%1 beside T%2 on the plate runs into the stock.</source>
-      <translation type="unfinished" />
+      <translation>T%1, junto a T%2 en la placa, choca con el material.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>T%1 cuts while the spindle turns backwards (M04).</source>
-      <translation type="unfinished" />
+      <translation>T%1 corta mientras el husillo gira al revés (M04).</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>T%1 feeds %2 with a nose radius of %3.</source>
-      <translation type="unfinished" />
+      <translation>T%1 avanza %2 con un radio de punta de %3.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>T%1 goes %2 deep; it cuts %3.</source>
-      <translation type="unfinished" />
+      <translation>T%1 entra %2; corta %3.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>T%1 runs into the chuck, %2.</source>
-      <translation type="unfinished" />
+      <translation>T%1 choca con el plato, %2.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>The holder of T%1 runs into metal, %2.</source>
-      <translation type="unfinished" />
+      <translation>El portaherramientas de T%1 choca con el metal, %2.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>The spindle turns at %1 rpm; the chuck may turn at %2.</source>
-      <translation type="unfinished" />
+      <translation>El husillo gira a %1 rpm; el plato puede girar a %2.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>This move feeds for %1 s where there is no metal.</source>
-      <translation type="unfinished" />
+      <translation>Este movimiento avanza %1 s donde no hay metal.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>This move leads away from the part and cuts nothing, and so does the next.</source>
-      <translation type="unfinished" />
+      <translation>Este movimiento se aleja de la pieza y no corta nada, y el siguiente tampoco.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>This move turns a larger diameter than the stock has.</source>
-      <translation type="unfinished" />
+      <translation>Este movimiento tornea un diámetro mayor que el del material.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
       <source>What is parted off is %1 times as long as it is thick.</source>
-      <translation type="unfinished" />
+      <translation>Lo que se tronza es %1 veces más largo que grueso.</translation>
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />
