@@ -39,7 +39,7 @@ def stock_json(part: PartReport, dialect: Dialect) -> Json | None:
 def stock_lines(part: PartReport, dialect: Dialect) -> str:
     """The stock in the sheet of a proof."""
     if part.stock is None:
-        return ""
+        return "".join(f"  {words}\n" for words in part.assumed)
     inch = dialect is Dialect.OMNITURN
     volume, unit = _volume_of(dialect), "in³" if inch else "mm³"
     pieces = f", {len(part.pieces)} parted off" if part.pieces else ""

@@ -33,6 +33,9 @@ from core.proving.proof_report import Report, in_order
 from core.proving.prove_program import Progress, prove
 from core.proving.tip_moves import LiveStep, Step, Steps, TipMove
 
+MOST_MOVES = 50_000
+"""Of a longer program the part is made when somebody has said its stock: a million take half a minute."""
+
 
 @dataclass(frozen=True, slots=True)
 class PartSetting:
@@ -88,6 +91,11 @@ def prove_with_part(
     return replace(report, diagnostics=in_order((*report.diagnostics, *part.findings))), part
 
 
+def _not_made(moves: int) -> PartReport:
+    words = f"{moves} moves: a part of so many is made where its stock is said"
+    return PartReport(None, 0.0, 0.0, 0.0, None, False, (), (words,), ())
+
+
 class PartProof:
     """Gathers the blocks of a pass, and makes the part of them."""
 
@@ -103,7 +111,10 @@ class PartProof:
             self._parts.append([span.block])
 
     def report(self) -> PartReport:
-        """The part, when the whole program has been seen."""
+        """The part, when the whole program has been seen; of a very long one only where a stock is said."""
+        moves = sum(len(part) for part in self._parts)
+        if moves > MOST_MOVES and self._setting.stock is None:
+            return _not_made(moves)
         making, steps = self._begun()
         for step in steps:
             making.see(step)

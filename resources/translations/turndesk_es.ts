@@ -12734,6 +12734,11 @@
       <translation>Lo que se tronza es %1 veces más largo que grueso.</translation>
     </message>
     <message>
+      <location filename="core/proving/part_proof.py" />
+      <source>%1 moves: a part of so many is made where its stock is said</source>
+      <translation>%1 movimientos: una pieza de tantos se hace donde se indica su material</translation>
+    </message>
+    <message>
       <location filename="core/proving/program_branches.py" />
       <source>%1 Never proved: %2.</source>
       <translation>%1 Nunca comprobado: %2.</translation>

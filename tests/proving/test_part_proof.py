@@ -18,6 +18,7 @@ from core.language.source import Source
 from core.part.clamping import Clamping
 from core.part.stock import Stock, bar, tube
 from core.part.tool_shape import ToolKind, ToolShape
+from core.proving import part_proof
 from core.proving.part_proof import PartReport, PartSetting, prove_with_part
 from core.proving.proof_report import Report
 from tests.worked import FOLDER, worked
@@ -302,3 +303,14 @@ def test_a_neighbour_on_the_plate_runs_into_the_bar() -> None:
 def test_a_neighbour_meets_the_bar_only_as_far_as_the_tool_goes_in() -> None:
     short = "T1\nX[.6]Z[.05]\nG95F[.004]X[.4]\nG94F[300]X[.6]\nZ[1]"
     assert checks(ganged(short, 15.0)) == []
+
+
+def test_of_a_very_long_program_the_part_is_made_where_its_stock_is_said(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(part_proof, "MOST_MOVES", 5)
+    _, part = proved(text(SOUND))
+    assert (part.stock, part.removed, part.findings) == (None, 0.0, ())
+    assert "is made where its stock is said" in part.assumed[0]
+    _, part = proved(text(SOUND), BAR)
+    assert part.removed > 0.0
