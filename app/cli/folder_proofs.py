@@ -16,9 +16,10 @@ from app.cli.program_files import ProgramFiles, program_files
 from app.cli.program_options import read_source
 from app.cli.progress_bar import Progress
 from app.cli.proof_cache import ProofCache
+from app.cli.proof_job import ProofJob
 from app.cli.proof_pool import KILLED, Proving, Workers, WorkerSource, cores
 from app.cli.proof_table import table
-from app.cli.proof_work import OtherVersionError, Proof, ProofJob, code_version, proof_of
+from app.cli.proof_work import OtherVersionError, Proof, code_version, proof_of
 from app.cli.report_file import ReportFile, report_file
 from core.language.source import Source
 

@@ -34,7 +34,22 @@ def _line(path: Path, proof: Proof) -> str:
     return (
         f"{word:10s}{proof.count('error'):8d}{proof.count('warning'):10d}"
         f"{_number(proof.report['cycle_time_s']):13.2f}{_removed(proof):>14s}  {path}\n"
+        + _compared(proof)
         + (f"            line {first['line']}: {first['message']}\n" if first else "")
+    )
+
+
+def _compared(proof: Proof) -> str:
+    """What other offsets change, in one line."""
+    found = proof.report.get("compare")
+    if not isinstance(found, dict):
+        return ""
+    unit = "in" if proof.report["dialect"] == "omniturn" else "mm"
+    here, there = found["cycle_time_s"]
+    return (
+        f"            with {found['offsets']}: {found['differing']} of {len(found['features'])} diameters and"
+        f" shoulders differ, by {found['largest']:.4f} {unit} at most; cycle {there - here:+.2f} s;"
+        f" {len(found['added'])} findings new, {len(found['gone'])} gone\n"
     )
 
 

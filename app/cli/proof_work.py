@@ -6,38 +6,22 @@ import pickle
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from app.cli.proof_job import ProofJob
+
 if TYPE_CHECKING:
     from app.cli.figures import Json
-    from core.interpreter.job_setup import Setup
+    from app.report.run_record import RunRecord
     from core.language.source import Source
-    from core.machine.machine_model import Machine
-    from core.proving.part_proof import PartReport, PartSetting
+    from core.proving.part_proof import PartReport
     from core.proving.proof_report import Report
 
 _ROOT = Path(__file__).parents[2]
 _ROOMS = ("app/cli", "app/compose", "app/report", "core")  # what a proof is made by
-
-
-@dataclass(frozen=True)
-class ProofJob:
-    """What is the same for all programs that are proved together."""
-
-    machine: Machine
-    setup: Setup
-    setting: PartSetting
-    ideal: bool = False
-    optional_stop: bool = False
-    reported: bool = False  # a section of a report is wanted too
-
-    @cached_property
-    def packed(self) -> bytes:
-        """The job as it is sent."""
-        return pickle.dumps(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +67,7 @@ def proved(job: ProofJob, source: Source) -> Proof:
 
     found = findings(job, source)
     json = report_json(source.name, found.report, found.part, optional_stop=job.optional_stop)
-    return Proof(json, found.section)
+    return Proof(json if found.compare is None else {**json, "compare": found.compare}, found.section)
 
 
 class Findings(NamedTuple):
@@ -92,22 +76,41 @@ class Findings(NamedTuple):
     report: Report
     part: PartReport | None
     section: str = ""
+    compare: Json | None = None
 
 
 def findings(job: ProofJob, source: Source, progress: Callable[[float], None] | None = None) -> Findings:
-    """Prove one program, and report on it."""
+    """Prove one program, compare and report on it, as far as that is wanted."""
     from core.proving.part_proof import prove_with_part
 
-    around, setting = (job.setup, job.machine), job.setting
+    record = _record(job)
+    see = record.see if record is not None else None
+    around = (job.setup, job.machine, job.setting)
+    report, part = prove_with_part(source, *around, progress, ideal=job.ideal, seen=see)
+    compare: Json | None = None
+    if job.other is not None:
+        from app.cli.compare_figures import compared
+
+        compare = compared(job, source, report, part)
+    if record is None:
+        return Findings(report, part, "", compare)
+    from app.report.report_page import ProgramReport, compared_part
+
+    section = ProgramReport(source, report, part, record, job.machine, job.setup).html()
+    if compare is not None:
+        from app.cli.compare_figures import compare_lines
+
+        section += compared_part(compare_lines(compare, metric=report.metric, dialect=report.dialect))
+    return Findings(report, part, section, compare)
+
+
+def _record(job: ProofJob) -> RunRecord | None:
+    """What sees the pass for a report, where one is wanted."""
     if not job.reported:
-        return Findings(*prove_with_part(source, *around, setting, progress, ideal=job.ideal))
-    from app.report.report_page import ProgramReport
+        return None
     from app.report.run_record import RunRecord
 
-    record = RunRecord(setting)
-    report, part = prove_with_part(source, *around, setting, progress, ideal=job.ideal, seen=record.see)
-    section = ProgramReport(source, report, part, record, job.machine, job.setup)
-    return Findings(report, part, section.html())
+    return RunRecord(job.setting)
 
 
 @lru_cache(maxsize=4)

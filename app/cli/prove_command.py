@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,8 +24,10 @@ MOST_JOBS = 256
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.cli.proof_work import Findings, ProofJob
+    from app.cli.proof_job import OtherOffsets, ProofJob
+    from app.cli.proof_work import Findings
     from app.cli.report_file import ReportFile
+    from core.interpreter.job_setup import Setup
     from core.language.source import Source
     from core.proving.part_proof import PartReport
     from core.proving.proof_report import Report
@@ -43,6 +46,9 @@ def add_parser(subparsers: SubParsers) -> None:
         "--stick-out", type=float, metavar="IN", help="from the front of chuck or collet to Z0, inches"
     )
     parser.add_argument("--stock", metavar="SPEC", help=f"what the part is made of: {FORMS}")
+    parser.add_argument(
+        "--compare", metavar="OFFSETS", help="what another offsets file makes of part, times and findings"
+    )
     parser.add_argument(
         "--report", metavar="FILE", help="HTML file with drawings, findings, tools, times, stops and offsets"
     )
@@ -93,12 +99,27 @@ def _for_workers(args: argparse.Namespace) -> bool:
 def _job(args: argparse.Namespace) -> ProofJob:
     """What the options say about all programs. Raises CommandError."""
     from app.cli.part_options import part_setting
-    from app.cli.proof_work import ProofJob
+    from app.cli.proof_job import ProofJob
 
     around = circumstances(args)
     setting = part_setting(args, around)
-    reported = args.report is not None
-    return ProofJob(around.machine, around.setup, setting, args.ideal, args.optional_stop, reported)
+    reported, other = args.report is not None, _other(args, around.setup)
+    if other is not None:
+        from app.cli.compare_figures import FINE
+
+        setting = replace(setting, step=FINE)
+    return ProofJob(around.machine, around.setup, setting, args.ideal, args.optional_stop, reported, other)
+
+
+def _other(args: argparse.Namespace, setup: Setup) -> OtherOffsets | None:
+    """The offsets of --compare. Raises CommandError naming every mistake in them."""
+    if args.compare is None:
+        return None
+    from app.cli.proof_job import OtherOffsets
+    from app.compose.stored_offsets import read_offsets
+
+    tools, secondary, zero = read_offsets(Path(args.compare))
+    return OtherOffsets(args.compare, replace(setup, tools=tools, secondary=secondary, zero=zero))
 
 
 def _status(path: Path, job: ProofJob, args: argparse.Namespace, report: ReportFile | None) -> int:
@@ -124,14 +145,19 @@ def _prove(path: Path, source: Source, job: ProofJob, args: argparse.Namespace) 
 
     with Progress(f"proving {path.name}") as progress:
         found = findings(job, source, progress.reach)
-    report, part, _ = found
+    report, part, _, compare = found
     if args.json:
         told = report_json(str(path), report, part, optional_stop=args.optional_stop)
+        told |= {"compare": compare} if compare is not None else {}
         sys.stdout.write(json.dumps(told) + "\n")
     else:
         sys.stdout.write(_sheet(path, report, part))
         stops = stops_of(report, optional_stop=args.optional_stop)
         sys.stdout.write(f"  stops {stops} times for the operator\n" if stops else "")
+        if compare is not None:
+            from app.cli.compare_figures import compare_lines
+
+            sys.stdout.write(compare_lines(compare, metric=report.metric, dialect=report.dialect))
     return found
 
 

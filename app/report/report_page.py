@@ -234,6 +234,11 @@ def not_proved(why: str) -> str:
     return f'<p class="verdict bad">Not proved</p><p>{escape(why)}</p>'
 
 
+def compared_part(lines: str) -> str:
+    """What other offsets change, as it is told on the command line."""
+    return f"<h3>With other offsets</h3><pre>{escape(lines)}</pre>"
+
+
 PAGE_END = "</body></html>\n"
 
 

@@ -22,7 +22,7 @@ from core.part.stock import Point, Stock
 from core.part.stock_spec import StockSpec
 from core.part.tool_outline import outline
 from core.part.tool_shape import ToolKind, ToolShape
-from core.part.turned_part import Piece, TurnedPart
+from core.part.turned_part import STEP, Piece, TurnedPart
 from core.proving.assumed_stock import assumed_stock
 from core.proving.assumed_tools import Assumed, ToolUse, assumed_tool
 from core.proving.mill_moves import mill_move
@@ -31,7 +31,7 @@ from core.proving.part_findings import PartFindings
 from core.proving.program_timeline import MotionSpan, Part, RestSpan
 from core.proving.proof_report import Report, in_order
 from core.proving.prove_program import Progress, prove
-from core.proving.tip_moves import LiveStep, Step, Steps, TipMove
+from core.proving.tip_moves import LiveStep, Place, Step, Steps, TipMove
 
 MOST_MOVES = 50_000
 """Of a longer program the part is made when somebody has said its stock: a million take half a minute."""
@@ -46,6 +46,8 @@ class PartSetting:
     nose_radii: Mapping[int, float] = field(default_factory=dict)
     clamping: Clamping | None = None
     gang: Mapping[int, Point] = field(default_factory=dict)  # Z and X of the tools that ride one plate
+    tips: Mapping[int, Place] = field(default_factory=dict)  # as ``Steps`` has them
+    step: float = STEP  # width of a column of the part, mm
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +134,7 @@ class PartProof:
 
     def _begun(self) -> tuple[Making, list[Step]]:
         """The stock in the chuck, and the steps to come."""
-        reading = Steps()
+        reading = Steps(self._setting.tips)
         steps = [step for part in self._parts for step in reading.of(part)]
         tools = Tools(steps, self._setting)
         stock = self._setting.stock or tools.assumed_stock()
@@ -245,7 +247,7 @@ class Making:
 
     def __init__(self, tools: Tools, stock: Stock | None, setting: PartSetting | None = None) -> None:
         setting = setting or PartSetting()
-        self._tools, self._stock = tools, stock
+        self._tools, self._stock, self._step = tools, stock, setting.step
         self._cutters: dict[int, Cutter | None] = {}
         self._tool = 0
         self._begun = False
@@ -261,7 +263,7 @@ class Making:
             Neighbours(setting.shapes, setting.gang) if setting.gang else None,
         )
         self.milling: Milling | None = None  # from the first cut of a live tool on
-        self.part = TurnedPart(stock) if stock is not None and not tools.feeds_first else None
+        self.part = TurnedPart(stock, self._step) if stock is not None and not tools.feeds_first else None
 
     @property
     def tool(self) -> int:
@@ -318,7 +320,7 @@ class Making:
             return
         if self._is_open and self._stock is not None:
             self._finish()
-            self.part = TurnedPart(self._stock)
+            self.part = TurnedPart(self._stock, self._step)
         self._is_open = False
 
     def _live(self, step: LiveStep) -> None:

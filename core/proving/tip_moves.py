@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -67,9 +67,13 @@ class Steps:
     """The steps of a program, from its parts in order.
 
     A G92 before the first move of a tool says where part zero is; a later one shifts the part, as G10 does.
+
+    ``tips`` is where tips stand on part zero in truth, machine X and Z in mm, by T or G54 to G59: where the
+    offsets in force say something else, the tool goes beside the place that the program means.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, tips: Mapping[int, Place] | None = None) -> None:
+        self._tips = tips or {}
         self._zero = (0.0, 0.0)  # presets that have only said where zero is: X, Z
         self._moved = False
 
@@ -101,10 +105,8 @@ class Steps:
     def _part_zero(self, block: Block) -> Place:
         """Work shift, preset and zero offset together, without what has only said where zero is."""
         modal = block.modal
-        return (
-            block.offset_x - modal.tool_x - self._zero[0],
-            block.offset_z - modal.tool_z - self._zero[1],
-        )
+        x, z = self._tips.get(modal.settable or modal.tool, (modal.tool_x, modal.tool_z))
+        return block.offset_x - x - self._zero[0], block.offset_z - z - self._zero[1]
 
     def _of_series(self, series: Series) -> Iterator[TipMove]:
         like = series.pattern

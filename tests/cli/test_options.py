@@ -67,6 +67,7 @@ COVERED = {
     ("prove", "--tools"): "test_tools_of_a_file_are_assumed_no_more",
     ("prove", "--stock"): "test_the_promised_keys_in_cubic_inches",
     ("prove", "--jobs"): "test_files_and_folders_mixed_are_proved_once_each",
+    ("prove", "--compare"): "tests/cli/test_compare.py",
     ("prove", "--report"): "tests/cli/test_report.py",
     ("prove", "--scheduler"): "tests/cli/test_scheduler.py",
     ("prove", "--no-cache"): "test_no_cache_neither_keeps_nor_looks",
