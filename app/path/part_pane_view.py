@@ -13,11 +13,13 @@ from app.path.part_section import Line, Metal, hit_areas, metal_of, stock_outlin
 from app.path.path_aspects import Aspect
 from app.path.path_layers_view import polygon
 from app.path.path_pane_view import Pane, Place
+from app.path.path_picture import Picture
 from app.path.path_projection import Floats, Projection, fitted
 from app.path.polyline import Polyline
 from app.screen.look import CENTRE, LEFT, Look, put
 
-_MARGIN = 5.0  # units round the part: for the scales
+_BESIDE = 0.1  # of length and diameter of the stock: room for the tool
+_MARGIN = 3.0  # units round the part: for the scales
 _TICK = 6.0  # units from one figure of a scale to the next, at least
 _STEPS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 
@@ -25,9 +27,10 @@ _STEPS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 1
 class PartPane(Pane):
     """Shows what the player shows. Everything is drawn anew when the part, the tool or the view changes."""
 
+    player: PartPlayer
+
     def __init__(self, look: Look, aspect: Aspect, polyline: Polyline, player: PartPlayer) -> None:
         self.player = player
-        self.metric = False
         self._drawn: tuple[Shown, Projection] | None = None  # what the outlines are of
         self._metal: list[tuple[QPolygonF, list[QPolygonF]]] = []
         self._hits: list[QPolygonF] = []
@@ -36,6 +39,11 @@ class PartPane(Pane):
         self._fitted = False
         super().__init__(look, aspect, polyline)
 
+    @property
+    def metric(self) -> bool:
+        """The unit of the program."""
+        return isinstance(self.polyline, Picture) and self.polyline.metric
+
     # --- what is seen --------------------------------------------------------------------------------
 
     def whole(self) -> Projection:
@@ -43,14 +51,15 @@ class PartPane(Pane):
         z0, z1, x0, x1 = self.polyline.bounds
         shown = self.player.shown
         if shown is not None and (stock := shown.instant.stock) is not None:
-            z0, z1 = min(z0, stock.back), max(z1, stock.front)
-            x1 = max(x1, stock.radius)
+            beside = _BESIDE * (stock.front - stock.back + 2.0 * stock.radius)
+            z0, z1, x0, x1 = stock.back, stock.front + beside, 0.0, stock.radius + 0.5 * beside
         room, margin = self.room, _MARGIN * self.look.u
         return fitted((z0, z1, x0, x1), int(room.width()), int(room.height()), margin)
 
     def look_at(self, projection: Projection) -> None:
         """This is seen from now on."""
         self.projection = projection
+        self.player.look_at(None)
 
     def stand(self, block: int, place: Place | None, stood: Place | None = None) -> None:
         """The run is in a block, its tool at a place of the path; no block: nothing runs."""

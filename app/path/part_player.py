@@ -20,12 +20,25 @@ from core.language.diagnostics import Diagnostic, Severity
 if TYPE_CHECKING:
     from app.desk.desk import Desk
     from app.path.path_picture import Picture
+    from core.part.solid_picture import Image, SolidPicture
+    from core.part.solid_view import SolidView
+    from core.part.surface_points import Solid
     from core.proving.part_history import PartHistory, PartInstant
 
 FAST = 10.0  # times
+_RESTS = 0.25  # s after which a solid that nobody turns any more is drawn finely
 _TELL = 0.08  # s; on a long way the part is shown so often
 
 Place = tuple[float, float]
+
+
+class SolidLook(NamedTuple):
+    """How the part is looked at in space: a picture of so many pixels; ``quick``: a coarser one."""
+
+    view: SolidView
+    width: int
+    height: int
+    quick: bool = False
 
 
 class Moment(NamedTuple):
@@ -35,6 +48,7 @@ class Moment(NamedTuple):
     block: int = 0
     share: float = 0.0
     behind_end: Place | None = None
+    solid: SolidLook | None = None
 
 
 class Shown(NamedTuple):
@@ -42,6 +56,7 @@ class Shown(NamedTuple):
 
     instant: PartInstant
     findings: tuple[Diagnostic, ...] = ()
+    image: Image | None = None  # of the solid, where that is looked at
 
 
 @dataclass(slots=True, eq=False)
@@ -60,8 +75,12 @@ class PartPlayer:
     _asked: Moment | None = None
     _shown: Shown | None = None
     _looked: float = 0.0
+    _turned: float = 0.0  # when it was last looked at from elsewhere
     _history: tuple[Picture, PartHistory] | None = None  # the worker's, as is what follows
     _findings: tuple[Diagnostic, ...] | None = None
+    _painter: SolidPicture | None = None
+    _solid: tuple[PartInstant, Solid] | None = None
+    _draws: int = 0
 
     # --- which program -------------------------------------------------------------------------------
 
@@ -105,6 +124,7 @@ class PartPlayer:
         self.worker.poll()
         if self.playing:
             self._play(gone)
+        self._draw_finely()
         if not self.worker.busy:
             self._ask()
         return self._shown is not shown or self.playing
@@ -119,12 +139,27 @@ class PartPlayer:
         if self.t >= self.duration:
             self.playing = False
 
+    # --- in space ------------------------------------------------------------------------------------
+
+    def look_at(self, solid: SolidLook | None) -> None:
+        """The part in space is wanted, as it is looked at; None: it is not."""
+        self._wanted = self._wanted._replace(solid=solid)
+        self._turned = self.clock()
+
+    def _draw_finely(self) -> None:
+        """What moves is drawn in coarser points, and finely when it rests."""
+        solid = self._wanted.solid
+        if solid is not None:
+            moving = self.playing or self.bound or self.clock() - self._turned < _RESTS
+            if solid.quick is not moving:
+                self._wanted = self._wanted._replace(solid=solid._replace(quick=moving))
+
     # --- the run leads -------------------------------------------------------------------------------
 
     def follow(self, block: int, behind_end: Place) -> None:
         """The tool is in this block, so far (Z, r; mm) off the place where it ends."""
         self.playing = False
-        self._wanted = Moment(block - 1, 0.0, behind_end)
+        self._wanted = Moment(block - 1, 0.0, behind_end, self._wanted.solid)
         if self._picture is not None and 1 <= block < len(self._picture.ends):
             self.t = float(self._picture.ends[block])
 
@@ -188,7 +223,7 @@ class PartPlayer:
         if block < len(ends) - 1:
             length = float(ends[block + 1] - ends[block])
             share = (self.t - float(ends[block])) / length if length > 0.0 else 0.0
-        self._wanted = Moment(block, min(max(share, 0.0), 1.0))
+        self._wanted = Moment(block, min(max(share, 0.0), 1.0), None, self._wanted.solid)
 
     # --- the worker ----------------------------------------------------------------------------------
 
@@ -208,13 +243,50 @@ class PartPlayer:
         share = wanted.share
         if wanted.behind_end is not None:
             share = history.share_at(wanted.block + 1, wanted.behind_end)
-        return Shown(history.at(wanted.block, share, watch), self._findings)
+        image = None
+        instant = self._instant(history, wanted.block, share, watch)
+        if wanted.solid is not None:
+            image = self._image(history, instant, wanted.solid)
+        return Shown(instant, self._findings, image)
+
+    def _instant(
+        self, history: PartHistory, block: int, share: float, watch: Callable[[], None]
+    ) -> PartInstant:
+        """The same as before where it is only turned."""
+        if self._solid is not None:
+            last = self._solid[0]
+            if (last.block, last.share) == (block, share) and history.made(last):
+                return last
+        return history.at(block, share, watch)
+
+    def _image(self, history: PartHistory, instant: PartInstant, look: SolidLook) -> Image | None:
+        """On the worker: the part drawn in space."""
+        from core.part.solid_picture import SolidPicture
+
+        if self._painter is None:
+            self._painter = SolidPicture()
+        if self._solid is None or self._solid[0] is not instant:
+            solid = history.solid(instant)
+            if solid is None:
+                return None
+            self._solid, self._draws = (instant, solid), self._draws + 1
+        spans = tuple((float(hit.z.min()), float(hit.z.max())) for hit in instant.hits)
+        return self._painter.draw(
+            self._solid[1],
+            look.view,
+            look.width,
+            look.height,
+            version=self._draws,
+            hits=spans,
+            quick=look.quick,
+        )
 
     def _history_of(self, picture: Picture) -> PartHistory:
         from core.proving.part_history import PartHistory
 
         if self._history is None or self._history[0] is not picture:
             assert picture.part is not None
+            self._solid = None
             self._history, self._findings = (picture, PartHistory(picture.part)), None
         return self._history[1]
 

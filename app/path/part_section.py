@@ -85,15 +85,21 @@ def _piece(edges: Floats, low: Floats, high: Floats, projection: Projection, sid
     z = np.concatenate([edges[:1], (edges[1:] + edges[:-1]) / 2, edges[-1:]])
     low, high = _padded(low), _padded(high)
     outside, inside = _line(z, side * high, projection), _line(z, side * low, projection)
-    first, last = (
-        Line(inside.columns[at : at + 1], inside.rows[at : at + 1]) for at in (0, len(inside.rows) - 1)
-    )
+    first, last = (Line(inside.columns[[at]], inside.rows[[at]]) for at in (0, -1))
     contour = Line(
         np.concatenate([first.columns, outside.columns, last.columns]),
         np.concatenate([first.rows, outside.rows, last.rows]),
     )
-    bored = float(low.max()) > _METAL
-    return Metal(_ring(inside, outside), (contour, inside) if bored else (contour,))
+    bores = [_line(z[run], side * low[run], projection) for run in _runs(_spread(low > _METAL))]
+    return Metal(_ring(inside, outside), (contour, *bores))
+
+
+def _spread(wanted: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """With the neighbours on both sides."""
+    wider = wanted.copy()
+    wider[1:] |= wanted[:-1]
+    wider[:-1] |= wanted[1:]
+    return wider
 
 
 def _line(z: Floats, r: Floats, projection: Projection) -> Line:

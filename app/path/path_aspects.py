@@ -16,13 +16,17 @@ if TYPE_CHECKING:
 class Aspect(Enum):
     """From above (X+ down, Z+ right), onto the end of the part, onto its side unrolled (Z+ right, C+ up).
 
-    ``SECTION`` is the part itself, cut along its axis, as from above.
+    ``SECTION`` is the part itself, cut along its axis, as from above; ``SOLID`` the same in space.
     """
 
     PATH = "PATH"
     FACE = "FACE"
     SIDE = "SIDE"
     SECTION = "SECTION"
+    SOLID = "SOLID"
+
+
+OF_PART = frozenset({Aspect.SECTION, Aspect.SOLID})
 
 
 class Tip(NamedTuple):
@@ -60,7 +64,7 @@ def tip_of(snapshot: Snapshot, job: Job | None = None) -> Tip:
 
 def polyline_of(picture: Picture | None, aspect: Aspect) -> Polyline | None:
     """What is to be seen from there."""
-    if picture is None or aspect in {Aspect.PATH, Aspect.SECTION}:
+    if picture is None or aspect is Aspect.PATH or aspect in OF_PART:
         return picture
     return picture.face if aspect is Aspect.FACE else picture.side
 
@@ -71,7 +75,7 @@ def views_of(picture: Picture, *, part: bool = False) -> list[View]:
     more = [aspect for aspect in (Aspect.FACE, Aspect.SIDE) if polyline_of(picture, aspect) is not None]
     both = [(Aspect.PATH, aspect) for aspect in more]
     views = [*both, *((aspect,) for aspect in more), (Aspect.PATH,)]
-    return [*views, (Aspect.SECTION,)] if part and picture.part is not None else views
+    return [*views, (Aspect.SECTION,), (Aspect.SOLID,)] if part and picture.part is not None else views
 
 
 # --- legs of an approach ------------------------------------------------------------------------------

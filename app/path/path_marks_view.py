@@ -13,14 +13,14 @@ from PySide6.QtGui import QFontMetricsF, QPainter, QPen, QPolygonF
 from app.desk import formats
 from app.desk.translation import tr
 from app.path.measuring import Apart
-from app.path.path_aspects import Aspect, DrawnLeg
+from app.path.path_aspects import OF_PART, Aspect, DrawnLeg
 from app.path.path_layers_view import Ink
 from app.path.path_pane_view import Pane
 from app.path.path_projection import Projection, scale_length
 from app.path.polyline import Polyline
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Press
-from core.language.diagnostics import Severity
+from core.language.diagnostics import Diagnostic, Severity
 
 BUTTON = (6.6, 6.6, 7.0)  # units: width, height, from one to the next; a fingertip
 LOW = 5.0  # units: from one to the next at least
@@ -107,10 +107,10 @@ def draw_border(painter: QPainter, look: Look, room: QRectF) -> None:
     painter.drawLine(room.topLeft(), room.bottomLeft())
 
 
-def draw_words(painter: QPainter, look: Look, room: QRectF, words: str) -> None:
+def draw_words(painter: QPainter, look: Look, room: QRectF, words: str, ink: str = "soft") -> None:
     """At the upper left of a pane: what it is, or what is to be said of it."""
     u = look.u
-    painter.setPen(look.colour("soft"))
+    painter.setPen(look.colour(ink))
     painter.setFont(look.fit(words, 1.6, room.width() - 2 * u, bold=True))
     put(painter, QRectF(room.x() + 1.2 * u, room.y() + 0.9 * u, room.width() - 2 * u, 2 * u), LEFT, words)
 
@@ -180,15 +180,22 @@ def apart_words(apart: Apart, in_mm: bool) -> str:
     )
 
 
+def errors_of(pane: Pane) -> list[Diagnostic]:
+    """What is wrong with the part that a pane shows, by now."""
+    shown = pane.player.shown if pane.player is not None else None
+    found = shown.instant.findings if shown is not None else ()
+    return [each for each in found if each.severity is Severity.ERROR]
+
+
 def part_words(pane: Pane) -> str:
     """What is wrong by now, or else which tool cuts."""
-    player = getattr(pane, "player", None)
-    shown = player.shown if player is not None else None
-    if player is None or shown is None:
-        return player.trouble if player is not None and player.trouble else tr("PART  ·  BEING MADE")
-    wrong = [each for each in shown.instant.findings if each.severity is Severity.ERROR]
+    shown = pane.player.shown if pane.player is not None else None
+    if pane.player is None or shown is None:
+        trouble = pane.player.trouble if pane.player is not None else ""
+        return trouble or tr("PART  ·  BEING MADE")
+    wrong = errors_of(pane)
     if wrong:
-        return tr("LINE {line}: {what}").format(line=wrong[-1].line, what=wrong[-1].message)
+        return tr("LINE {line}: {what}").format(line=wrong[-1].line, what=tr(wrong[-1].message))
     if shown.instant.stock is None:
         return tr("PART  ·  NOTHING IS CUT")
     tool = shown.instant.tool
@@ -197,7 +204,7 @@ def part_words(pane: Pane) -> str:
 
 def pane_words(pane: Pane, in_mm: bool) -> str:
     """Which side of the part a pane shows."""
-    if pane.aspect is Aspect.SECTION:
+    if pane.aspect in OF_PART:
         return part_words(pane)
     if pane.aspect is Aspect.FACE:
         return tr("FACE  ·  SEEN FROM THE TAILSTOCK")
@@ -216,6 +223,8 @@ def draw_centre_lines(
 
     The painter's origin is the corner of the pane.
     """
+    if aspect is Aspect.SOLID:
+        return
     if aspect in {Aspect.PATH, Aspect.SECTION}:
         _cross(painter, look, projection)
     elif aspect is Aspect.FACE:

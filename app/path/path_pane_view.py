@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPainter, QPolygonF
 
 from app.path.face_and_side import face_point
 from app.path.measuring import farthest, point_at
-from app.path.path_aspects import Aspect, Tip, View, polyline_of, views_of
+from app.path.path_aspects import OF_PART, Aspect, Tip, View, polyline_of, views_of
 from app.path.path_layers_view import Ink, Layers, polygon, stroke_run
 from app.path.path_picture import Picture
 from app.path.path_projection import Projection, boxed, fitted, runs, travelled
 from app.path.polyline import Bounds, Polyline
 from app.screen.look import Look
+
+if TYPE_CHECKING:
+    from app.path.part_player import PartPlayer
 
 ZOOM_STEP = 1.25
 PAN_STEP = 0.1  # of the width
@@ -29,8 +33,10 @@ MOST_MARKED = 20_000  # points drawn thick, of a line that makes more of them
 class Pane:
     """A part of the path view; places are the widget's pixels, everything drawn is the pane's own.
 
-    z and x are those of the plane that is looked at.
+    z and x are those of the plane that is looked at. ``player`` is that of the part, where that is shown.
     """
+
+    player: PartPlayer | None = None
 
     def __init__(
         self, look: Look, aspect: Aspect, polyline: Polyline, before: Polyline | None = None
@@ -190,7 +196,7 @@ class Pane:
 
     def place_of(self, tip: Tip) -> Place | None:
         """Where the machine's tip is seen here; a face keeps what it showed while C turns as the spindle."""
-        if self.aspect in {Aspect.PATH, Aspect.SECTION}:
+        if self.aspect is Aspect.PATH or self.aspect in OF_PART:
             return tip.z, tip.x
         if tip.c is None:
             return self._place

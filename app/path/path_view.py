@@ -15,7 +15,7 @@ from PySide6.QtGui import QFocusEvent, QKeyEvent, QMouseEvent, QPainter, QResize
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.path.path_aspects import Aspect, DrawnLeg, Tip
+from app.path.path_aspects import OF_PART, Aspect, DrawnLeg, Tip
 from app.path.path_pointer_view import Pointer
 from app.screen.look import LEFT, Look, put
 from app.screen.panel import Panel
@@ -91,7 +91,7 @@ class PathView(Panel):
     @property
     def shows_part(self) -> bool:
         """Whether the part is what is looked at."""
-        return any(pane.aspect is Aspect.SECTION for pane in self.panes)
+        return any(pane.aspect in OF_PART for pane in self.panes)
 
     @property
     def drawn(self) -> bool:
@@ -160,10 +160,12 @@ class PathView(Panel):
         self._lay_out()
 
     def _make(self, aspect: Aspect, polyline: Polyline, before: Polyline | None) -> Pane:
-        if aspect is Aspect.SECTION and self.player is not None:
+        if aspect in OF_PART and self.player is not None:
             from app.path.part_pane_view import PartPane
+            from app.path.solid_pane_view import SolidPane
 
-            return PartPane(self.look, aspect, polyline, self.player)
+            made = PartPane if aspect is Aspect.SECTION else SolidPane
+            return made(self.look, aspect, polyline, self.player)
         from app.path.path_pane_view import Pane
 
         return Pane(self.look, aspect, polyline, before)
@@ -397,10 +399,11 @@ class PathView(Panel):
         if self.ruler is not None and self.ruler.pane is pane:
             self.ruler.draw(painter)
         painter.restore()
-        if pane.projection is not None and pane.aspect is not Aspect.SECTION:
+        if pane.projection is not None and pane.aspect not in OF_PART:
             marks.draw_scale(painter, look, pane.room, pane.projection, self.in_mm)
         if pane.aspect is not Aspect.PATH:
-            marks.draw_words(painter, look, pane.room, marks.pane_words(pane, self.in_mm))
+            ink = "alarm" if pane.aspect in OF_PART and marks.errors_of(pane) else "soft"
+            marks.draw_words(painter, look, pane.room, marks.pane_words(pane, self.in_mm), ink)
             if pane is not self.panes[0]:
                 marks.draw_border(painter, look, pane.room)
 

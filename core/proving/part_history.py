@@ -17,6 +17,7 @@ from core.language.diagnostics import Diagnostic, Severity
 from core.part.clamping import Clamping
 from core.part.stock import Stock
 from core.part.stock_spec import StockSpec
+from core.part.surface_points import Solid, solid_of, turned_solid
 from core.part.swept_edge import FloatArray, Point
 from core.part.tool_outline import ToolOutline, outline
 from core.part.turned_part import TurnedPart
@@ -139,6 +140,7 @@ class PartHistory:
         self._clamping = moves.setting.clamping
         self._making = Making(self._tools, self.stock, moves.setting)
         self._done = 0  # steps
+        self._last: PartInstant | None = None
         self._kept.keep(0, self._making)
 
     def at(self, block: int, share: float = 0.0, watch: Go | None = None) -> PartInstant:
@@ -146,10 +148,12 @@ class PartHistory:
 
         ``watch`` is called now and then on a long way and may raise: what was made until then is kept.
         """
+        self._last = None
         done = int(np.searchsorted(self._numbers, block, side="right"))
         self._go_to(done, watch)
         under_way = self.steps[done] if done < len(self.steps) and share > 0.0 else None
-        return self._instant(block, share, under_way)
+        self._last = self._instant(block, share, under_way)
+        return self._last
 
     def share_at(self, block: int, behind_end: Point) -> float:
         """How much of a block is done when the tool is ``behind_end`` (Z, r; mm) off the place of its end."""
@@ -163,6 +167,19 @@ class PartHistory:
         """The part as far as it has been made on a long way."""
         done = self._done
         return self._instant(int(self._numbers[done - 1]) if done else 0, 0.0, None)
+
+    def made(self, instant: PartInstant) -> bool:
+        """Whether the part is still as it was at this instant, the last that was given out."""
+        return instant is self._last
+
+    def solid(self, instant: PartInstant) -> Solid | None:
+        """The solid of the last instant, for this thread alone. None: there is no metal."""
+        if instant.near is None:
+            return None
+        milling = self._making.milling
+        if milling is not None:
+            return solid_of(milling.field)
+        return turned_solid(*instant.near)
 
     def _step(self, block: int) -> Step | None:
         there = int(np.searchsorted(self._numbers, block))

@@ -2899,6 +2899,11 @@
       <translation>LADO</translation>
     </message>
     <message>
+      <location filename="app/path/path_aspects.py" />
+      <source>SOLID</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
       <location filename="app/path/path_marks_view.py" />
       <source>AT MOST {length} {unit} APART  ·  AT THE CIRCLE</source>
       <translation>A LO MÁS {length} {unit} DE DIFERENCIA  ·  EN EL CÍRCULO</translation>

@@ -190,3 +190,45 @@ def test_shares_along_a_corner() -> None:
     assert share_along(corner, (5.0, 0.5)) == pytest.approx(3.5 / 4.0)
     assert share_along([(1.0, 1.0), (1.0, 1.0)], (0.0, 0.0)) == 0.0
     assert not math.isnan(share_along([(1.0, 1.0)], (0.0, 0.0)))
+
+
+MILL = PartSetting(
+    bar(INCH, 0.0, -60.0), {1: TURNING, 6: ToolShape(ToolKind.END_MILL, tip=8, diameter=6.0, length=15.0)}
+)
+MILLED = HEAD + (
+    "X.6Z.05\nX.45\nG95F.004Z-.5\nX.55\nG94F300X.6Z.1\nT6\nX.6Z-.4\nM05\nM15\nM19\nG04F3\nG94F4X.4\n"
+    "Z-.8\nX.6\nG94F300X1\nM16\nM30\n"
+)
+
+
+def test_what_is_milled_is_replayed_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(part_history, "_EVERY", 2)
+    seen = history(MILLED, MILL)
+    count = len(seen.steps)
+    for block in [count, 4, count - 4, count - 3, 0, count]:
+        instant = seen.at(block)
+        made = Making(Tools(seen.steps, MILL), seen.stock, MILL)
+        for step in seen.steps[:block]:
+            made.see(step)
+        found = seen.solid(instant)
+        assert found is not None
+        if made.milling is None:
+            assert found.low.shape[2] == 1
+        else:
+            np.testing.assert_array_equal(found.high, made.milling.field.high)
+    # the slot is on one side alone: .1 in deep from a radius of .5 at Z-.6
+    assert instant.near is not None
+    assert instant.far is not None
+    depths = []
+    for half in (instant.near, instant.far):
+        there = int(np.searchsorted(half.edges, -0.6 * INCH)) - 1
+        depths.append(half.high[:, there].max())
+    assert sorted(depths) == pytest.approx([0.4 * INCH, 0.5 * INCH], abs=0.01)
+
+
+def test_half_of_a_milling_move_stands_half_way() -> None:
+    seen = history(MILLED, MILL)
+    along = next(k for k, step in enumerate(seen.steps) if part_history._line(step) == 16)
+    instant = seen.at(along, 0.5)
+    assert instant.tool is not None
+    assert instant.tool.at == pytest.approx((-0.6 * INCH, 0.4 * INCH))

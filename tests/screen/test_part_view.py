@@ -166,3 +166,87 @@ def test_without_a_program_nothing_is_played(view: PathView) -> None:
     view.advance()
     view.next_view()
     assert not view.shows_part
+
+
+# --- in space -----------------------------------------------------------------------------------------
+
+
+def solid(view: PathView, program: str) -> QImage:
+    """The part in space at the end of a program."""
+    shown(view, program)
+    while view.panes[0].aspect is not Aspect.SOLID:
+        view.next_view()
+    return settled(view)
+
+
+def drawn(view: PathView) -> int:
+    """How many pixels of the picture are part."""
+    assert view.player is not None
+    now = view.player.shown
+    assert now is not None
+    assert now.image is not None
+    return int((now.image >> 24 > 0).sum())
+
+
+def test_the_solid_fills_its_pane_and_turns_with_a_finger(view: PathView) -> None:
+    before = solid(view, SHAFT)
+    room = view.panes[0].room
+    assert drawn(view) > 0.2 * room.height() ** 2
+    middle = room.center().toPoint()
+    QTest.mousePress(view, LEFT, pos=middle)
+    for k in range(1, 11):
+        QTest.mouseMove(view, middle + QPoint(6 * k, 3 * k))
+    QTest.mouseRelease(view, LEFT, pos=middle + QPoint(60, 30))
+    assert settled(view) != before
+
+
+def test_keys_that_pan_turn_the_solid_and_stop_before_its_end(view: PathView) -> None:
+    solid(view, SHAFT)
+    assert view.player is not None
+    first = view.player._wanted.solid
+    view.pan(1, 0)
+    turned = view.player._wanted.solid
+    assert first is not None
+    assert turned is not None
+    assert turned.view.azimuth == first.view.azimuth + 10.0
+    for _ in range(40):
+        view.pan(1, 0)
+    steepest = view.player._wanted.solid
+    assert steepest is not None
+    assert steepest.view.azimuth == 85.0
+
+
+def test_what_a_rapid_has_hit_is_red_in_space(view: PathView) -> None:
+    def reds(image: QImage) -> int:
+        colours = (
+            QColor(image.pixel(x, y)) for x in range(0, image.width(), 4) for y in range(0, image.height(), 4)
+        )
+        return sum(each.red() > 150 and each.green() < 90 for each in colours)
+
+    assert reds(solid(view, RAPID)) > reds(solid(view, SHAFT)) + 20
+
+
+def test_c_turns_the_solid_while_it_is_held(view: PathView) -> None:
+    solid(view, SHAFT)
+    view.show_tip(Tip(3, 0.0, 5.0, c=30.0))
+    assert view.player is not None
+    wanted = view.player._wanted.solid
+    assert wanted is not None
+    assert wanted.view.roll == 30.0
+
+
+def test_without_metal_there_is_no_solid(view: PathView) -> None:
+    shown(view, "G90G94F300\nM03S1500\nT1\nX2Z2\nM30\n")
+    while view.panes[0].aspect is not Aspect.SOLID:
+        view.next_view()
+    settled(view)
+    assert view.player is not None
+    now = view.player.shown
+    assert now is not None
+    assert now.image is None
+
+
+def test_after_the_solid_the_path_comes_again(view: PathView) -> None:
+    solid(view, SHAFT)
+    view.next_view()
+    assert [pane.aspect for pane in view.panes] == [Aspect.PATH]

@@ -1,0 +1,94 @@
+"""The pane of the part in space: turned by a finger, by the keys that pan, and by C; drawn by the worker."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QPointF
+from PySide6.QtGui import QImage, QPainter
+
+from app.path.part_pane_view import PartPane
+from app.path.part_player import PartPlayer, SolidLook
+from app.path.path_aspects import Aspect, Tip
+from app.path.path_pane_view import Place
+from app.path.path_projection import Projection
+from app.path.polyline import Polyline
+from app.screen.look import Look
+from core.part.solid_view import SolidView, fitted
+
+_TURN = 0.4  # degrees a pixel
+_STEP = 10.0  # degrees a key
+_STEEPEST = 85.0  # degrees from the side
+
+
+class SolidPane(PartPane):
+    """Asks the player for a picture of its own size, and shows the latest that it has."""
+
+    def __init__(self, look: Look, aspect: Aspect, polyline: Polyline, player: PartPlayer) -> None:
+        self._azimuth, self._tilt, self._roll = 30.0, 35.0, 0.0
+        super().__init__(look, aspect, polyline, player)
+
+    # --- what is seen --------------------------------------------------------------------------------
+
+    def whole(self) -> Projection:
+        """All of the stock."""
+        flat, shown = super().whole(), self.player.shown
+        if shown is None or (stock := shown.instant.stock) is None:
+            return flat
+        wide, high = flat.width, max(flat.height - round(3.0 * self.look.u), 1)
+        scale, centre = fitted(stock.back, stock.front, stock.radius, wide, high, self._azimuth)
+        return Projection(centre, 0.0, scale, flat.width, flat.height)
+
+    def look_at(self, projection: Projection) -> None:
+        """This is seen from now on."""
+        self.projection = projection
+        self._want()
+
+    def _want(self) -> None:
+        projection = self.projection
+        if projection is None or projection.width < 1 or projection.height < 1:
+            return
+        view = SolidView(self._azimuth, self._tilt, self._roll, projection.scale, projection.z)
+        self.player.look_at(SolidLook(view, projection.width, projection.height))
+
+    def place_of(self, tip: Tip) -> Place | None:
+        """The tool's place; C turns the part while it is held."""
+        if tip.c is not None and tip.c != self._roll:
+            self._roll = tip.c
+            self._want()
+        return super().place_of(tip)
+
+    # --- looking around ------------------------------------------------------------------------------
+
+    def drag(self, by: QPointF) -> None:
+        """The part turns with the finger."""
+        self._turn(by.x() * _TURN, by.y() * _TURN)
+
+    def pan(self, across: int, down: int) -> None:
+        """The keys that pan turn it by steps."""
+        self._turn(-across * _STEP, -down * _STEP)
+
+    def _turn(self, across: float, down: float) -> None:
+        self._azimuth = min(max(self._azimuth - across, -_STEEPEST), _STEEPEST)
+        self._tilt = (self._tilt + down + 180.0) % 360.0 - 180.0
+        self._want()
+
+    def magnify(self, factor: float, at: QPointF) -> None:
+        """Nearer by a factor; the axis stays in the middle."""
+        if self.projection is not None:
+            self.by_hand = True
+            across = (at - self.room.topLeft()).x()
+            self.look_at(self.projection.zoomed(factor, across, self.projection.height / 2))
+
+    # --- drawing -------------------------------------------------------------------------------------
+
+    def draw_path(self, painter: QPainter) -> None:
+        """The latest picture; the painter's origin is the corner of the pane."""
+        shown = self.player.shown
+        if shown is not None and shown.image is not None:
+            image = shown.image
+            high, wide = image.shape
+            painter.drawImage(
+                QPointF(0, 0), QImage(image.tobytes(), wide, high, 4 * wide, QImage.Format.Format_ARGB32)
+            )
+
+    def draw_run(self, painter: QPainter) -> None:
+        """Nothing: the tool is seen in the section."""
