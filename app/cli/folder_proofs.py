@@ -8,7 +8,7 @@ import os
 import sys
 from collections.abc import Iterator
 from concurrent.futures import CancelledError, Executor, Future
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
@@ -140,6 +140,8 @@ class _Run:
         self._proofs[index] = proof
         while self._told in self._proofs:
             self._tell(self._files.paths[self._told], self._proofs[self._told])
+            # What is in the report already is not kept twice: thousands of them are large.
+            self._proofs[self._told] = replace(self._proofs[self._told], section="")
             self._told += 1
         self._progress.reach(len(self._proofs))
 

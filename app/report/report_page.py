@@ -83,7 +83,9 @@ class ProgramReport:
         if part is None or part.stock is None:
             return []
         stock = part.stock
-        name = stock.given or f"taken as a bar of Ø {self._length(2 * stock.radius)}, as nobody has said it"
+        bore = f", bore {self._length(2 * stock.bore[0][1])}" if stock.bore else ""
+        taken = f"taken as a bar of Ø {self._length(2 * stock.radius)}{bore}, as nobody has said it"
+        name = stock.given or taken
         rows = [
             ("Stock", f"{name}; {self._volume(part.volume)}"),
             ("Cut away", self._volume(part.removed)),
