@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.command_errors import CommandError
 from app.cli.figures import MM_PER_INCH
-from app.cli.program_options import read_source
+from app.cli.program_options import circumstances, read_source
 
 if TYPE_CHECKING:
     from app.cli.program_options import Circumstances
@@ -27,7 +27,6 @@ _LONGEST = 1016.0  # mm
 
 def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting:
     """Stock and tools as the options have them. Raises CommandError with what is wrong in them."""
-    from core.part.stock_spec import StockError
     from core.proving.part_proof import PartSetting
 
     setting = PartSetting(
@@ -38,9 +37,30 @@ def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting
     if around.machine.tooling == "gang":
         setting = replace(setting, gang={n: (tool.z, tool.x) for n, tool in around.setup.tools.items()})
     if args.stock is None:
+        if args.keep_stock:
+            raise CommandError("--keep-stock needs --stock, which says what is to be kept")
         return setting
+    return replace(setting, stock=_said(args.stock, args, around, setting))
+
+
+def with_kept_stock(setting: PartSetting, program: str, args: argparse.Namespace) -> PartSetting:
+    """Without --stock that of the store; with --keep-stock the store remembers it. Raises CommandError."""
+    from app.compose.kept_stock import keep_stock, kept_stock
+
+    if args.keep_stock:
+        keep_stock(program, args.stock)
+    if args.stock is not None or not (text := kept_stock(program)):
+        return setting
+    return replace(setting, stock=_said(text, args, circumstances(args), setting))
+
+
+def _said(
+    text: str, args: argparse.Namespace, around: Circumstances, setting: PartSetting
+) -> Stock | StockSpec:
+    from core.part.stock_spec import StockError
+
     try:
-        return replace(setting, stock=_stock(args, around, setting))
+        return _stock(text, args, around, setting)
     except StockError as error:
         raise CommandError(f"--stock {error}") from error
 
@@ -72,21 +92,23 @@ def _clamping(args: argparse.Namespace, model: ClampingModel) -> Clamping | None
     return Clamping(diameter, stick_out, model.jaws, model.jaw_diameter or model.diameter, model.max_rpm)
 
 
-def _stock(args: argparse.Namespace, around: Circumstances, setting: PartSetting) -> Stock | StockSpec:
+def _stock(
+    text: str, args: argparse.Namespace, around: Circumstances, setting: PartSetting
+) -> Stock | StockSpec:
     from core.part.stock_spec import profile_stock, stock_spec
 
-    spec = stock_spec(args.stock)
+    spec = stock_spec(text)
     if spec.after:
         return _left_by(Path(spec.after), args, around, setting, spec)
     if spec.profile:
         path = Path(spec.profile)
         try:
-            text = path.read_text(encoding="utf-8")
+            points = path.read_text(encoding="utf-8")
         except OSError as error:
             raise CommandError(f"{path} cannot be read ({error.strerror}); check name and rights") from error
         except UnicodeDecodeError as error:
             raise CommandError(f"{path} is no text; a profile is a CSV file of z, r") from error
-        return profile_stock(spec.given, text, 25.4, spec.allowance)
+        return profile_stock(spec.given, points, 25.4, spec.allowance)
     return spec
 
 

@@ -52,6 +52,7 @@ def add_parser(subparsers: SubParsers) -> None:
     parser.add_argument(
         "--report", metavar="FILE", help="HTML file with drawings, findings, tools, times, stops and offsets"
     )
+    parser.add_argument("--keep-stock", action="store_true", help="the store remembers it with the program")
     add_folder_options(parser)
 
 
@@ -124,10 +125,12 @@ def _other(args: argparse.Namespace, setup: Setup) -> OtherOffsets | None:
 
 def _status(path: Path, job: ProofJob, args: argparse.Namespace, report: ReportFile | None) -> int:
     """Prove one file; one that cannot be read does not keep the others from their proof."""
+    from app.cli.part_options import with_kept_stock
     from app.cli.proof_work import Proof
 
     try:
         source = read_source(path, args)
+        job = replace(job, setting=with_kept_stock(job.setting, source.name, args))
     except CommandError as error:
         sys.stderr.write(f"turndesk: {error}\n")
         if report is not None:

@@ -120,6 +120,7 @@ class _ProofAndPicture:
 
 def _part_setting(job: Job, machine: Machine, shapes: Mapping[int, ToolShape]) -> PartSetting:
     """What is known of tools and of what holds the stock."""
+    from app.compose.kept_stock import round_stock_at_hand
     from core.part.clamping import Clamping
     from core.proving.part_proof import PartSetting
 
@@ -129,6 +130,7 @@ def _part_setting(job: Job, machine: Machine, shapes: Mapping[int, ToolShape]) -
         jaws = held.jaw_diameter or held.diameter
         clamping = Clamping(held.diameter, held.stick_out, held.jaws, jaws, held.max_rpm)
     return PartSetting(
+        stock=round_stock_at_hand(job.source.name),
         shapes=shapes,
         nose_radii={number: tool.nose_radius for number, tool in tools.items()},
         clamping=clamping,

@@ -159,6 +159,15 @@ class Store:
         """A setting, None: not set."""
         return self._asked(event_log.setting, key)
 
+    def stock_of(self, program: str) -> str:
+        """What was last said about the stock of a program; empty: nothing."""
+        text = self.setting(program_records.stock_key(program))
+        return text if isinstance(text, str) else ""
+
+    def keep_stock(self, program: str, text: str) -> Future[None]:
+        """Remembers the stock of a program; an empty text forgets it."""
+        return self.set_setting(program_records.stock_key(program), text or None)
+
     def parts(self, program: str) -> int:
         """Parts of this program that were counted, those that are still to be written too."""
         with self.read() as connection:

@@ -65,6 +65,7 @@ COVERED = {
     ("prove", "--ideal"): "test_the_options_of_a_program_act",
     ("prove", "--stick-out"): "test_a_stick_out_brings_the_chuck_into_the_proof",
     ("prove", "--tools"): "test_tools_of_a_file_are_assumed_no_more",
+    ("prove", "--keep-stock"): "test_the_store_remembers_the_stock_of_a_program",
     ("prove", "--stock"): "test_the_promised_keys_in_cubic_inches",
     ("prove", "--jobs"): "test_files_and_folders_mixed_are_proved_once_each",
     ("prove", "--compare"): "tests/cli/test_compare.py",

@@ -178,3 +178,26 @@ def test_shapes_of_the_store_are_used(turndesk: Turndesk, tmp_path: Path) -> Non
     assert told.lines[0]["stock"]["assumed"] != []
     assert turndesk("offsets", "set", "T1", "kind=turning", "insert=DCMT21.51").status == 0
     assert turndesk("prove", path, "--json").lines[0]["stock"]["assumed"] == []
+
+
+def test_the_store_remembers_the_stock_of_a_program(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
+    path, other = written(tmp_path, PART), written(tmp_path, PART, "other.nc")
+    given = ("--offsets", offsets, "--json")
+    told = turndesk("prove", path, *given, "--stock", "bar:1.1+.02", "--keep-stock")
+    assert told.lines[0]["stock"]["given"] == "bar:1.1+.02"
+    assert turndesk("prove", path, *given).lines[0]["stock"]["given"] == "bar:1.1+.02"
+    assert turndesk("prove", path, *given, "--stock", "bar:1.2").lines[0]["stock"]["given"] == "bar:1.2"
+    assert turndesk("prove", path, *given).lines[0]["stock"]["given"] == "bar:1.1+.02"
+    assert turndesk("prove", other, *given).lines[0]["stock"]["given"] is None
+
+
+def test_nothing_is_kept_without_a_stock_or_when_it_means_nothing(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
+    path = written(tmp_path, PART)
+    told = turndesk("prove", path, "--offsets", offsets, "--keep-stock")
+    assert (told.status, "needs --stock" in told.err) == (2, True)
+    assert turndesk("prove", path, "--offsets", offsets, "--stock", "rod", "--keep-stock").status == 2
+    assert turndesk("prove", path, "--offsets", offsets, "--json").lines[0]["stock"]["given"] is None

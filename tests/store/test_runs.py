@@ -98,3 +98,17 @@ def test_an_export_without_runs_has_the_head_alone(store: Store, tmp_path: Path)
     export(store, tmp_path / "out")
     told = (tmp_path / "out" / "runs.csv").read_text(encoding="utf-8").splitlines()
     assert told == ["program,parts,started,outcome,cycles,best_s,latest_s,proved,proof,planned_s"]
+
+
+def test_the_stock_of_a_program_is_kept_renamed_and_forgotten(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        assert store.stock_of("PIN") == ""
+        store.keep_stock("PIN", "bar:.5").result()
+        store.keep_stock("KNOB", "bar:30mm").result()
+        store.rename_program("PIN", "KNOB").result()
+        assert (store.stock_of("PIN"), store.stock_of("KNOB")) == ("", "bar:.5")
+        store.keep_stock("KNOB", "").result()
+    with Store.open(tmp_path, read_only=True) as store:
+        assert store.stock_of("KNOB") == ""
+        with pytest.raises(StoreError, match="reading only"):
+            store.keep_stock("KNOB", "bar:1")
