@@ -232,16 +232,8 @@ def test_ctrl_c_keeps_what_is_done_and_the_next_run_goes_on(tmp_path: Path, offs
     folder.mkdir()
     for number in range(60):
         (folder / f"{number:02d}.nc").write_text(program(number))
-    command = [
-        sys.executable,
-        "-m",
-        "app.cli.main",
-        "prove",
-        str(folder),
-        "--json",
-        "--offsets",
-        str(offsets),
-    ]
+    command = [sys.executable, "-m", "app.cli.main", "prove", str(folder), "--json",
+               "--offsets", str(offsets), "--report", str(tmp_path / "report.html")]  # fmt: skip
     around = {**os.environ, "TURNDESK_HOME": str(home)}
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=around, start_new_session=True
@@ -254,6 +246,7 @@ def test_ctrl_c_keeps_what_is_done_and_the_next_run_goes_on(tmp_path: Path, offs
     assert (proving.returncode, said) == (130, "turndesk: interrupted\n")
     assert len(kept(home)) >= len(rest) + 1
     assert len(kept(home)) < 60
+    assert [each.name for each in tmp_path.iterdir() if "report" in each.name] == []
 
 
 # --- what is refused
