@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
+from app.cli.part_options import with_kept_stock
 from app.cli.program_files import ProgramFiles, program_files
 from app.cli.program_options import read_source
 from app.cli.progress_bar import Progress
@@ -21,6 +22,7 @@ from app.cli.proof_pool import KILLED, Proving, Workers, WorkerSource, cores
 from app.cli.proof_table import table
 from app.cli.proof_work import OtherVersionError, Proof, code_version, proof_of
 from app.cli.report_file import ReportFile, report_file
+from app.compose.kept_stock import programs_with_stock
 from core.language.source import Source
 
 
@@ -48,6 +50,7 @@ class _Unit:
 
     index: int
     source: Source
+    job: ProofJob
     key: str
 
 
@@ -62,6 +65,8 @@ class _Run:
 
         self._args, self._job, self._files, self._workers = args, job, files, workers
         self._report = report
+        names = (path.name for path in files.paths)
+        self._stocked = programs_with_stock(names) if args.stock is None else frozenset[str]()
         self._version = code_version() if args.scheduler is not None else ""  # our own workers have ours
         self._cache = None if args.no_cache else ProofCache(data_folder() / "proofs", job)
         self._proofs: dict[int, Proof] = {}
@@ -96,22 +101,30 @@ class _Run:
         return max(_status(proof) for _, proof in rows)
 
     def _submit(self, executor: Executor, unit: _Unit) -> Future[Proof]:
-        return executor.submit(proof_of, self._job.packed, self._version, unit.source)
+        return executor.submit(proof_of, unit.job.packed, self._version, unit.source)
 
     def _units(self) -> Iterator[_Unit]:
         """The programs that no proof is kept of, one after the other as workers are ready for them."""
         for index, path in enumerate(self._files.paths):
             try:
                 source = read_source(path, self._args)
+                job = self._job_of(source)
             except CommandError as error:
                 self._add(index, Proof({}, fault=str(error)))
                 continue
-            key = self._cache.key(source) if self._cache is not None else ""
+            own = job.setting.stock if job is not self._job else None
+            key = self._cache.key(source, own) if self._cache is not None else ""
             found = self._cache.find(key) if self._cache is not None else None
             if found is not None:
                 self._add(index, found)
             else:
-                yield _Unit(index, source, key)
+                yield _Unit(index, source, job, key)
+
+    def _job_of(self, source: Source) -> ProofJob:
+        """The job of all, or with the stock that the store remembers with this program."""
+        if source.name not in self._stocked:
+            return self._job
+        return replace(self._job, setting=with_kept_stock(self._job.setting, source.name, self._args))
 
     def _kept(self, unit: _Unit, made: Proof | BaseException) -> Proof:
         if isinstance(made, BaseException):

@@ -39,9 +39,9 @@ class ProofCache:
         self._job = sha256(job_text.encode()).digest()
         self._full = False
 
-    def key(self, source: Source) -> str:
-        """What the proof of a program depends on, in a name."""
-        text = plain((source.name, str(source.dialect), source.text, source.subprograms))
+    def key(self, source: Source, own: object = None) -> str:
+        """What the proof of a program depends on, in a name; ``own`` is what else counts for it alone."""
+        text = plain((source.name, str(source.dialect), source.text, source.subprograms, own))
         return sha256(self._job + text.encode("utf-8", "surrogatepass")).hexdigest()
 
     def find(self, key: str) -> Proof | None:

@@ -92,6 +92,8 @@ def _for_workers(args: argparse.Namespace) -> bool:
     many = given or any(Path(name).is_dir() for name in args.files)
     if args.no_cache and not many:
         raise CommandError("--no-cache is for folders and --jobs; one program is always proved anew")
+    if args.keep_stock and many:
+        raise CommandError("--keep-stock is for files, not for folders and --jobs; name each program")
     if args.jobs is not None and args.scheduler is not None:
         raise CommandError("--jobs and --scheduler exclude each other: the scheduler has its own workers")
     return many

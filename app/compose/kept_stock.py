@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from app.cli.command_errors import CommandError
@@ -24,6 +25,20 @@ def kept_stock(program: str) -> str:
     try:
         with Store.open(folder, read_only=True) as store:
             return store.stock_of(program)
+    except StoreError as error:
+        raise CommandError(str(error)) from error
+
+
+def programs_with_stock(programs: Iterable[str]) -> frozenset[str]:
+    """Those with which the store remembers a stock. Raises CommandError as ``kept_stock``."""
+    folder = data_folder()
+    if not folder.is_dir():
+        return frozenset()
+    from core.store.store import Store, StoreError
+
+    try:
+        with Store.open(folder, read_only=True) as store:
+            return frozenset(program for program in programs if store.stock_of(program))
     except StoreError as error:
         raise CommandError(str(error)) from error
 

@@ -180,6 +180,21 @@ def test_only_what_has_a_lasting_text_is_hashed() -> None:
         plain(plain)
 
 
+def test_a_stock_that_is_kept_with_a_program_counts_in_a_folder_too(
+    turndesk: Turndesk, parts: Path, offsets: Path, home: Path
+) -> None:
+    given = ("--offsets", offsets, "--json")
+    before = turndesk("prove", parts, *given)
+    alone = turndesk("prove", parts / "b.nc", *given, "--stock", "bar:1.25", "--keep-stock").lines[0]
+    after = turndesk("prove", parts, *given)
+    assert after.lines[1] == alone
+    assert after.lines[1]["stock"]["given"] == "bar:1.25"
+    assert [after.lines[k] for k in (0, 2)] == [before.lines[k] for k in (0, 2)]
+    assert len(kept(home)) == 4
+    told = turndesk("prove", parts, "--stock", "bar:2", "--keep-stock")
+    assert (told.status, "--keep-stock is for files" in told.err) == (2, True)
+
+
 # --- workers that are killed
 
 
