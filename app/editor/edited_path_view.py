@@ -48,6 +48,8 @@ class EditedPath(PathView):
             return
         self._followed = (picture, line)
         block = picture.block_of_line(line)
+        if not block and self.player is not None:
+            self.player.want(0.0)  # before the first move
         at = max(0, picture.points_done(block) - 1)
         self.show_tip(Tip(block, float(picture.z[at]), float(picture.x[at])))
         self.mark(picture.blocks_of_line(line))

@@ -114,7 +114,7 @@ class Measure:
         """The figures: where the cross stands, or what lies between the held point and it."""
         start, end = self.first, self.second or self.cursor
         aspect, scale = self.pane.aspect, self.pane.polyline.round
-        if aspect is Aspect.PATH:
+        if aspect in {Aspect.PATH, Aspect.SECTION}:
             place = measuring.place_on_path(end, metric)
             return place + (measuring.between_on_path(start, end, metric) if start else [])
         if aspect is Aspect.FACE:

@@ -94,7 +94,7 @@ class PartPlayer:
         if picture is None or before is None:
             self._shown = None
         if not self.bound:
-            self.seek(self.duration)
+            self.want(self.duration)
 
     def close(self) -> None:
         """Give up what is being made and end the worker."""
@@ -135,7 +135,7 @@ class PartPlayer:
         self.worker.settle(timeout)
 
     def _play(self, gone: float) -> None:
-        self._want_time(self.t + min(gone, 0.25) * (FAST if self.fast else 1.0))
+        self.want(self.t + min(gone, 0.25) * (FAST if self.fast else 1.0))
         if self.t >= self.duration:
             self.playing = False
 
@@ -167,7 +167,7 @@ class PartPlayer:
 
     def seek(self, t: float) -> None:
         """Show the part at this time of the program, s; what was being made for another is given up."""
-        self._want_time(t)
+        self.want(t)
         if self._picture is not None:
             self._ask()
 
@@ -212,7 +212,8 @@ class PartPlayer:
         errors = [each.n for each in self._shown.findings if each.severity is Severity.ERROR]
         return np.array([ends[min(n, len(ends) - 1)] for n in errors])
 
-    def _want_time(self, t: float) -> None:
+    def want(self, t: float) -> None:
+        """The part at this time of the program, s, as soon as somebody looks at it."""
         self.t = min(max(t, 0.0), self.duration)
         if self._picture is None:
             return

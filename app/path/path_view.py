@@ -300,6 +300,8 @@ class PathView(Panel):
 
         if not isinstance(pane, Pane):
             return
+        if pane.aspect is Aspect.SOLID:
+            return
         if self.ruler is not None:
             ruler = self.ruler if self.ruler.pane is pane else self._measure_in(pane)
             ruler.point(at)
@@ -359,7 +361,9 @@ class PathView(Panel):
             return
         for pane in panes:
             self._draw_pane(painter, pane)
-        if self.ruler is not None:  # beside what is measured, where there is another pane
+        if (
+            self.ruler is not None and self.ruler.pane.aspect is not Aspect.SOLID
+        ):  # beside what is measured, where there is another pane
             beside = next((pane for pane in panes if pane is not self.ruler.pane), self.ruler.pane)
             self.ruler.draw_figures(painter, beside.room, self.in_mm)
         self._draw_title(painter)
@@ -396,7 +400,7 @@ class PathView(Panel):
             pane.draw_run(painter)
         if self.legs and pane.aspect is Aspect.PATH:
             marks.draw_approach(painter, look, pane, self.legs)
-        if self.ruler is not None and self.ruler.pane is pane:
+        if self.ruler is not None and self.ruler.pane is pane and pane.aspect is not Aspect.SOLID:
             self.ruler.draw(painter)
         painter.restore()
         if pane.projection is not None and pane.aspect not in OF_PART:
@@ -417,7 +421,7 @@ class PathView(Panel):
             Button(tr("MEAS"), self.measure, self.ruler is not None),
         ]
         if self.several:
-            found.append(Button(tr("VIEW"), self.next_view))
+            found.insert(2, Button(tr("VIEW"), self.next_view))  # a low pane has no room for all
         return found
 
     def _draw_title(self, painter: QPainter) -> None:

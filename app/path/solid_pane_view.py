@@ -66,6 +66,9 @@ class SolidPane(PartPane):
         """The keys that pan turn it by steps."""
         self._turn(-across * _STEP, -down * _STEP)
 
+    def show_spot(self, z: float, x: float) -> None:
+        """Nothing is measured here."""
+
     def _turn(self, across: float, down: float) -> None:
         self._azimuth = min(max(self._azimuth - across, -_STEEPEST), _STEEPEST)
         self._tilt = (self._tilt + down + 180.0) % 360.0 - 180.0

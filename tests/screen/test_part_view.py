@@ -168,6 +168,29 @@ def test_without_a_program_nothing_is_played(view: PathView) -> None:
     assert not view.shows_part
 
 
+@pytest.mark.parametrize("aspect", [Aspect.SECTION, Aspect.SOLID])
+def test_measuring_goes_on_in_the_part(view: PathView, aspect: Aspect) -> None:
+    shown(view, SHAFT)
+    while view.panes[0].aspect is not aspect:
+        view.next_view()
+    view.measure(on=True)
+    assert view.ruler is not None
+    for key in (Qt.Key.Key_Right, Qt.Key.Key_Tab, Qt.Key.Key_Return, Qt.Key.Key_Left):
+        QTest.keyClick(view, key)
+        settled(view)
+    QTest.mouseClick(view, LEFT, pos=view.panes[0].room.center().toPoint())
+    settled(view)
+    assert view.panes[0].aspect is aspect
+
+
+def test_nobody_makes_a_part_that_nobody_looks_at(view: PathView) -> None:
+    view.show_picture(picture(SHAFT))
+    view.advance()
+    assert view.player is not None
+    assert not view.player.worker.busy
+    assert view.player.shown is None
+
+
 # --- in space -----------------------------------------------------------------------------------------
 
 
