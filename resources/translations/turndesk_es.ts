@@ -2901,7 +2901,7 @@
     <message>
       <location filename="app/path/path_aspects.py" />
       <source>SOLID</source>
-      <translation type="unfinished" />
+      <translation>SÓLIDO</translation>
     </message>
     <message>
       <location filename="app/path/path_marks_view.py" />
