@@ -19,7 +19,7 @@ _ON_AXIS = 0.05  # mm; a tool that feeds along Z no further off it is a drill
 _SQUARE = 0.02  # mm of Z, in a plunge
 _GROOVE = 2.0  # mm; width of a grooving or parting tool that nobody has given
 _USUAL, _SMALLEST, _ALLOWANCE = 6.35, 1.0, 0.5  # mm; diameter of a drill that nobody has given
-_BAR = 5.0  # mm; the bar of a grooving tool in a bore
+_BAR = 5.0  # mm; the bar of a grooving or threading tool in a bore
 _SLIM = "VNMG160404"  # reaches into contours that a stouter insert would not: a doubt speaks for the program
 _MILL = 3.175  # mm; diameter of a mill that nobody has given
 _WIDE = 1.6  # widths; what feeds further along Z than that turns
@@ -163,7 +163,9 @@ def _shape(kind: ToolKind, use: ToolUse) -> ToolShape:
     if kind in {ToolKind.GROOVING, ToolKind.PARTING}:
         return _groover(kind, use, rear=rear)
     if kind is ToolKind.THREADING:
-        return ToolShape(kind, tip=6 if in_bore(use.moves) is not rear else 8, nose_radius=nose, rear=rear)
+        inside = in_bore(use.moves)
+        tip, bar = 6 if inside is not rear else 8, _BAR if inside else 0.0
+        return ToolShape(kind, tip=tip, nose_radius=nose, diameter=bar, rear=rear)
     return _round_tool(kind, use)
 
 

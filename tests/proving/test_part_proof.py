@@ -314,3 +314,17 @@ def test_of_a_very_long_program_the_part_is_made_where_its_stock_is_said(
     assert "is made where its stock is said" in part.assumed[0]
     _, part = proved(text(SOUND), BAR)
     assert part.removed > 0.0
+
+
+def test_a_thread_in_a_bore_takes_its_grooves_and_no_more() -> None:
+    machine = load_machine(None)
+    setup = setup_for(machine, tools={8: ToolOffset()}, secondary={})
+    source = Source("THREAD", worked("thread-internal").read_text(encoding="latin-1"))
+    _, part = prove_with_part(source, setup, machine, PartSetting())
+    assert part is not None
+    assert part.last is not None
+    assert part.last.bore is not None
+    # Passes from r .4425 to .46875 in over .75 in of a lead of .05: at most half of that ring.
+    ring = math.pi * (0.46875**2 - 0.43**2) * 0.8 * INCH**3
+    assert 0.2 * ring < part.removed < 0.7 * ring
+    assert max(r for _, r in part.last.bore) == pytest.approx(0.46875 * INCH, abs=0.02)
