@@ -39,7 +39,8 @@ class _Sides:
 class Cutter:
     """A tool's outlines (k, 2) of Z and r about its control point, made ready to be swept.
 
-    ``rear``: it works at X negative; its outlines are those that it has there.
+    ``rear``: it works at X negative; its outlines are those that it has there. ``height`` is how far its
+    edges reach along r, mm.
     """
 
     def __init__(
@@ -48,8 +49,15 @@ class Cutter:
         self.side = side
         self._across = -1.0 if rear else 1.0
         turned = np.array([1.0, self._across])
-        self._cutting = [_sides(outline * turned) for outline in cutting]
+        outlines = tuple(cutting)
+        self._cutting = [_sides(outline * turned) for outline in outlines]
         self._body = [_sides(outline * turned) for outline in body]
+        self.height = max((float(np.ptp(outline[:, 1])) for outline in outlines), default=0.0)
+
+    @property
+    def held(self) -> bool:
+        """Whether its holder is known."""
+        return bool(self._body)
 
     def cut(self, part: TurnedPart, start: Point, end: Point) -> Cut:
         """Take off what the edges sweep from one place of the control point to the next."""

@@ -27,9 +27,15 @@ CHECKS: Mapping[str, Check] = {
         "The edge meets more than .001 in of metal in r and in Z.",
         "Stop short of the metal and feed in: look for a G00 left on, and for a sign or a decimal point.",
     ),
+    "feed-into-holder": Check(
+        _ERROR,
+        "Metal is fed into holder, shank or boring bar.",
+        "At a feed an outline that cannot cut meets more than .001 in, or a cut is deeper than the edge.",
+        "Use a longer or slimmer tool, or another direction of cut, or less depth.",
+    ),
     "holder-into-stock": Check(
         _ERROR,
-        "Holder, shank or boring bar runs into metal at a rapid or at a feed.",
+        "Holder, shank or boring bar runs into metal at a rapid.",
         "An outline that cannot cut overlaps metal by more than .001 in.",
         "Use a longer or slimmer tool, or another direction of cut.",
     ),

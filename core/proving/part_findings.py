@@ -63,9 +63,11 @@ class PartFindings:
             return
         met, struck = _executed(move, cutter, part)
         if struck:
-            self._add(
-                "holder-into-stock", move, f"The holder of T{tool} runs into metal, {_depth(struck, move)}."
-            )
+            text = f"The holder of T{tool} runs into metal, {_depth(struck, move)}."
+            if move.quick:
+                self._add("holder-into-stock", move, text)
+            else:
+                self._add("feed-into-holder", move, text)
         self._clamped(move, cutter, tool)
         if self.neighbours is not None and (
             other := self.neighbours.struck(part, tool, pairwise(move.points))
@@ -76,6 +78,7 @@ class PartFindings:
         else:
             self._feed(move, met, cutter, part)
             self._tool(move, met, self.shape(tool), tool)
+            self._deep(move, met, cutter, tool)
         self._before, self._cut_before = move, bool(met) and not move.quick
 
     def _clamped(self, move: TipMove, cutter: Cutter, tool: int) -> None:
@@ -154,6 +157,18 @@ class PartFindings:
             self._add(
                 "drill-too-deep", move, f"T{tool} goes {move.modal.length_text(deep)} deep; it cuts {length}."
             )
+
+    def _deep(self, move: TipMove, met: Cut, cutter: Cutter, tool: int) -> None:
+        """A cut along Z that is deeper than the edge is long; across it the insert goes in as it comes."""
+        (z0, r0), (z1, r1) = move.points[0], move.points[-1]
+        shape = self.shape(tool)
+        if shape is None or shape.kind is not ToolKind.TURNING or abs(z1 - z0) <= abs(r1 - r0):
+            return
+        if not cutter.held:
+            return  # an insert that was assumed
+        if met.depth > cutter.height:
+            deep, edge = (move.modal.length_text(length) for length in (met.depth, cutter.height))
+            self._add("feed-into-holder", move, f"T{tool} cuts {deep} deep; its edge reaches {edge}.")
 
     def milled(self, move: MillMove, met: Taken, shape: ToolShape, modal: Modal) -> None:
         """A live tool has moved."""

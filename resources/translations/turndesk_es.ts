@@ -12530,6 +12530,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>At a feed an outline that cannot cut meets more than .001 in, or a cut is deeper than the edge.</source>
+      <translation>En avance, un perfil que no puede cortar encuentra más de .001 in, o un corte es más profundo que el filo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Change M03 and M04, or the hand that the tool's shape says.</source>
       <translation>Cambie M03 y M04, o la mano que dice la forma de la herramienta.</translation>
     </message>
@@ -12545,8 +12550,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Holder, shank or boring bar runs into metal at a rapid or at a feed.</source>
-      <translation>El portaherramientas, el mango o la barra de mandrinar choca con el metal en rápido o en avance.</translation>
+      <source>Holder, shank or boring bar runs into metal at a rapid.</source>
+      <translation>El portaherramientas, el mango o la barra de mandrinar choca con el metal en rápido.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -12587,6 +12592,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>M04 with a right-hand drill, tap or reamer; M03 with a left-hand one.</source>
       <translation>M04 con broca, macho o escariador a derechas; M03 con uno a izquierdas.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Metal is fed into holder, shank or boring bar.</source>
+      <translation>El metal avanza contra el portaherramientas, el mango o la barra de mandrinar.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -12645,6 +12655,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Use a longer or slimmer tool, or another direction of cut, or less depth.</source>
+      <translation>Use una herramienta más larga o más delgada, otra dirección de corte o menos profundidad.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Use a longer or slimmer tool, or another direction of cut.</source>
       <translation>Use una herramienta más larga o más delgada, u otra dirección de corte.</translation>
     </message>
@@ -12687,6 +12702,11 @@
       <location filename="core/proving/part_findings.py" />
       <source>T%1 beside T%2 on the plate runs into the stock.</source>
       <translation>T%1, junto a T%2 en la placa, choca con el material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>T%1 cuts %2 deep; its edge reaches %3.</source>
+      <translation>T%1 corta %2 de profundidad; su filo llega a %3.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />

@@ -108,6 +108,10 @@ CASES = {
     ),
     # a bar of 8 mm does not go into a bore of 7
     "holder-into-stock": (
+        "T4\nX[.137]Z[.1]\nZ[-.4]\nX[.13]\nZ[1]", "T4\nX[.2]Z[.1]\nZ[-.4]\nX[.19]\nZ[1]",
+        tube(25.4, 7.0, 0.0, -50.0), 5,
+    ),
+    "feed-into-holder": (
         "T4\nX[.142]Z[.1]\nG95F[.002]Z[-.4]\nX[.13]\nG94F[300]Z[1]",
         "T4\nX[.24]Z[.1]\nG95F[.002]Z[-.4]\nX[.22]\nG94F[300]Z[1]",
         tube(25.4, 7.0, 0.0, -50.0), 5,
@@ -119,7 +123,7 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_a_check_finds_what_it_looks_for_and_spares_its_twin(name: str, metric: bool, diameter: bool) -> None:
     wrong, sound, stock, line = CASES[name]
-    stock_of_twin = tube(25.4, 11.0, 0.0, -50.0) if name == "holder-into-stock" else stock
+    stock_of_twin = tube(25.4, 11.0, 0.0, -50.0) if "holder" in name else stock
     _, part = proved(text(wrong, metric=metric, diameter=diameter), stock)
     assert (name.split(maxsplit=1)[0], line) in checks(part)
     report, part = proved(text(sound, metric=metric, diameter=diameter), stock_of_twin)
@@ -328,3 +332,12 @@ def test_a_thread_in_a_bore_takes_its_grooves_and_no_more() -> None:
     ring = math.pi * (0.46875**2 - 0.43**2) * 0.8 * INCH**3
     assert 0.2 * ring < part.removed < 0.7 * ring
     assert max(r for _, r in part.last.bore) == pytest.approx(0.46875 * INCH, abs=0.02)
+
+
+def test_a_cut_is_no_deeper_than_the_edge_is_long() -> None:
+    cut = "T1\nX[1.1]Z[.05]\nX[{r}]\nG95F[.004]Z[-.5]\nX[1.1]\nG94F[300]Z[1]"
+    thick = bar(50.8, 0.0, -60.0)
+    _, part = proved(text(cut.format(r=0.3)), thick)  # .7 in by an insert that reaches .67
+    assert ("feed-into-holder", 6) in checks(part)
+    _, part = proved(text(cut.format(r=0.8)), thick)
+    assert checks(part) == []
