@@ -14,8 +14,7 @@ from app.cli.program_options import circumstances, read_source
 
 if TYPE_CHECKING:
     from app.cli.program_options import Circumstances
-    from core.machine.machine_model import ClampingModel
-    from core.part.clamping import Clamping
+    from core.machine.machine_model import Machine
     from core.part.stock import Stock
     from core.part.stock_spec import StockSpec
     from core.part.tool_shape import ToolShape
@@ -27,15 +26,10 @@ _LONGEST = 1016.0  # mm
 
 def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting:
     """Stock and tools as the options have them. Raises CommandError with what is wrong in them."""
-    from core.proving.part_proof import PartSetting
+    from app.compose.known_part import known_part
 
-    setting = PartSetting(
-        nose_radii={n: tool.nose_radius for n, tool in around.setup.tools.items()},
-        clamping=_clamping(args, around.machine.clamping),
-        shapes=_shapes(args),
-    )
-    if around.machine.tooling == "gang":
-        setting = replace(setting, gang={n: (tool.z, tool.x) for n, tool in around.setup.tools.items()})
+    stick_out = _stick_out(args, around.machine)
+    setting = known_part(around.machine, around.setup.tools, _shapes(args), stick_out)
     if args.stock is None:
         if args.keep_stock:
             raise CommandError("--keep-stock needs --stock, which says what is to be kept")
@@ -74,22 +68,16 @@ def _shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
     return stored_shapes() if file is None else read_tool_shapes(Path(file))
 
 
-def _clamping(args: argparse.Namespace, model: ClampingModel) -> Clamping | None:
-    """Chuck or collet of the machine file, with the job's own stick-out. Raises CommandError."""
-    from core.part.clamping import Clamping
-
-    stick_out = model.stick_out if args.stick_out is None else args.stick_out * MM_PER_INCH
-    if args.stick_out is not None and not (model.diameter and 0.0 < stick_out <= _LONGEST):
-        why = (
-            "is not between 0 and 40 in"
-            if model.diameter
-            else "needs [clamping] diameter in the machine file"
-        )
-        raise CommandError(f"--stick-out {args.stick_out:g} {why}")
-    if not stick_out and not model.max_rpm:
+def _stick_out(args: argparse.Namespace, machine: Machine) -> float | None:
+    """mm, as the job says it. Raises CommandError."""
+    if args.stick_out is None:
         return None
-    diameter = model.diameter if stick_out else 0.0
-    return Clamping(diameter, stick_out, model.jaws, model.jaw_diameter or model.diameter, model.max_rpm)
+    stick_out = float(args.stick_out) * MM_PER_INCH
+    if not machine.clamping.diameter:
+        raise CommandError(f"--stick-out {args.stick_out:g} needs [clamping] diameter in the machine file")
+    if not 0.0 < stick_out <= _LONGEST:
+        raise CommandError(f"--stick-out {args.stick_out:g} is not between 0 and 40 in")
+    return stick_out
 
 
 def _stock(

@@ -119,23 +119,12 @@ class _ProofAndPicture:
 
 
 def _part_setting(job: Job, machine: Machine, shapes: Mapping[int, ToolShape]) -> PartSetting:
-    """What is known of tools and of what holds the stock."""
+    """What is known of the part, and the stock that is kept with the program."""
     from app.compose.kept_stock import round_stock_at_hand
-    from core.part.clamping import Clamping
-    from core.proving.part_proof import PartSetting
+    from app.compose.known_part import known_part
 
-    held, tools = machine.clamping, job.setup.tools
-    clamping = None
-    if held.stick_out and held.diameter:
-        jaws = held.jaw_diameter or held.diameter
-        clamping = Clamping(held.diameter, held.stick_out, held.jaws, jaws, held.max_rpm)
-    return PartSetting(
-        stock=round_stock_at_hand(job.source.name),
-        shapes=shapes,
-        nose_radii={number: tool.nose_radius for number, tool in tools.items()},
-        clamping=clamping,
-        gang={n: (tool.z, tool.x) for n, tool in tools.items()} if machine.tooling == "gang" else {},
-    )
+    known = known_part(machine, job.setup.tools, shapes)
+    return replace(known, stock=round_stock_at_hand(job.source.name))
 
 
 def _read(path: Path) -> Source:

@@ -1,0 +1,36 @@
+"""What is known of a part before it is proved: tools, what holds the stock, the neighbours on the plate."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from core.interpreter.job_setup import ToolOffset
+from core.machine.machine_model import Machine
+from core.part.clamping import Clamping
+from core.part.tool_shape import ToolShape
+from core.proving.part_proof import PartSetting
+
+
+def known_part(
+    machine: Machine,
+    tools: Mapping[int, ToolOffset],
+    shapes: Mapping[int, ToolShape],
+    stick_out: float | None = None,
+) -> PartSetting:
+    """The setting without a stock; ``stick_out`` (mm) is the job's own, None: that of the machine file."""
+    return PartSetting(
+        shapes=shapes,
+        nose_radii={number: tool.nose_radius for number, tool in tools.items()},
+        clamping=_clamping(machine, stick_out),
+        gang={n: (tool.z, tool.x) for n, tool in tools.items()} if machine.tooling == "gang" else {},
+    )
+
+
+def _clamping(machine: Machine, stick_out: float | None) -> Clamping | None:
+    """Chuck or collet; without a stick-out only its highest speed counts."""
+    held = machine.clamping
+    out = held.stick_out if stick_out is None else stick_out
+    if not out and not held.max_rpm:
+        return None
+    diameter = held.diameter if out else 0.0
+    return Clamping(diameter, out, held.jaws, held.jaw_diameter or held.diameter, held.max_rpm)
