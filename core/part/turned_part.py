@@ -86,6 +86,7 @@ class TurnedPart:
         self.high = stock.outside_at(middles)[np.newaxis, :].copy()
         self.low = np.minimum(stock.bore_at(middles), self.high[0])[np.newaxis, :].copy()
         self.largest = stock.radius
+        self.whole = self.volume  # mm³ of the stock
         self.pieces: list[Piece] = []
         self.removed = 0.0  # mm³, by cuts alone
 

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
 from core.part.milled_part import MilledPart
-from core.part.polar_field import PolarField, Taken, turned_field
+from core.part.polar_field import PolarField, Taken, in_order, turned_field
 from core.part.swept_edge import FloatArray
 from core.part.tool_shape import ToolShape
 from core.part.turned_part import Piece, TurnedPart
 from core.proving.mill_moves import MillMove, cone_height
 
-_BESIDE = 0.01  # mm
+_BESIDE = 0.002  # mm: what a wider column may leave of a slope
 
 
 class Milling:
@@ -27,7 +28,6 @@ class Milling:
         )
         self._part = MilledPart(turned_field(edges, part.low, part.high))
         self._volume = part.volume  # of the turned part, when its field was last made even with it
-        self.removed = 0.0  # mm³, by live tools alone
 
     @property
     def field(self) -> PolarField:
@@ -51,9 +51,7 @@ class Milling:
         length = shape.length or math.inf
         radius, point = shape.diameter / 2.0, cone_height(shape)
         work = self._part.mill_axial if move.axial else self._part.mill_radial
-        met = work(move.path, radius, length=length, point=point)
-        self.removed += met.volume
-        return met
+        return work(move.path, radius, length=length, point=point)
 
     def fallen(self, piece: Piece) -> Piece:
         """A piece that has just been parted off, less what live tools had taken out of it before it fell."""
@@ -76,9 +74,17 @@ class Milling:
             0,
             turned.columns.number - 1,
         )
-        outer, inner = turned.outermost[at], turned.innermost[at]
         everywhere = slice(0, len(field.middles))
-        endless = np.full((len(at), 1), math.inf)
-        field.take(everywhere, slice(None), outer[:, None] + _BESIDE * (outer > 0.0)[:, None], endless)
-        bored = np.where(inner > _BESIDE, inner - _BESIDE, 0.0)
-        field.take(everywhere, slice(None), np.zeros((len(at), 1)), bored[:, None])
+        for start, end in _gaps(*in_order(turned.low[:, at], turned.high[:, at])):
+            field.take(everywhere, slice(None), start[:, None], end[:, None])
+
+
+def _gaps(low: FloatArray, high: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Where a section of sorted layers (layers, columns) has no metal, from the axis outwards."""
+    there = high > low
+    begins = np.where(there, low - _BESIDE, np.inf)
+    ends = np.maximum.accumulate(np.where(there, high + _BESIDE, 0.0), axis=0)
+    yield np.zeros(low.shape[1]), begins[0]
+    for layer in range(len(low)):
+        outer = begins[layer + 1] if layer + 1 < len(low) else np.full(low.shape[1], np.inf)
+        yield ends[layer], outer

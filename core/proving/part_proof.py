@@ -356,9 +356,10 @@ class Making:
         if part is None:
             return
         pieces = part.pieces
-        self._removed += part.removed
-        if self.milling is not None:
-            self._removed += self.milling.removed
+        if self.milling is None:
+            self._removed += part.removed
+        else:  # a turning tool takes nothing where a live tool was before it
+            self._removed += part.whole - self.milling.left - sum(piece.volume for piece in pieces)
         self._pieces += pieces
         if part.removed or self.milling is not None:
             self._last = pieces[-1] if pieces else part.rest()

@@ -341,3 +341,12 @@ def test_a_cut_is_no_deeper_than_the_edge_is_long() -> None:
     assert ("feed-into-holder", 6) in checks(part)
     _, part = proved(text(cut.format(r=0.8)), thick)
     assert checks(part) == []
+
+
+def test_a_slot_that_is_turned_away_again_counts_once() -> None:
+    turned = "M05\nM03S1500\nT1\nX[.6]Z[.1]\nX[.35]\nG95F[.004]Z[-1]\nX[.55]\nG94F[300]Z[1]"
+    _, plain = proved(text(turned), bar(25.4, 0.0, -60.0), TOOLS)
+    _, slotted = proved(text(f"{SLOT}\n{turned}"), bar(25.4, 0.0, -60.0), {**TOOLS, **MILL})
+    assert slotted.milled
+    assert slotted.removed == pytest.approx(plain.removed, rel=2e-3)
+    assert slotted.left == pytest.approx(plain.left, rel=2e-3)

@@ -1,0 +1,56 @@
+"""Live tools and turning tools on one part: what is turned off after milling leaves the field of rays too."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from core.part.cutter import Cutter, Side
+from core.part.stock import bar, tube
+from core.part.tool_shape import ToolKind, ToolShape
+from core.part.turned_part import TurnedPart
+from core.proving.mill_moves import MillMove
+from core.proving.milling import Milling
+
+DRILL = ToolShape(ToolKind.END_MILL, tip=8, diameter=4.0)
+BLOCK = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 30.0], [0.0, 30.0]])
+
+
+def cross_hole(milling: Milling, z: float) -> float:
+    """A hole of 4 mm square to the axis, through one wall to the axis; mm³."""
+    path = np.array([[20.0, z, 0.0], [0.0, z, 0.0]])
+    return milling.cut(MillMove(1, 1, path, False, False), DRILL).volume
+
+
+def test_what_is_turned_after_milling_leaves_the_rays() -> None:
+    part = TurnedPart(bar(30.0, 0.0, -40.0))
+    milling = Milling(part)
+    hole = cross_hole(milling, -30.0)
+    assert hole == pytest.approx(math.pi * 4.0 * 15.0, rel=0.02)  # but for the round of the bar
+    Cutter([BLOCK], [], Side.OUTSIDE).cut(part, (2.0, 10.0), (-15.0, 10.0))
+    assert milling.left == pytest.approx(part.volume - hole, rel=1e-3)
+
+
+def test_a_face_groove_after_milling_leaves_its_core_and_its_ring() -> None:
+    part = TurnedPart(bar(30.0, 0.0, -40.0))
+    milling = Milling(part)
+    hole = cross_hole(milling, -30.0)
+    tool = Cutter([np.array([[0.0, 0.0], [0.0, 3.0], [20.0, 3.0], [20.0, 0.0]])], [], Side.FACE)
+    tool.cut(part, (1.0, 7.0), (-6.0, 7.0))
+    assert part.volume == pytest.approx(math.pi * (225.0 * 40.0 - 51.0 * 6.0), rel=1e-3)
+    assert milling.left == pytest.approx(part.volume - hole, rel=1e-3)
+    assert milling.field.volume == pytest.approx(milling.left)
+
+
+def test_a_bore_opened_after_milling_and_a_part_that_is_gone() -> None:
+    part = TurnedPart(tube(30.0, 10.0, 0.0, -40.0))
+    milling = Milling(part)
+    cross_hole(milling, -30.0)
+    borer = np.array([[0.0, 0.0], [0.0, -6.0], [30.0, -6.0], [30.0, 0.0]])
+    Cutter([borer], [], Side.BORE).cut(part, (2.0, 8.0), (-20.0, 8.0))
+    assert milling.left < part.volume
+    Cutter([BLOCK], [], Side.OUTSIDE).cut(part, (-39.99, 20.0), (-39.99, 0.0))
+    Cutter([BLOCK], [], Side.OUTSIDE).cut(part, (2.0, 0.0), (-41.0, 0.0))
+    assert milling.left == pytest.approx(0.0, abs=1.0)
