@@ -77,6 +77,8 @@ class Module401:
             self.setup.transmit(2, self._words, *_entries(od.ANALOG_IN, words, 16))
         self.node.nmt.add_heartbeat_callback(self._heartbeat)
         self.outputs[:outputs] = bytes(self.setup.read(od.DIGITAL_OUT, i + 1) for i in range(outputs))
+        # A pot stands somewhere before its first PDO comes; at 0 a cycle that begins at once would hold.
+        self.analog[:words] = [_signed(self.setup.read(od.ANALOG_IN, i + 1)) for i in range(words)]
         self.heard, self.missing, self.trouble = self._bus.clock.now(), 0, ""
 
     def asked(self) -> None:
@@ -119,6 +121,11 @@ class Module401:
 
     def _wrong(self, what: str) -> None:
         self.trouble = self.trouble or Fault(what, "io-silent")
+
+
+def _signed(word: int) -> int:
+    """An analog word as the number that it is, whichever way it was read."""
+    return (word + 2**15) % 2**16 - 2**15
 
 
 def _entries(index: int, count: int, bits: int) -> list[tuple[int, int]]:

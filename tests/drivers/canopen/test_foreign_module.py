@@ -124,6 +124,16 @@ def test_a_pot_is_read(make: MakeBench) -> None:
     assert bench.io.snapshot().feed_pot == pytest.approx(1.5)
 
 
+@pytest.mark.parametrize(("word", "fraction"), [(32767, 1.5), (0, 0.0), (-200, 0.0), (16384, 0.75)])
+def test_a_pot_stands_where_it_stands_before_its_first_pdo(
+    make: MakeBench, word: int, fraction: float
+) -> None:
+    bench = make(words=2, pot=2)
+    bench.module.objects.write(0x6401, 2, word)
+    bench.io.connect()
+    assert bench.io.snapshot().feed_pot == pytest.approx(fraction, abs=1e-4)
+
+
 @pytest.mark.parametrize(("inputs", "outputs", "words"), [(1, 0, 0), (0, 1, 0), (0, 1, 1), (8, 8, 4)])
 def test_modules_of_every_kind_stay_well(make: MakeBench, inputs: int, outputs: int, words: int) -> None:
     bench = make(inputs, outputs, words)
