@@ -8,20 +8,8 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPainterPath
 
 from app.screen.look import Painter
+from core.part.tool_shape import TIP_DIRECTIONS
 
-# Quadrant → (Z, X) from the nose centre to the tip; X+ is down on the screen. 0 and 9: the centre itself.
-DIRECTIONS = {
-    0: (0, 0),
-    1: (1, 1),
-    2: (-1, 1),
-    3: (-1, -1),
-    4: (1, -1),
-    5: (1, 0),
-    6: (0, 1),
-    7: (-1, 0),
-    8: (0, -1),
-    9: (0, 0),
-}
 _SPREAD = 0.7  # radians from the tool's axis to its flanks
 
 
@@ -29,7 +17,7 @@ def draw_tip(painter: Painter, box: QRectF, quadrant: int, colour: str = "text")
     """The tip in a square: body away from the tip, nose circle, and a dot where X and Z are set."""
     side = min(box.width(), box.height())
     centre, radius = box.center(), 0.16 * side
-    z, x = DIRECTIONS[quadrant]
+    z, x = TIP_DIRECTIONS[quadrant]  # X+ is down on the screen
     middle = centre + QPointF(0.22 * side * z, 0.22 * side * x)
     painter.save()
     painter.setClipRect(box)
