@@ -42,10 +42,20 @@ def with_kept_stock(setting: PartSetting, program: str, args: argparse.Namespace
     from app.compose.kept_stock import keep_stock, kept_stock
 
     if args.keep_stock:
-        keep_stock(program, args.stock)
+        keep_stock(program, _lasting(args.stock))
     if args.stock is not None or not (text := kept_stock(program)):
         return setting
-    return replace(setting, stock=_said(text, args, circumstances(args), setting))
+    try:
+        return replace(setting, stock=_said(text, args, circumstances(args), setting))
+    except CommandError as error:
+        way = "say another with --stock and --keep-stock"
+        raise CommandError(f"the stock that is kept with {program} cannot be used: {error}; {way}") from error
+
+
+def _lasting(text: str) -> str:
+    """The same from every folder: a file by its whole path."""
+    kind, _, rest = text.partition(":")
+    return f"{kind}:{Path(rest).resolve()}" if kind in {"profile", "after"} else text
 
 
 def _said(

@@ -201,3 +201,22 @@ def test_nothing_is_kept_without_a_stock_or_when_it_means_nothing(
     assert (told.status, "needs --stock" in told.err) == (2, True)
     assert turndesk("prove", path, "--offsets", offsets, "--stock", "rod", "--keep-stock").status == 2
     assert turndesk("prove", path, "--offsets", offsets, "--json").lines[0]["stock"]["given"] is None
+
+
+def test_a_kept_file_is_found_from_every_folder_and_told_when_it_is_gone(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, blank = written(tmp_path, PART), written(tmp_path, "-2,.5\n0,.5\n", "blank.csv")
+    monkeypatch.chdir(tmp_path)
+    given = ("--offsets", offsets, "--json")
+    assert turndesk("prove", path, *given, "--stock", "profile:blank.csv", "--keep-stock").status == 0
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    assert turndesk("prove", path, *given).lines[0]["stock"]["given"].startswith("profile:")
+    blank.unlink()
+    told = turndesk("prove", path, *given)
+    assert told.status == 2
+    assert "kept with part.nc" in told.err
+    assert "--keep-stock" in told.err
+    assert turndesk("prove", path, *given, "--stock", "bar:1", "--keep-stock").status == 0
+    assert turndesk("prove", path, *given).lines[0]["stock"]["given"] == "bar:1"
