@@ -1,0 +1,80 @@
+"""A record of the scope: samples of one stretch of time, one column a channel.
+
+Channels are named by what they are: ``X demand`` ``X actual`` ``X following error`` (mm, degrees of rotary
+axes), ``spindle command`` ``spindle speed`` (rpm), ``feed override`` and so on; ``channels_of`` says all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class Channel(NamedTuple):
+    """A figure that is recorded: its name, and its unit inside. ``logic``: it is on (1) or off (0)."""
+
+    name: str
+    unit: str
+    logic: bool = False
+
+
+# Of each axis, behind its letter.
+AXIS_CHANNELS = (("demand", ""), ("actual", ""), ("following error", ""), ("load", "%"))
+# Of the machine as a whole.
+MACHINE_CHANNELS = (
+    Channel("spindle command", "rpm"),
+    Channel("spindle speed", "rpm"),  # measured
+    Channel("spindle turns", "turns"),  # counted by the encoder since power-up
+    Channel("spindle load", "%"),
+    Channel("feed override", ""),
+    Channel("spindle override", ""),
+    Channel("queue", "s"),  # of motion that the driver holds
+    Channel("lateness", "s"),  # of the control's tick
+    Channel("line", ""),  # source line that is executed, 0 none
+    Channel("block", ""),  # elementary block that is executed, 0 none
+)
+
+
+def channels_of(
+    axes: Mapping[str, bool], inputs: tuple[str, ...], outputs: tuple[str, ...]
+) -> tuple[Channel, ...]:
+    """Everything that is recorded of a machine. ``axes`` by letter: whether it is rotary."""
+    of_axes = [
+        Channel(f"{letter} {name}", unit or ("deg" if rotary else "mm"))
+        for letter, rotary in axes.items()
+        for name, unit in AXIS_CHANNELS
+    ]
+    logic = [Channel(f"input {name}", "", True) for name in inputs]
+    logic += [Channel(f"output {name}", "", True) for name in outputs]
+    return (*of_axes, *MACHINE_CHANNELS, *logic)
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """Samples between two instants. What a driver does not tell is not a number (nan).
+
+    ``times`` (n,) are seconds of the monotonic clock, rising; ``columns`` (n,) each, by the channel's name.
+    ``started`` is the time of day of the first sample, seconds since 1970. ``rate`` is the samples a second
+    that the driver itself gives; the control's own figures between its ticks stand as they were at the last.
+    """
+
+    channels: tuple[Channel, ...]
+    times: FloatArray
+    columns: Mapping[str, FloatArray]
+    started: float
+    rate: float
+    about: Mapping[str, str] = field(default_factory=dict)  # machine, program, alarm: in words
+
+    def between(self, begin: float, end: float) -> Record:
+        """The samples from ``begin`` up to and with ``end``, seconds of the monotonic clock."""
+        first, last = np.searchsorted(self.times, (begin, np.nextafter(end, np.inf)))
+        cut = slice(int(first), int(last))
+        started = self.started + (float(self.times[first]) - float(self.times[0]) if first < last else 0.0)
+        columns = {name: column[cut] for name, column in self.columns.items()}
+        return Record(self.channels, self.times[cut], columns, started, self.rate, self.about)

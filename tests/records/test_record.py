@@ -1,0 +1,27 @@
+"""Records of the scope: channels by name, and a stretch cut out of one."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from core.records.record import Channel, Record, channels_of
+
+
+def test_a_rotary_axis_counts_degrees_and_inputs_are_logic() -> None:
+    channels = channels_of({"X": False, "C": True}, ("COLLET",), ())
+    assert Channel("X following error", "mm") in channels
+    assert Channel("C actual", "deg") in channels
+    assert Channel("input COLLET", "", True) in channels
+
+
+def test_a_stretch_has_its_ends_and_its_own_time_of_day() -> None:
+    times = np.arange(5) * 0.25 + 100.0
+    record = Record((Channel("queue", "s"),), times, {"queue": np.arange(5.0)}, 1_000.0, 4.0)
+    cut = record.between(100.25, 100.75)
+    assert cut.columns["queue"].tolist() == [1.0, 2.0, 3.0]
+    assert cut.started == 1_000.25
+
+
+def test_a_stretch_without_samples_is_empty() -> None:
+    record = Record((Channel("queue", "s"),), np.array([1.0]), {"queue": np.array([0.2])}, 5.0, 1.0)
+    assert record.between(2.0, 3.0).times.size == 0
