@@ -7,7 +7,7 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from app.cli.command_errors import EXIT_OK, CommandError
+from app.desk.command_errors import EXIT_OK, CommandError
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -40,7 +40,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _object(code: Code, entry: Entry) -> dict[str, object]:
-    from core.alarms.document import kind_of
+    from core.alarms.alarms_page import kind_of
 
     return {
         "number": entry.number,
@@ -53,7 +53,7 @@ def _object(code: Code, entry: Entry) -> dict[str, object]:
 
 
 def _text(entry: Entry) -> str:
-    from core.alarms.document import kind_of
+    from core.alarms.alarms_page import kind_of
 
     causes = "".join(f"     why: {cause}\n" for cause in entry.causes)
     head = f"{entry.number}  {entry.text.upper()}  ({kind_of(entry.reaction)})"

@@ -10,7 +10,7 @@ import argparse
 from collections.abc import Mapping, Sequence
 from typing import Any, NoReturn
 
-from app.cli.command_errors import EXIT_USAGE, CommandError
+from app.desk.command_errors import EXIT_USAGE, CommandError
 
 BEFORE = ("machine", "program", "offsets")
 """Options of the screen."""

@@ -11,7 +11,6 @@ from concurrent.futures import CancelledError, Executor, Future
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 from app.cli.part_options import with_kept_stock
 from app.cli.program_files import ProgramFiles, program_files
 from app.cli.program_options import read_source
@@ -23,6 +22,7 @@ from app.cli.proof_table import table
 from app.cli.proof_work import OtherVersionError, Proof, code_version, proof_of
 from app.cli.report_file import ReportFile, report_file
 from app.compose.kept_stock import programs_with_stock
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 from core.language.source import Source
 
 

@@ -12,7 +12,7 @@ from datetime import UTC, datetime
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers

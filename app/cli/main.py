@@ -10,9 +10,9 @@ import sys
 import threading
 from collections.abc import Sequence
 
-from app.cli.command_errors import EXIT_OK, EXIT_USAGE, CommandError
 from app.cli.command_parser import Parser, add_screen_options, settled
 from app.cli.crash_report import report_crash, report_thread
+from app.desk.command_errors import EXIT_OK, EXIT_USAGE, CommandError
 from app.desk.data_folder import DataFolderError, check_data_folder
 
 # Modules with add_parser(subparsers) and run(args) -> exit status; importing one costs next to nothing.

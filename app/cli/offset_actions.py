@@ -9,10 +9,11 @@ import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from app.cli.command_errors import EXIT_OK, CommandError
 from app.cli.store_command import opened_store
-from app.cli.toml_files import ALIASES, TOOL_KEYS, out_of_range, shown, unknown
 from app.desk.arithmetic import EntryError, value_of
+from app.desk.command_errors import EXIT_OK, CommandError
+from app.desk.toml_file import unknown
+from app.offsets.offsets_file import ALIASES, TOOL_KEYS, out_of_range, shown
 from core.store.offset_fields import FIELDS, Field, Sort
 from core.store.store_rows import (
     MM_PER_INCH,
@@ -120,7 +121,7 @@ def _set(args: argparse.Namespace) -> int:
 
 def _check_shape(store: Store, number: int, shape: dict[str, Value], offset: dict[str, Value]) -> None:
     """Raises CommandError where the tool's shape would contradict itself or begin without a kind."""
-    from app.desk.tool_shapes import row_mistakes
+    from app.desk.stored_shapes import row_mistakes
 
     row = store.shapes().get(number, ShapeRow())._replace(**shape)  # type: ignore[arg-type]
     if not row.kind:

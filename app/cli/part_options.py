@@ -8,9 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.command_errors import CommandError
 from app.cli.figures import MM_PER_INCH
 from app.cli.program_options import circumstances, read_source
+from app.desk.command_errors import CommandError
 
 if TYPE_CHECKING:
     from app.cli.program_options import Circumstances
@@ -71,8 +71,8 @@ def _said(
 
 def _shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
     """Those of --tools, else of the offsets file, else of the store."""
-    from app.cli.toml_files import read_tool_shapes
     from app.compose.stored_offsets import stored_shapes
+    from app.offsets.offsets_file import read_tool_shapes
 
     file = args.tools or args.offsets
     return stored_shapes() if file is None else read_tool_shapes(Path(file))

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.cli.command_errors import CommandError
+from app.desk.command_errors import CommandError
 
 
 @dataclass(frozen=True, slots=True)

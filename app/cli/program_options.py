@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.command_errors import CommandError
+from app.desk.command_errors import CommandError
 from core.language.source import Dialect, dialect_of
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def input_states(path: str | None, known: Collection[str] = ()) -> dict[str, boo
     """The inputs file of the options, empty without one; with ``known`` no others. Raises CommandError."""
     if path is None:
         return {}
-    from app.cli.toml_files import read_inputs
+    from app.cli.inputs_file import read_inputs
 
     return read_inputs(Path(path), known)
 

@@ -10,7 +10,7 @@ import re
 import sys
 from concurrent.futures import Executor
 
-from app.cli.command_errors import CommandError
+from app.desk.command_errors import CommandError
 
 _ADDRESS = re.compile(r"(?:tcp://|tls://)?(\[[0-9A-Fa-f:]+\]|[\w.-]+):(\d{1,5})")
 _ANSWER = 10.0  # s to wait for the scheduler

@@ -10,7 +10,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 from app.cli.program_options import (
     add_ideal_option,
     add_program_options,
@@ -18,6 +17,7 @@ from app.cli.program_options import (
     read_source,
 )
 from app.cli.progress_bar import Progress
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 from core.part.stock_forms import FORMS
 
 MOST_JOBS = 256

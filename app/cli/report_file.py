@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from app.cli.command_errors import CommandError
+from app.desk.command_errors import CommandError
 
 if TYPE_CHECKING:
     from app.cli.proof_work import Proof

@@ -8,7 +8,6 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from app.cli.program_options import (
     Circumstances,
     add_program_options,
@@ -17,6 +16,7 @@ from app.cli.program_options import (
     read_source,
 )
 from app.cli.progress_bar import Progress
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers

@@ -7,11 +7,11 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.transfer.serial_line import Received, Transfer
+    from app.transfer.line_transfer import Received, Transfer
     from core.machine.machine_model import Machine
     from core.machine.serial_table import DncModel
 
@@ -164,7 +164,7 @@ def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> 
 def _store(args: argparse.Namespace, received: Received) -> int:
     from app.desk.data_folder import data_folder
     from app.programs.whole_file import FileError
-    from app.transfer.serial_line import free_name, store_new
+    from app.transfer.line_transfer import free_name, store_new
 
     out = Path(args.out) if args.out else None
     folder = out.parent if out else data_folder() / "programs"

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from app.desk.data_folder import data_folder
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def _export(args: argparse.Namespace) -> int:
 
 
 def _import(args: argparse.Namespace) -> int:
-    from app.cli.toml_files import read_rows, read_shape_rows
+    from app.offsets.offsets_file import read_rows, read_shape_rows
     from core.store import store_export
 
     folder = Path(args.path)

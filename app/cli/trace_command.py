@@ -9,10 +9,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.command_errors import CommandError
 from app.cli.expand_command import report_diagnostics
 from app.cli.program_options import add_program_options, circumstances, read_source
 from app.cli.progress_bar import Progress
+from app.desk.command_errors import CommandError
 from core.language.source import Dialect
 
 if TYPE_CHECKING:

@@ -9,11 +9,11 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TextIO
 
-from app.cli.command_errors import CommandError
 from app.compose.backend_entry import Connected, played
 from app.compose.backends import connect, real_time
 from app.compose.journal import Journal
 from app.compose.shop_floor import open_shop_floor, told_to_agents
+from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from app.desk.run_without_screen import HeadlessRun
 from core.executor.executor import Executor

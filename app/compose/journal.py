@@ -10,7 +10,7 @@ from pathlib import Path
 from app.desk.data_folder import data_folder
 from app.desk.persistence import Persistence
 from app.offsets.offset_book import OffsetBook
-from app.programs.run_record import note_cut_off_runs
+from app.programs.run_history import note_cut_off_runs
 from core.executor.interrupted_job import InterruptedJob, of_plain, plain
 from core.executor.snapshot import Event
 from core.language.source import Source

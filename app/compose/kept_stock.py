@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from app.cli.command_errors import CommandError
+from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.cli.command_errors import CommandError
+from app.desk.command_errors import CommandError
 from core.interpreter.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset, ZeroOffset
 
 if TYPE_CHECKING:

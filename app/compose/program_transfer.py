@@ -9,7 +9,7 @@ from pathlib import Path
 from app.compose.serial_ports import open_wire, serial_ports
 from app.desk.program_loading import LoadingSteps
 from app.programs.whole_file import FileError
-from app.transfer.serial_line import Received
+from app.transfer.line_transfer import Received
 from core.language.source import Source, SourceError, load_source
 from core.machine.serial_table import DncModel
 from core.ports import Clock, DriverError
@@ -25,7 +25,7 @@ Check = Callable[[Source], tuple[tuple[str, ...], float]]  # errors, cycle time 
 
 
 class SerialLines:
-    """``app.transfer.serial_line.Lines``. ``check`` looks at what has come in; ``ending`` of its file."""
+    """``app.transfer.line_transfer.Lines``. ``check`` looks at what has come in; ``ending`` of its file."""
 
     def __init__(self, check: Check, ending: str = ".nc", clock: Clock | None = None) -> None:
         self._check, self._ending, self._clock = check, ending, clock or RealClock()

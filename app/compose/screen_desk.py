@@ -7,19 +7,19 @@ import sys
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from app.cli.command_errors import CommandError
 from app.compose.accepted_machine import file_changes, guarded
 from app.compose.backend_entry import Connected, played
 from app.compose.backends import connect
+from app.compose.desk_functions import furnish
 from app.compose.error_log import Log
 from app.compose.inverter_backend import has_inverter
 from app.compose.journal import Journal
 from app.compose.machine_setup import read_machine
 from app.compose.shop_floor import keep_status, open_shop_floor
-from app.compose.special_functions import furnish
 from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_offsets
 from app.compose.workshop import drawer, give_mdi, give_searchto, samples, workshop
 from app.desk.alarm_log import KEPT, KINDS
+from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence

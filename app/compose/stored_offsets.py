@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from app.cli.command_errors import CommandError
+from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from app.offsets.offset_book import OffsetBook, secondary_offsets, tool_offsets
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset, ZeroOffset
@@ -57,7 +57,7 @@ def stored_shapes() -> dict[int, ToolShape]:
     folder = data_folder()
     if not folder.is_dir():
         return {}
-    from app.desk.tool_shapes import tool_shapes, wrong_shapes
+    from app.desk.stored_shapes import tool_shapes, wrong_shapes
     from core.store.store import Store, StoreError
 
     try:
@@ -86,7 +86,7 @@ def offsets_of(store: Store) -> Offsets:
 
 def read_offsets(path: Path) -> Offsets:
     """Those of an offsets file, by value. Raises CommandError naming every mistake."""
-    from app.cli.toml_files import read_rows
+    from app.offsets.offsets_file import read_rows
 
     return _of_rows(*read_rows(path))
 

@@ -27,7 +27,7 @@ from app.desk.screen_settings import SettingsBook
 from app.desk.station_hands import OVERRIDE_MOST, StationHands, StationPanel, stepped
 from app.desk.translation import tr
 from app.offsets.offset_book import NONE_KEPT, OffsetBook
-from app.programs.run_record import RunRecord
+from app.programs.run_history import RunHistory
 from app.special.part_count import PartCounter
 from core.executor.commands import (
     Command,
@@ -93,7 +93,7 @@ class Desk:
     time_of_day: Callable[[], str] = field(default=partial(time.strftime, "%H:%M:%S"))
     settings: SettingsBook = field(default_factory=SettingsBook)
     counter: PartCounter = field(default_factory=PartCounter)
-    record: RunRecord = field(default_factory=RunRecord)
+    record: RunHistory = field(default_factory=RunHistory)
     restoring: bool = False  # a backup takes the place of what is kept
     book: OffsetBook = field(default_factory=lambda: OffsetBook(locked=NONE_KEPT))
     changes: FileChanges = field(default_factory=FileChanges)  # of the machine file, to be accepted

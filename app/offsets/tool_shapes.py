@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError
 from app.desk.desk import Desk
-from app.desk.tool_shapes import row_mistakes, shape_of
+from app.desk.stored_shapes import row_mistakes, shape_of
 from app.desk.translation import tr
 from app.offsets.offset_table import OffsetTable
 from app.offsets.offset_values import TOOL_FIELDS, choice_word, heading, shown_value, value_typed, word

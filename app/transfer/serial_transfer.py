@@ -15,7 +15,7 @@ from app.desk.sheet import Entry, Key, Row, Sheet
 from app.desk.translation import tr
 from app.programs.whole_file import FileError
 from app.special.special_functions import SpecialFunction
-from app.transfer.serial_line import Received, SerialPorts, Transfer, TransferProgress, free_name, store_new
+from app.transfer.line_transfer import Received, SerialPorts, Transfer, TransferProgress, free_name, store_new
 from app.transfer.serial_settings import ROWS, settings_of, stored_form
 from core.executor.snapshot import Snapshot
 from core.machine.serial_table import DncModel

@@ -27,7 +27,7 @@ COMPOSED = (
     "journal.py",
     "screen_desk.py",
     "simulated_backend.py",
-    "special_functions.py",
+    "desk_functions.py",
     "stored_offsets.py",
     "workshop.py",
 )
@@ -50,7 +50,7 @@ ROOMS = (
 APART = frozenset(
     {
         *("code_table.py", "language_page.py", "keys.py", "run_without_screen.py"),
-        "screen/display.py",
+        *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
     }
 )
 # Read by somebody, and not to be told from names by their looks.

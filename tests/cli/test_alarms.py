@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from core.alarms import CATALOGUE
-from core.alarms.document import document, main
+from core.alarms.alarms_page import document, main
 from tests.cli.conftest import Turndesk
 
 PAGE = Path(__file__).parents[2] / "docs" / "alarms.md"
@@ -39,7 +39,7 @@ def test_a_number_that_is_none_is_refused_in_one_line(turndesk: Turndesk) -> Non
 
 
 def test_the_page_of_alarms_is_current() -> None:
-    """python -m core.alarms.document docs/alarms.md"""
+    """python -m core.alarms.alarms_page docs/alarms.md"""
     assert PAGE.read_text(encoding="utf-8") == document()
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.command_errors import CommandError
 from app.cli.main import main
-from app.cli.toml_files import read_rows, read_shape_rows, read_tool_shapes
+from app.desk.command_errors import CommandError
+from app.offsets.offsets_file import read_rows, read_shape_rows, read_tool_shapes
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.store.offset_fields import HANDS, TOOL_KINDS
 from core.store.store import Store

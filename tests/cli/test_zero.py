@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.command_errors import CommandError
-from app.cli.toml_files import read_rows
+from app.desk.command_errors import CommandError
+from app.offsets.offsets_file import read_rows
 from core.store.store_rows import ZeroRow
 from tests.cli.conftest import Turndesk
 

@@ -13,7 +13,7 @@ from app.programs.copy_rename_delete import checked_name, delete_program, rename
 from app.programs.folder_chooser import UP, FolderChooser, Stick
 from app.programs.import_export import Carried, export_programs, import_programs
 from app.programs.whole_file import FileError
-from tests.programs_page.test_run_record import Kept
+from tests.programs_page.test_run_history import Kept
 
 
 class Keeping(Kept):

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from app.compose.desk_functions import furnish
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
-from app.compose.special_functions import furnish
 from app.compose.workshop import drawer, proof_of
 from app.desk.desk import Desk
 from app.desk.latest import Watch

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.command_errors import CommandError
 from app.compose.journal import Journal
 from app.compose.screen_desk import build_desk
 from app.compose.stored_offsets import NONE, book_of, chosen_offsets, stored_offsets
+from app.desk.command_errors import CommandError
 from core.executor.snapshot import Event
 from core.interpreter.job_setup import SecondaryOffset
 from core.language.source import Source

@@ -14,7 +14,7 @@ from app.screen import page_table
 from app.screen.look import Look
 from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
-from app.special.backup import BARRED
+from app.special.backup_and_restore import BARRED
 from app.special.inputs_outputs import NOT_NOW
 from app.special.special_view import SpecialPage
 from core.executor.commands import ForceOutput, SetSwitch, SpindleLimit

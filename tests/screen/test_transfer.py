@@ -16,7 +16,7 @@ from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
 from app.special.special_functions import SpecialFunctions
 from app.special.special_view import SpecialPage
-from app.transfer.serial_line import Received
+from app.transfer.line_transfer import Received
 from app.transfer.serial_transfer import SerialTransfer
 from core.executor.commands import FeedHold
 from core.executor.snapshot import State

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.programs.whole_file import FileError
-from app.transfer.serial_line import free_name, store_new
+from app.transfer.line_transfer import free_name, store_new
 
 
 def test_a_new_file_with_its_ending(tmp_path: Path) -> None:

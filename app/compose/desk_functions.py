@@ -16,11 +16,11 @@ from app.programs.folder_chooser import FolderChooser
 from app.programs.import_export import ImportExport
 from app.programs.preview import Preview
 from app.programs.program_list import ProgramList
-from app.programs.run_record import RunRecord
-from app.special.backup import BackupAndRestore
+from app.programs.run_history import RunHistory
+from app.special.backup_and_restore import BackupAndRestore
 from app.special.drive_status import DriveStatus
-from app.special.event_log import LoggedEvents
 from app.special.inputs_outputs import InputsOutputs
+from app.special.logged_events import LoggedEvents
 from app.special.machine_file_acceptance import MachineFileAcceptance
 from app.special.part_count import PartCounter
 from app.special.parts_counter import PartsCounterFunction
@@ -76,7 +76,7 @@ def furnish(
     """
     desk.settings = SettingsBook(persistence)
     desk.counter = PartCounter(persistence)
-    desk.record = RunRecord(persistence)
+    desk.record = RunHistory(persistence)
     worker = Latest("editing-special")
     own = own or data_folder() / "programs"
     functions = [make(desk, machine, persistence, worker) for make in ITEMS]

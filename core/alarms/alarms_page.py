@@ -1,4 +1,4 @@
-"""The alarm catalogue as a page to read: ``python -m core.alarms.document docs/alarms.md``."""
+"""The alarm catalogue as a page to read: ``python -m core.alarms.alarms_page docs/alarms.md``."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from core.alarms.alarm_entry import Entry, Reaction
 _HEAD = """\
 # Alarms, holds and stops
 
-Written from `core/alarms` by `python -m core.alarms.document docs/alarms.md`; `turndesk alarms` prints the
+Written from `core/alarms` by `python -m core.alarms.alarms_page docs/alarms.md`; `turndesk alarms` prints the
 same. The number stands on the screen, in `F7` with the time, in the event log and in `status.json`. Where an
 axis, a line or a drive's own word is known it is told with the alarm; the technical side is in
 `logs/turndesk.log`.

@@ -9,7 +9,7 @@ import pytest
 
 from app.desk.persistence import Persistence
 from app.desk.program_loading import Loaded, Phase
-from app.programs.run_record import RunRecord
+from app.programs.run_history import RunHistory
 from core.executor.job import Proof
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.store.store_errors import StoreError
@@ -40,7 +40,7 @@ class Kept(Persistence):
 
 def told(*snapshots: Snapshot) -> list[tuple[object, ...]]:
     keep = Kept()
-    record = RunRecord(keep)
+    record = RunHistory(keep)
     for snapshot in snapshots:
         record.see(snapshot, NO_PROGRAM)
     return keep.told
@@ -95,7 +95,7 @@ def test_a_line_of_mdi_is_no_run_of_the_program() -> None:
 
 def test_a_proof_is_kept_once() -> None:
     keep = Kept()
-    record = RunRecord(keep)
+    record = RunHistory(keep)
     proof = Proof(digest="x", errors=(), blocks=3, cycle_time=9.5, tools=())
     loaded = Loaded(Phase.READY, Path("pin.nc"), proof=proof)
     for _ in range(3):
@@ -109,7 +109,7 @@ def test_a_store_that_fails_stops_nobody() -> None:
         def run_started(self, program: str) -> None:
             raise StoreError(f"the disk is full: {program}")
 
-    record = RunRecord(Broken())
+    record = RunHistory(Broken())
     for snapshot in (READY, RUNNING, READY):
         record.see(snapshot, NO_PROGRAM)
     assert record.running == ""

@@ -1,15 +1,17 @@
-"""Files that a person writes in TOML: offsets, tool shapes, input states. Every mistake is named at once."""
+"""The offsets file that a person writes: [tool.1] and [secondary.1] in inches, [zero.54] in mm and degrees.
+
+It is part of an export. A tools file has the shapes of tools under the same [tool.1], which may stand in the
+offsets file too: lengths in inches, angles in degrees, outlines (holder, profile) as texts in mm. Every
+mistake is named at once.
+"""
 
 from __future__ import annotations
 
-import re
-import tomllib
-from collections.abc import Collection, Iterable, Iterator, Mapping
-from difflib import get_close_matches
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from app.cli.command_errors import CommandError
+from app.desk.toml_file import read_toml, refuse, unknown
 from core.store.offset_fields import FIELDS, Field, Sort
 from core.store.store_rows import (
     MM_PER_INCH,
@@ -25,70 +27,6 @@ from core.store.store_rows import (
 
 if TYPE_CHECKING:
     from core.part.tool_shape import ToolShape
-
-
-_POINT_FIRST = re.compile(r"^(\s*[\w.\"-]+\s*=\s*[-+]?)(?=\.\d)", re.MULTILINE)
-
-
-def read_toml(path: Path) -> dict[str, object]:
-    """The parsed file. Raises CommandError when it cannot be read or is no TOML.
-
-    ``.25`` is no figure to TOML, and the one that shops write: it is read as 0.25.
-    """
-    try:
-        return tomllib.loads(_POINT_FIRST.sub(r"\g<1>0", path.read_text(encoding="utf-8")))
-    except OSError as error:
-        raise CommandError(f"{path} cannot be read ({error.strerror}); check name and rights") from error
-    except UnicodeDecodeError as error:
-        raise CommandError(f"{path} is not UTF-8 text; save it as such") from error
-    except tomllib.TOMLDecodeError as error:
-        raise CommandError(f"{path} is no TOML: {error}") from error
-
-
-def unknown(key: str, known: Iterable[str]) -> str:
-    """The sentence for a key that nobody reads, with the nearest that somebody does."""
-    names = list(known)
-    near = get_close_matches(key, names, n=1)
-    return f"{key} is unknown; " + (f"did you mean {near[0]}?" if near else f"known here: {', '.join(names)}")
-
-
-def refuse(path: Path, mistakes: list[str]) -> None:
-    """Raises CommandError when there are mistakes."""
-    if mistakes:
-        raise CommandError(f"{path}: " + "; ".join(mistakes))
-
-
-# --- The inputs file: [inputs] with ``10 = true`` for PLC input 10, ``"TB2-5" = false`` for a terminal.
-# M95 asks what the control calls input 7: terminal TB2-9. ``7`` stands for it too where the file does not
-# name TB2-9.
-
-
-def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
-    """Input states by name. With ``known`` only these names are taken.
-
-    Raises CommandError naming every mistake.
-    """
-    data = read_toml(path)
-    mistakes = [unknown(key, ("inputs",)) for key in data if key != "inputs"]
-    table = data.get("inputs")
-    if not isinstance(table, dict):
-        refuse(path, [*mistakes, "the table [inputs] is missing"])
-        return {}
-    mistakes += [
-        f"inputs.{name} must be true (closed) or false (open)"
-        for name, state in table.items()
-        if not isinstance(state, bool)
-    ]
-    mistakes += [f"[inputs] {unknown(name, known)}" for name in table if known and name not in known]
-    refuse(path, mistakes)
-    also = "7" in table and (not known or "TB2-9" in known)
-    return {"TB2-9": table["7"], **table} if also else dict(table)
-
-
-# --- The offsets file: [tool.1], [secondary.1] in inches, [zero.54] in mm and degrees; part of an export. A
-# tools file has the shapes of tools under the same [tool.1], which may stand in the offsets file too: lengths
-# in inches, angles in degrees, outlines (holder, profile) as texts in mm.
-
 
 _KINDS = (Kind.TOOL, Kind.SECONDARY)
 _NUMBERS = {
@@ -145,7 +83,7 @@ def read_tool_shapes(path: Path) -> dict[int, ToolShape]:
     Lengths are inches in the file, as in an offsets file; outlines of holder and profile are texts in mm.
     Raises CommandError naming every mistake.
     """
-    from app.desk.tool_shapes import tool_shapes
+    from app.desk.stored_shapes import tool_shapes
 
     data = read_toml(path)
     mistakes = _unknown_tables(data)
@@ -181,7 +119,7 @@ def _tools(data: dict[str, object], mistakes: list[str]) -> _Tools:
 
 
 def _shape_mistakes(number: int, row: ShapeRow, tool: ToolRow) -> Iterator[str]:
-    from app.desk.tool_shapes import row_mistakes
+    from app.desk.stored_shapes import row_mistakes
 
     if not row.kind:
         kinds = FIELDS[Kind.SHAPE]["kind"].range

@@ -20,7 +20,7 @@ _SETTLED = frozenset({Phase.READY, Phase.REFUSED, Phase.UNREADABLE})
 
 
 @dataclass(slots=True)
-class RunRecord:
+class RunHistory:
     """Looks at every snapshot; posts what has happened to the store and never waits for it."""
 
     persistence: Persistence = field(default_factory=Persistence)

@@ -1,0 +1,41 @@
+"""A TOML file that a person writes, and what is wrong in it: every mistake is named at once."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable
+from difflib import get_close_matches
+from pathlib import Path
+
+from app.desk.command_errors import CommandError
+
+_POINT_FIRST = re.compile(r"^(\s*[\w.\"-]+\s*=\s*[-+]?)(?=\.\d)", re.MULTILINE)
+
+
+def read_toml(path: Path) -> dict[str, object]:
+    """The parsed file. Raises CommandError when it cannot be read or is no TOML.
+
+    ``.25`` is no figure to TOML, and the one that shops write: it is read as 0.25.
+    """
+    try:
+        return tomllib.loads(_POINT_FIRST.sub(r"\g<1>0", path.read_text(encoding="utf-8")))
+    except OSError as error:
+        raise CommandError(f"{path} cannot be read ({error.strerror}); check name and rights") from error
+    except UnicodeDecodeError as error:
+        raise CommandError(f"{path} is not UTF-8 text; save it as such") from error
+    except tomllib.TOMLDecodeError as error:
+        raise CommandError(f"{path} is no TOML: {error}") from error
+
+
+def unknown(key: str, known: Iterable[str]) -> str:
+    """The sentence for a key that nobody reads, with the nearest that somebody does."""
+    names = list(known)
+    near = get_close_matches(key, names, n=1)
+    return f"{key} is unknown; " + (f"did you mean {near[0]}?" if near else f"known here: {', '.join(names)}")
+
+
+def refuse(path: Path, mistakes: list[str]) -> None:
+    """Raises CommandError when there are mistakes."""
+    if mistakes:
+        raise CommandError(f"{path}: " + "; ".join(mistakes))
