@@ -103,3 +103,15 @@ LIGHT = Palette(
     tip="#b32d00",
 )
 PALETTES = {palette.name: palette for palette in (DARK, LIGHT)}
+
+# Of curves on a chart, on the colour ``panel``: neighbours differ in lightness as well as in hue.
+CURVES = {
+    "dark": (
+        *("#74d4f7", "#f5b638", "#35c4a2", "#ff7f50"),
+        *("#d6a2e8", "#f4f7fb", "#b5d36a", "#8f9bff"),
+    ),
+    "light": (
+        *("#005f99", "#8f4e00", "#006a52", "#b32d00"),
+        *("#86347a", "#0a101b", "#5d6b00", "#3a3fb8"),
+    ),
+}

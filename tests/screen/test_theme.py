@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtGui import QFontInfo, QFontMetricsF, QRawFont
 
 from app.screen.look import LEAST, Look, load_fonts
-from app.screen.theme import DARK, PALETTES, Palette
+from app.screen.theme import CURVES, DARK, PALETTES, Palette
 
 TEXT = [
     *((ink, ground) for ink in ("text", "soft", "accent") for ground in ("ground", "panel", "key")),
@@ -65,6 +65,12 @@ def test_text_is_readable(palette: Palette, ink: str, ground: str) -> None:
 @pytest.mark.parametrize(("shape", "ground"), SHAPES)
 def test_shapes_stand_out(palette: Palette, shape: str, ground: str) -> None:
     assert contrast(getattr(palette, shape), getattr(palette, ground)) >= 3.0
+
+
+@pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
+@pytest.mark.parametrize("number", range(8))
+def test_curves_stand_out(palette: Palette, number: int) -> None:
+    assert contrast(CURVES[palette.name][number], palette.panel) >= 3.0
 
 
 # Machado, Oliveira and Fernandes (2009): what eyes without L, M or S cones see, in linear RGB.

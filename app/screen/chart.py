@@ -1,0 +1,146 @@
+"""Charts of figures over time or over parts: plots by pyqtgraph in the colours and the font of the desk.
+
+Whoever imports this imports pyqtgraph, 0.3 s of it: only a ``_view`` that has a chart does, no page at the
+start of the desk. A chart draws and does nothing else: fingers, wheel and keys go to the widget behind it,
+which sets the ranges, so that no stock menu can take the keyboard and no drag can lose the curve.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+import pyqtgraph as pg
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QPen
+from PySide6.QtWidgets import QFrame, QWidget
+
+from app.desk.formats import fixed
+from app.screen.look import FAMILY, LEAST, Look
+from app.screen.theme import CURVES
+
+_TICK = 1.6  # units: height of the figures on an axis
+FloatArray = npt.NDArray[np.float64]
+
+
+def curve_colour(look: Look, number: int) -> QColor:
+    """The colour of the curve of this number, from 0 on; after eight they begin again."""
+    colours = CURVES[look.palette.name]
+    return QColor(colours[number % len(colours)])
+
+
+def line_pen(colour: QColor, style: Qt.PenStyle = Qt.PenStyle.SolidLine) -> QPen:
+    """A pen one pixel wide: a wider one takes Qt four times as long."""
+    pen = QPen(colour, 1.0, style)
+    pen.setCosmetic(True)
+    return pen
+
+
+class Axis(pg.AxisItem):  # type: ignore[misc]
+    """An axis whose figures are written as everywhere on the desk: a true minus, and no prefix of a unit."""
+
+    def __init__(self, orientation: str) -> None:
+        super().__init__(orientation)
+        self.enableAutoSIPrefix(False)
+
+    def tickStrings(self, values: Sequence[float], _scale: float, spacing: float) -> list[str]:
+        """The figures, with as many places as their distance asks for."""
+        places = max(0, int(np.ceil(-np.log10(spacing) - 1e-6))) if spacing > 0.0 else 0
+        return [fixed(value, places) for value in values]
+
+
+class Plot(pg.PlotItem):  # type: ignore[misc]
+    """One plot of a chart. The ranges are its owner's alone."""
+
+    def __init__(self) -> None:
+        axes = {side: Axis(side) for side in ("left", "bottom")}
+        super().__init__(axisItems=axes, enableMenu=False)
+        self.hideButtons()
+        self.setMouseEnabled(False, False)
+        self.vb.disableAutoRange()
+        self.vb.setDefaultPadding(0.0)
+
+    def curve(self, pen: QPen) -> pg.PlotCurveItem:
+        """A curve that takes ready arrays: see ``set_curve``."""
+        found = pg.PlotCurveItem(pen=pen, antialias=False, skipFiniteCheck=True)
+        found.setSegmentedLineMode("on")  # lines, no path: half the time
+        self.addItem(found)
+        return found
+
+    def room(self) -> QRectF:
+        """Where its curves are drawn, in pixels of the chart."""
+        found: QRectF = self.vb.sceneBoundingRect()
+        return found
+
+    def value_at(self, place: QPointF) -> tuple[float, float]:
+        """What stands at a place of the chart: across and up, in the units of the axes."""
+        (x0, x1), (y0, y1) = self.vb.viewRange()
+        room = self.room()
+        across = (place.x() - room.x()) / max(1.0, room.width())
+        down = (place.y() - room.y()) / max(1.0, room.height())
+        return x0 + across * (x1 - x0), y1 - down * (y1 - y0)
+
+
+def set_curve(curve: pg.PlotCurveItem, x: FloatArray, y: FloatArray, connect: object = "all") -> None:
+    """Give a curve its points; ``connect`` is all, pairs, or an array with 0 where a line ends."""
+    curve.setData(x=x, y=y, connect=connect, skipFiniteCheck=True)
+
+
+class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
+    """Plots below each other; see the module. ``dress`` follows theme and size of the window."""
+
+    def __init__(self, look: Look, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.look = look
+        self.plots: list[Plot] = []
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.viewport().setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents, False)
+        self.setAntialiasing(False)
+        self.ci.layout.setSpacing(0)
+        self.dress()
+
+    def add(self) -> Plot:
+        """One more plot, below the others."""
+        plot = Plot()
+        self.addItem(plot, row=len(self.plots), col=0)
+        self.plots.append(plot)
+        self._dress(plot)
+        return plot
+
+    def empty(self) -> None:
+        """No plot any more."""
+        self.clear()
+        self.plots.clear()
+
+    def share_left(self, units: float) -> None:
+        """All left axes as wide as this, in units: the plots stand exactly below each other."""
+        for plot in self.plots:
+            plot.getAxis("left").setWidth(round(units * self.look.u))
+
+    def dress(self) -> None:
+        """Colours and letters of now."""
+        margin = round(0.4 * self.look.u)
+        self.ci.layout.setContentsMargins(margin, margin, margin, margin)
+        self.setBackground(self.look.colour("panel"))
+        for plot in self.plots:
+            self._dress(plot)
+
+    def _dress(self, plot: Plot) -> None:
+        look = self.look
+        font = look.font(_TICK)
+        for side in ("left", "bottom"):
+            axis = plot.getAxis(side)
+            axis.setPen(line_pen(look.colour("frame")))
+            axis.setTextPen(line_pen(look.colour("soft")))
+            axis.setStyle(tickFont=font, tickLength=-round(0.5 * look.u))
+            axis.labelStyle = {
+                "color": look.palette.soft,
+                "font-size": f"{max(8, round(LEAST * look.u))}px",
+                "font-family": FAMILY,
+            }
+            axis.setLabel(axis.labelText)
+            axis.showLabel(bool(axis.labelText))
+            axis.setGrid(48)

@@ -1,0 +1,98 @@
+"""Charts: they draw, in colours and font of the desk, and take nothing that a hand does."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPointF, Qt
+from PySide6.QtGui import QColor
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QWidget
+from pytestqt.qtbot import QtBot
+
+from app.screen.chart import Chart, curve_colour, line_pen, set_curve
+from app.screen.look import Look
+from app.screen.theme import CURVES, DARK, LIGHT
+
+
+@pytest.fixture
+def parent(qtbot: QtBot) -> QWidget:
+    widget = QWidget()
+    widget.resize(640, 400)
+    qtbot.addWidget(widget)
+    return widget
+
+
+def chart_of(parent: QWidget, look: Look | None = None) -> Chart:
+    chart = Chart(look or Look(DARK), parent)
+    chart.resize(parent.size())
+    return chart
+
+
+def test_pyqtgraph_is_not_imported_at_the_start() -> None:
+    code = (
+        "import sys; import app.screen.run_screen, app.compose.screen_desk, app.screen.main_window;"
+        "from app.screen.page_table import PAGES; sys.exit('pyqtgraph' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_a_curve_is_drawn_in_its_colour(parent: QWidget) -> None:
+    chart = chart_of(parent)
+    plot = chart.add()
+    plot.setXRange(0.0, 10.0, padding=0)
+    plot.setYRange(-1.0, 1.0, padding=0)
+    curve = plot.curve(line_pen(curve_colour(chart.look, 1)))
+    set_curve(curve, np.array([0.0, 10.0]), np.array([0.43, 0.43]))
+    parent.show()
+    image = chart.grab().toImage()
+    room = plot.room()
+    x, y = round(room.center().x()), round(room.y() + 0.285 * room.height())
+    column = {image.pixelColor(x, y + d).name() for d in range(-2, 3)}
+    assert CURVES["dark"][1] in column
+    assert CURVES["dark"][0] not in column
+
+
+def test_a_place_is_told_in_the_units_of_the_axes(parent: QWidget) -> None:
+    chart = chart_of(parent)
+    plot = chart.add()
+    plot.setXRange(2.0, 6.0, padding=0)
+    plot.setYRange(-10.0, 10.0, padding=0)
+    parent.show()
+    chart.grab()
+    room = plot.room()
+    x, y = plot.value_at(QPointF(room.x() + 0.75 * room.width(), room.y() + 0.25 * room.height()))
+    assert x == pytest.approx(5.0)
+    assert y == pytest.approx(5.0)
+
+
+def test_colours_follow_the_theme(parent: QWidget) -> None:
+    look = Look(DARK)
+    chart = chart_of(parent, look)
+    chart.add()
+    look.repaint(LIGHT)
+    chart.dress()
+    parent.show()
+    assert chart.grab().toImage().pixelColor(1, 1) == QColor(LIGHT.panel)
+
+
+def test_wheel_and_fingers_go_to_what_is_behind(parent: QWidget) -> None:
+    chart = chart_of(parent)
+    plot = chart.add()
+    parent.show()
+    before = plot.vb.viewRange()
+    assert parent.childAt(200, 200) is None
+    QTest.mousePress(parent, Qt.MouseButton.RightButton, pos=parent.rect().center())
+    assert plot.vb.viewRange() == before
+    assert chart.focusPolicy() is Qt.FocusPolicy.NoFocus
+
+
+@pytest.mark.parametrize(
+    ("value", "spacing", "text"), [(-0.002, 0.001, "−0.002"), (0.0, 0.5, "0.0"), (-1e-17, 1.0, "0")]
+)
+def test_figures_of_an_axis(parent: QWidget, value: float, spacing: float, text: str) -> None:
+    axis = chart_of(parent).add().getAxis("left")
+    assert axis.tickStrings([value], 1.0, spacing) == [text]
