@@ -26,6 +26,8 @@ _SETTING = re.compile(r"\$\d+=.*")
 _ANSWER = re.compile(r"error:(\d+)")
 _ALARM = re.compile(r"ALARM:(\d+)")
 _IDLERS = frozenset(("Check", "Sleep", "Tool"))  # states in which it runs no program of ours
+_COALESCED = 0.5  # s; two questions so far apart are never answered by one report
+_LISTENING = 0.1  # s; of a longer pause of this computer no more counts as the controller's silence
 _LEAP = 1.0  # mm beyond what the slides can do between two reports
 _HOMING, _HOMED = 22, 1  # setting, and the bit of it that switches homing on
 
@@ -43,7 +45,8 @@ class Controller:
         self.settings: dict[int, str] = {}  # as read at the connection
         self.report: Report | None = None  # the last one
         self.reports = self.fulls = 0  # how many have come
-        self.heard_at = clock.now()
+        self.heard_at = clock.now()  # when the last one was read
+        self._made_after = clock.now()  # and the earliest at which it can have been made
         self.position: dict[str, float] = {}  # mm by axis letter, X a radius, from home
         self.origin: dict[str, float] = {}  # where home lies in the controller's own frame
         self.homed: tuple[int, ...] | None = None  # as it reports it: all axes, and a bit for each
@@ -66,7 +69,10 @@ class Controller:
         self.runner = Runner()
         self.expected = False  # a reset of our own
         self.doubtful = False  # something damaged has been heard: look at all of it
-        self.asked_at: float | None = None  # the oldest question for a report that is open
+        self.asked: deque[float] = deque()  # questions for a report that are open
+        self.owed_since: float | None = None  # since when a report is owed, on the clock of ``listened``
+        self._looked_at = clock.now()
+        self.listened = 0.0  # s in which somebody has listened: silence is told by these
         self.answered_at = 0.0
         self._garbage: deque[float] = deque()
         self._wire = wire
@@ -77,12 +83,12 @@ class Controller:
 
     def send(self, line: str, ticket: int = 0) -> Ask:
         """A line for the controller; its answer comes with later pumps."""
-        return self.stream.send(line, self.clock.now(), ticket)
+        return self.stream.send(line, self.listened, ticket)
 
     def run(self, script: Script, doing: str = "") -> None:
         """Begin a script; one that is under way is given up."""
         self.ready, self.expected = False, False
-        self.runner.begin(script, doing, self.clock.now())
+        self.runner.begin(script, doing, self.listened)
         self._advance()
 
     @property
@@ -102,7 +108,10 @@ class Controller:
         """Ask for a status report; a full one takes no turn of a plain one that is wanted."""
         self.realtime(grblhal_codes.FULL if full else grblhal_codes.STATUS)
         now = self.clock.now()
-        self.asked_at = now if self.asked_at is None else self.asked_at
+        while self.asked and now - self.asked[0] > _COALESCED:
+            self.asked.popleft()
+        self.asked.append(now)
+        self.owed_since = self.listened if self.owed_since is None else self.owed_since
         if not (full and self._sees_overrides):
             self._next_question = now + self._interval()
 
@@ -111,9 +120,10 @@ class Controller:
         if self.lost:
             return
         try:
+            self._listen()
             self._read()
             self._advance()
-            self.stream.pump(self.clock.now())
+            self.stream.pump(self.listened)
             self._ask()
             self._watch()
         except WireLostError as error:
@@ -234,13 +244,17 @@ class Controller:
             self.most_free = max(self.most_free, report.free)
         if not self.diameter:
             self.position = self._places(report) or self.position
+        self._made_after = self.asked.popleft() if self.asked else self.heard_at
         self.report, self.heard_at = report, self.clock.now()
 
     def plausible(self, report: Report) -> bool:
-        """No slide leaps further than it can have gone since the last report."""
+        """No slide leaps further than it can have gone since the last report was made.
+
+        That may be long before it was read: a computer that looks away finds an old report on the wire.
+        """
         if self.report is None or self.diameter:
             return True
-        passed = self.clock.now() - self.heard_at
+        passed = self.clock.now() - self._made_after
         places = self._places(report)
         for axis in self.config.axes:
             before, now = self.position.get(axis.name), places.get(axis.name)
@@ -296,7 +310,7 @@ class Controller:
             self.stream.told(line)
 
     def _answer(self, error: int) -> None:
-        self.answered_at = self.clock.now()
+        self.answered_at = self.listened
         if self.stream.stale:
             return
         first = self.fault == ""
@@ -322,7 +336,7 @@ class Controller:
         self.keep(report)
         if report.diameter and self.ready:
             self.fail("X counts in diameter (D:1): the controller has lost its modes", "controller-modes")
-        self.asked_at = None
+        self.owed_since = None
         self._mind(report)
         self.on_report(report)
 
@@ -364,6 +378,11 @@ class Controller:
         )
         self.void()
 
+    def _listen(self) -> None:
+        now = self.clock.now()
+        self.listened += min(now - self._looked_at, _LISTENING)
+        self._looked_at = now
+
     def _read(self) -> None:
         *lines, self._inbox = (self._inbox + self._wire.read()).split(b"\n")
         if len(self._inbox) > _LINE:
@@ -374,7 +393,7 @@ class Controller:
 
     def _advance(self) -> None:
         """Let the script go on; why it fails is the fault."""
-        why = self.runner.go_on(self.clock.now())
+        why = self.runner.go_on(self.listened)
         self.expected = self.expected and self.busy
         if why:
             self.fail(why, code_of(why, "controller-silent"))
@@ -397,9 +416,9 @@ class Controller:
         """Silence is a fault, but not behind a thread, whose wait for the index answers nothing."""
         if self.busy:
             return
-        now = self.clock.now()
-        if self.asked_at is not None and now - self.asked_at > (_INDEX if self.index_wait else _SILENT):
-            self.asked_at = now
+        patience = _INDEX if self.index_wait else _SILENT
+        if self.owed_since is not None and self.listened - self.owed_since > patience:
+            self.owed_since = self.listened
             self.fail(
                 "the controller does not answer; look at the cable and at the controller", "controller-silent"
             )
@@ -407,5 +426,6 @@ class Controller:
         if not (self.stream.unanswered and idle) or self.fault:
             return
         first = self.stream.unanswered[0]
-        if now - max(first.sent_at, self.answered_at) > (_INDEX if self.index_wait else _UNANSWERED):
+        patience = _INDEX if self.index_wait else _UNANSWERED
+        if self.listened - max(first.sent_at, self.answered_at) > patience:
             self.fail(f"no answer to {first.line!r}; the line may be disturbed", "controller-silent")
