@@ -11,7 +11,7 @@ import pytest
 OURS = ("app", "core", "drivers", "resources")
 QT = {"PySide6", "shiboken6"}
 SCREEN = "app.screen"
-COMMANDS = {"app.cli.main"}  # opens the screen for who asks for it, and imports it only then
+COMMANDS = {"app.cli.main", "app.cli.report_file"}  # open the screen, print a PDF, and import Qt only then
 
 
 def test_import_contracts_hold() -> None:

@@ -30,7 +30,7 @@ def prove_many(args: argparse.Namespace, job: ProofJob) -> int:
     """Prove all programs; 1 when any has errors, 2 when one cannot be read."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     files = program_files(args.files)
-    with report_file(args.report) as report:
+    with report_file(args) as report:
         run = _Run(args, job, files, _workers(args), report)
         run.prove()
     return run.told()

@@ -50,7 +50,10 @@ def add_parser(subparsers: SubParsers) -> None:
         "--compare", metavar="OFFSETS", help="what another offsets file makes of part, times and findings"
     )
     parser.add_argument(
-        "--report", metavar="FILE", help="HTML file with drawings, findings, tools, times, stops and offsets"
+        "--report", metavar="FILE", help="HTML or PDF with drawings, findings, tools, times, stops, offsets"
+    )
+    parser.add_argument(
+        "--paper", choices=("a4", "letter"), help="of a PDF report (default: as the computer's settings say)"
     )
     parser.add_argument("--keep-stock", action="store_true", help="the store remembers it with the program")
     add_folder_options(parser)
@@ -82,7 +85,7 @@ def run(args: argparse.Namespace) -> int:
         return prove_many(args, job)
     from app.cli.report_file import report_file
 
-    with report_file(args.report) as report:
+    with report_file(args) as report:
         return max(_status(Path(name), job, args, report) for name in args.files)
 
 

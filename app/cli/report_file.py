@@ -1,85 +1,151 @@
-"""The file of ``--report``: written aside while programs are proved, in place when all are."""
+"""The file of ``--report``, HTML or PDF: written aside while programs are proved, in place when all are."""
 
 from __future__ import annotations
 
+import argparse
 import contextlib
 import os
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Protocol
 
 from app.desk.command_errors import CommandError
 
 if TYPE_CHECKING:
     from app.cli.proof_work import Proof
 
-_ENDINGS = {".html", ".htm"}
+_TITLE = "Proof"
+_HTML, _PDF = {".html", ".htm"}, {".pdf"}
+
+
+class _Pages(Protocol):
+    """Where a report goes, a program after the other. Everything may raise OSError."""
+
+    def add(self, name: str, part: str, /) -> None:
+        """The HTML of the next program, under its name."""
+
+    def end(self) -> None:
+        """All of it is on the disk: a full one is told here, before the old report goes."""
+
+    def close(self) -> None:
+        """Let go of the file, whatever has become of it."""
+
+
+class _HtmlPages:
+    """One page for a browser."""
+
+    def __init__(self, path: Path) -> None:
+        from app.report.report_page import page_head
+
+        self._file = path.open("w", encoding="utf-8", errors="backslashreplace")
+        self._file.write(page_head(_TITLE, _now()))
+
+    def add(self, _name: str, part: str) -> None:
+        self._file.write(part)
+
+    def end(self) -> None:
+        from app.report.report_page import PAGE_END
+
+        self._file.write(PAGE_END)
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def close(self) -> None:
+        self._file.close()
+
+
+class _PdfPages:
+    """Numbered pages for a printer; each program begins a new one."""
+
+    def __init__(self, path: Path, paper: str | None) -> None:
+        from app.report.report_page import headline
+        from app.screen.pdf_pages import Paper, PdfPages
+
+        self._head = headline(_TITLE, _now())
+        self._pages = PdfPages(path, _TITLE, Paper(paper) if paper is not None else Paper.at_home())
+
+    def add(self, name: str, part: str) -> None:
+        self._pages.add(self._head + part, name)
+        self._head = ""
+
+    def end(self) -> None:
+        self._pages.close()
+
+    def close(self) -> None:
+        self._pages.give_up()
 
 
 class ReportFile:
     """A report as it is written, a program after the other. Raises CommandError when the disk refuses."""
 
-    def __init__(self, path: Path, file: TextIO) -> None:
-        self._path, self._file = path, file
-
-    def begin(self) -> None:
-        """Date, and what it is."""
-        from app.report.report_page import page_head
-
-        self._write(page_head("Proof", time.strftime("%Y-%m-%d %H:%M %z")))
+    def __init__(self, path: Path, pages: _Pages) -> None:
+        self._path, self._pages = path, pages
 
     def add(self, path: Path, proof: Proof) -> None:
         """The section of the next program."""
         from app.report.report_page import not_proved, program_part
 
-        self._write(program_part(str(path), proof.section or not_proved(proof.fault)))
-
-    def end(self, aside: Path) -> None:
-        """The page is whole, and takes its place."""
-        from app.report.report_page import PAGE_END
-
-        self._write(PAGE_END)
+        part = program_part(str(path), proof.section or not_proved(proof.fault))
         try:
-            self._file.flush()
-            os.fsync(self._file.fileno())  # a full disk is told here, before the old report goes
-            self._file.close()
-            aside.replace(self._path)
+            self._pages.add(path.name, part)
         except OSError as error:
             raise _unwritable(self._path, error) from error
 
-    def _write(self, text: str) -> None:
+    def end(self, aside: Path) -> None:
+        """The report is whole, and takes its place."""
         try:
-            self._file.write(text)
+            self._pages.end()
+            self._pages.close()
+            aside.replace(self._path)
         except OSError as error:
             raise _unwritable(self._path, error) from error
 
 
 @contextlib.contextmanager
-def report_file(name: str | None) -> Iterator[ReportFile | None]:
-    """The report of this name, None without one. What is refused is refused before anything is proved."""
-    if name is None:
+def report_file(args: argparse.Namespace) -> Iterator[ReportFile | None]:
+    """The report of --report, None without one. What is refused is refused before anything is proved."""
+    if args.report is None:
+        if args.paper is not None:
+            raise CommandError("--paper is for --report FILE.pdf")
         yield None
         return
-    path = Path(name)
-    if path.suffix.lower() not in _ENDINGS:
-        raise CommandError(f"--report {path}: reports are HTML files; name it {path.stem}.html")
-    if path.is_dir():
-        raise CommandError(f"--report {path} is a folder; name a file")
+    path = _named(args)
     aside = path.with_name(f".{path.name}.part")
     try:
-        file = aside.open("w", encoding="utf-8", errors="backslashreplace")
+        pages = _pages(aside, path.suffix.lower(), args.paper)
     except OSError as error:
         raise _unwritable(path, error) from error
     try:
-        report = ReportFile(path, file)
-        report.begin()
+        report = ReportFile(path, pages)
         yield report
         report.end(aside)
     finally:
         with contextlib.suppress(OSError):  # what could not be written before cannot be flushed now either
-            file.close()
+            pages.close()
         aside.unlink(missing_ok=True)
+
+
+def _named(args: argparse.Namespace) -> Path:
+    """Where it goes. Raises CommandError for what is no report."""
+    path = Path(args.report)
+    ending = path.suffix.lower()
+    if ending not in _HTML | _PDF:
+        way = f"name it {path.stem}.html or {path.stem}.pdf"
+        raise CommandError(f"--report {path}: reports are HTML or PDF files; {way}")
+    if args.paper is not None and ending not in _PDF:
+        raise CommandError(f"--paper is for PDF: a browser that prints {path.name} asks for its paper")
+    if path.is_dir():
+        raise CommandError(f"--report {path} is a folder; name a file")
+    return path
+
+
+def _pages(path: Path, ending: str, paper: str | None) -> _Pages:
+    return _PdfPages(path, paper) if ending in _PDF else _HtmlPages(path)
+
+
+def _now() -> str:
+    return time.strftime("%Y-%m-%d %H:%M %z")
 
 
 def _unwritable(path: Path, error: OSError) -> CommandError:

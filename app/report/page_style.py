@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-STYLE = """
+_PAGE = """
 body{font:14px/1.4 system-ui,"Segoe UI",Helvetica,Arial,sans-serif;color:#1a1d21;background:#fff;
 margin:24px auto;max-width:960px;padding:0 16px}
 h1{font-size:22px;margin:0}
@@ -30,6 +30,9 @@ padding:2px 0 2px 12px;margin:10px 0;break-inside:avoid}
 pre{background:#f2f4f6;padding:4px 8px;margin:4px 0;white-space:pre-wrap;overflow-wrap:anywhere}
 code{color:#5b626b}
 .hint{color:#5b626b}
+""".replace("\n", "")
+
+DRAWINGS = """
 .stock{fill:#e3e7eb;stroke:#9aa3ad;stroke-width:1;stroke-dasharray:5 3}
 .part{fill:#a9bccd;stroke:#22384d;stroke-width:1.4}
 .faint{fill:#dfe7ee;stroke:#9fb0c0;stroke-width:1}
@@ -43,7 +46,33 @@ code{color:#5b626b}
 .holder{fill:#d5d8db;fill-opacity:.75;stroke:#5b626b;stroke-width:1}
 .insert{fill:#e8b923;fill-opacity:.85;stroke:#7a5d00;stroke-width:1}
 .control{fill:#b3261e}
+""".replace("\n", "")
+"""Of the drawings alone."""
+
+_PRINT = """
 @media print{body{margin:0}
 section{break-before:page}
 section:first-of-type{break-before:auto}}
 """.replace("\n", "")
+
+STYLE = _PAGE + DRAWINGS + _PRINT
+"""Of a page in a browser."""
+
+PAPER = """
+body{color:#1a1d21;font-size:12px}
+h1{font-size:20px;margin-top:0;margin-bottom:2px}
+h2{font-size:16px;margin-top:10px;margin-bottom:6px}
+h3{font-size:13px;margin-top:14px;margin-bottom:4px}
+p{margin-top:2px;margin-bottom:2px}
+.made,code,.hint{color:#5b626b}
+.verdict{font-size:14px;font-weight:600}
+.good{background-color:#eaf5ea}
+.doubt{background-color:#fff5e3}
+.bad{background-color:#fdecea}
+td,th{padding:2px 10px 2px 0px;vertical-align:bottom}
+th{text-align:left}
+pre{background-color:#f2f4f6}
+.error b{color:#b3261e}
+.warning b{color:#b26a00}
+""".replace("\n", "")
+"""Of a PDF: what the HTML of Qt knows of it."""

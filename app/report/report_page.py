@@ -221,9 +221,13 @@ def page_head(title: str, made: str) -> str:
         '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width">'
         f'<meta http-equiv="Content-Security-Policy" content="{_NOTHING_LOADED}">'
-        f"<title>{escape(title)}</title><style>{STYLE}</style></head><body>"
-        f'<h1>{escape(title)}</h1><p class="made">{escape(made)}</p>\n'
+        f"<title>{escape(title)}</title><style>{STYLE}</style></head><body>{headline(title, made)}\n"
     )
+
+
+def headline(title: str, made: str) -> str:
+    """What it is, and its date."""
+    return f'<h1>{escape(title)}</h1><p class="made">{escape(made)}</p>'
 
 
 def program_part(name: str, section: str) -> str:

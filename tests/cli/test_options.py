@@ -70,6 +70,7 @@ COVERED = {
     ("prove", "--jobs"): "test_files_and_folders_mixed_are_proved_once_each",
     ("prove", "--compare"): "tests/cli/test_compare.py",
     ("prove", "--report"): "tests/cli/test_report.py",
+    ("prove", "--paper"): "tests/cli/test_report_pdf.py",
     ("prove", "--scheduler"): "tests/cli/test_scheduler.py",
     ("prove", "--no-cache"): "test_no_cache_neither_keeps_nor_looks",
     ("expand", "--ideal"): "test_the_options_of_a_program_act",

@@ -171,9 +171,10 @@ def test_a_mill_has_a_report_without_a_section(turndesk: Turndesk, tmp_path: Pat
     ("name", "says"),
     [
         ("nowhere/report.html", "cannot be written"),
-        ("report.pdf", "HTML"),
+        ("report.doc", "HTML or PDF"),
         ("report", "HTML"),
         ("folder.html", "folder"),
+        ("nowhere/report.pdf", "cannot be written"),
     ],
 )
 def test_where_no_report_can_be_written(
