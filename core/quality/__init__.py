@@ -1,0 +1,1 @@
+"""Measured parts: control charts, capability, drift, proposed wear; tool life, stops, availability."""

@@ -1,0 +1,102 @@
+"""A feature of a part that is measured: nominal, limits, and the tool or secondary offset that corrects it.
+
+Lengths mm; a diameter is a diameter. ``grows`` says what the feature does when the correction grows: +1 it
+grows with it, -1 it shrinks. A diameter, outside or inside, grows with X of a tool at X positive, and shrinks
+with that of a tool at X negative; a length grows or shrinks with Z by the end at which the tool cuts.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+from core.quality.control_charts import SAMPLE_SIZES
+from core.quality.quality_errors import QualityError
+
+NUMBERS = range(1, 33)
+NAME_LONGEST = 24
+SIZE_MOST = 2540.0  # mm: 100 in
+EVERY_MOST = 10_000
+
+
+class FeatureKind(StrEnum):
+    """What is measured."""
+
+    DIAMETER = "diameter"
+    LENGTH = "length"
+
+
+class CorrectedBy(StrEnum):
+    """What makes the feature and is corrected: wear of a tool, or a secondary offset."""
+
+    TOOL = "tool"
+    SECONDARY = "secondary"
+
+
+@dataclass(frozen=True, slots=True)
+class Feature:
+    """``low`` and ``high`` are deviations from the nominal; ``every``: so many parts apart, 0: no plan."""
+
+    name: str
+    kind: FeatureKind
+    nominal: float
+    low: float
+    high: float
+    by: CorrectedBy
+    number: int
+    grows: int = 1
+    every: int = 0
+    sample: int = 1
+
+    @property
+    def axis(self) -> str:
+        """The axis whose correction changes it."""
+        return "x" if self.kind is FeatureKind.DIAMETER else "z"
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Smallest and largest good size."""
+        return self.nominal + self.low, self.nominal + self.high
+
+    @property
+    def middle(self) -> float:
+        """What is aimed at: the middle of the tolerance."""
+        return self.nominal + (self.low + self.high) / 2.0
+
+    @property
+    def width(self) -> float:
+        """The tolerance from limit to limit."""
+        return self.high - self.low
+
+    @property
+    def corrected_by(self) -> str:
+        """``T3 X`` or ``D4 Z``."""
+        return f"{'T' if self.by is CorrectedBy.TOOL else 'D'}{self.number} {self.axis.upper()}"
+
+    def good(self, size: float) -> bool:
+        """Whether a part of this size is within its tolerance; a reading on the limit is."""
+        low, high = self.limits
+        return low - 1e-9 <= size <= high + 1e-9
+
+
+def check_feature(feature: Feature) -> None:
+    """Raises QualityError, with what to enter, for a feature that nobody could measure or correct."""
+    if not feature.name.strip() or len(feature.name) > NAME_LONGEST or not feature.name.isprintable():
+        raise QualityError(f"a feature has a name of 1 to {NAME_LONGEST} characters")
+    if not all(map(math.isfinite, (feature.nominal, feature.low, feature.high))):
+        raise QualityError(f"{feature.name}: nominal and limits are numbers")
+    if not 0.0 < feature.nominal <= SIZE_MOST:
+        raise QualityError(f"{feature.name}: the nominal is more than 0 and at most {SIZE_MOST:g} mm")
+    if feature.low >= feature.high:
+        raise QualityError(f"{feature.name}: the lower deviation is not below the upper; correct one of them")
+    if feature.limits[0] <= 0.0:
+        raise QualityError(f"{feature.name}: its lower limit is nothing or less; correct the deviation")
+    if feature.number not in NUMBERS:
+        raise QualityError(f"{feature.name}: offsets are 1 to {NUMBERS[-1]}, not {feature.number}")
+    if feature.grows not in {1, -1}:
+        raise QualityError(f"{feature.name}: it grows with its correction or shrinks with it, +1 or -1")
+    if not 0 <= feature.every <= EVERY_MOST:
+        raise QualityError(f"{feature.name}: measured every 1 to {EVERY_MOST} parts, 0: no plan")
+    if feature.sample != 1 and feature.sample not in SAMPLE_SIZES:
+        raise QualityError(f"{feature.name}: a sample has 1 to {SAMPLE_SIZES[-1]} parts")

@@ -1,0 +1,7 @@
+"""What is refused of measured parts: one sentence, with what to do."""
+
+from __future__ import annotations
+
+
+class QualityError(ValueError):
+    """Figures from which nothing can be told; the text says which and what to do."""
