@@ -111,6 +111,8 @@ class Execution:
         elif snapshot.state is not State.IDLE or elsewhere:
             self._completed = False
         self._ends, self._program, self._lines = snapshot.ends, snapshot.program, snapshot.lines
+        if ended and snapshot.state is State.DISABLED:  # both between two looks: the end is told first
+            return COMPLETED
         return self._of(snapshot)
 
     def _of(self, snapshot: Snapshot) -> str:

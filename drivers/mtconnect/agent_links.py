@@ -12,6 +12,7 @@ BEHIND = 64 * 1024  # bytes that may wait for a slow agent; at ten lines a secon
 READ = 1024  # bytes taken at a time: whoever sends more waits in its own buffers
 LONGEST_LINE = 1024
 _GRACE = 1.0  # s on top of two heartbeats
+DOOR = 5.0  # s in which a newcomer to a full house has to ping
 
 
 class LostError(Exception):
@@ -23,15 +24,24 @@ class GoneError(LostError):
 
 
 class AgentLink:
-    """On a wire that does not wait. ``heartbeat`` (s) is what the agent is told to ping at."""
+    """On a wire that does not wait. ``heartbeat`` (s) is what the agent is told to ping at.
 
-    def __init__(self, wire: socket.socket, heartbeat: float) -> None:
+    ``waits_since`` (s): it came when all places were taken, and is told nothing; None: it is served.
+    """
+
+    def __init__(self, wire: socket.socket, heartbeat: float, waits_since: float | None = None) -> None:
         self.wire = wire
+        self.waits_since = waits_since
         self.ignored = 0  # lines that were no PING
         self._heartbeat = heartbeat
         self._heard: float | None = None  # when it last pinged; None: it never did and need not
         self._in = b""
         self._out = bytearray()
+
+    @property
+    def pings(self) -> bool:
+        """Whether it is an agent by its own word."""
+        return self._heard is not None
 
     def put(self, data: bytes) -> None:
         """Queue it. Raises LostError for an agent that has not taken what was sent before."""
@@ -73,7 +83,12 @@ class AgentLink:
             self.ignored += 1
 
     def mind(self, now: float) -> None:
-        """Raises LostError for an agent that pinged and has stopped: its end of the line may be long gone."""
+        """Raises LostError for an agent that pinged and has stopped: its end of the line may be long gone.
+
+        And for one that waits for a place and is none.
+        """
+        if self.waits_since is not None and now - self.waits_since > DOOR:
+            raise GoneError("all places are taken, and it does not ping")
         if self._heard is not None and now - self._heard > 2.0 * self._heartbeat + _GRACE:
             raise LostError(f"no PING for {now - self._heard:.0f} s")
 

@@ -18,6 +18,7 @@ from drivers.mtconnect.shdr_lines import AgentsState, Report, stamp
 
 LOOK = 0.1  # s between two looks at the machine
 MOST = 8  # agents at a time
+_AT_DOOR = 4  # that may wait for the place of one who never pinged
 _log = logging.getLogger(__name__)
 
 
@@ -64,8 +65,11 @@ class Adapter:
 
     @property
     def agents(self) -> int:
-        """How many are connected."""
-        return len(self._links)
+        """How many are served."""
+        return len(self._served())
+
+    def _served(self) -> list[AgentLink]:
+        return [link for link in self._links if link.waits_since is None]
 
     def open(self) -> None:
         """Begin to listen. Raises DriverError where it cannot."""
@@ -108,8 +112,9 @@ class Adapter:
     def _tell(self, link: AgentLink, data: bytes) -> None:
         try:
             link.mind(self._clock.now())
-            link.put(data)
-            link.flush()
+            if link.waits_since is None:
+                link.put(data)
+                link.flush()
         except LostError as lost:
             self._lose(link, lost)
 
@@ -119,20 +124,41 @@ class Adapter:
             wire = accepted(self._door)
         except OSError:  # gone before it was let in, or no more files: the next turn tries again
             return
-        if len(self._links) >= MOST:
+        if len(self._links) >= MOST + _AT_DOOR:
             self.counts.refused += 1
             wire.close()
             return
-        self.counts.accepted += 1
-        link = AgentLink(wire, self._settings.heartbeat)
+        full = len(self._served()) >= MOST
+        link = AgentLink(wire, self._settings.heartbeat, self._clock.now() if full else None)
         self._links.append(link)
         self._selector.register(wire, selectors.EVENT_READ, link)
+        if not full:
+            self._admit(link)
+
+    def _admit(self, link: AgentLink) -> None:
+        link.waits_since = None
+        self.counts.accepted += 1
         self._tell(link, self._sent.whole(stamp(self._utc())).encode("utf-8"))
+
+    def _make_room(self, link: AgentLink) -> None:
+        """An agent at the door: whoever came first and never pinged gives way to it."""
+        served = self._served()
+        silent = next((other for other in served if not other.pings), None)
+        if len(served) >= MOST and silent is None:
+            self.counts.refused += 1
+            self._forget(link)
+            return
+        if len(served) >= MOST and silent is not None:
+            self._lose(silent, GoneError("it never pinged, and an agent needs the place"))
+        self._admit(link)
 
     def _serve(self, link: AgentLink) -> None:
         try:
             link.read(self._clock.now())
-            link.flush()
+            if link.waits_since is not None and link.pings:
+                self._make_room(link)
+            else:
+                link.flush()
         except LostError as lost:
             self._lose(link, lost)
 

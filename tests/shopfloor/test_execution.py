@@ -112,3 +112,16 @@ def test_a_program_that_was_given_up_is_stopped_and_not_completed() -> None:
 )
 def test_modes(snapshot: Snapshot, mode: str) -> None:
     assert mode_of(snapshot) == mode
+
+
+def test_an_end_between_two_looks_is_told_before_the_drives_are_off() -> None:
+    """A run without a screen switches everything off as soon as its program has ended."""
+    execution, off = Execution(), Snapshot(state=State.DISABLED, program="a.nc", ends=1)
+    execution.look(RUN)
+    assert [execution.look(off), execution.look(off)] == ["PROGRAM_COMPLETED", "STOPPED"]
+
+
+def test_drives_off_in_the_middle_is_no_end() -> None:
+    execution = Execution()
+    execution.look(RUN)
+    assert execution.look(Snapshot(state=State.DISABLED, program="a.nc")) == "STOPPED"

@@ -208,11 +208,37 @@ def test_there_is_room_for_so_many_and_no_more(bench: Bench) -> None:
     for _ in range(MOST):
         bench.agent()
     with socket.create_connection(bench.adapter.address, 5.0) as wire:
+        wire.sendall(b"* PING\n")
         bench.until(lambda: bench.adapter.counts.refused == 1)
-        assert wire.recv(100) == b""
+        assert b"|" not in wire.recv(100)  # nothing of the machine
     bench.agents[0].hang_up()
     bench.until(lambda: bench.adapter.agents == MOST - 1)
     bench.agent()
+
+
+def test_who_pings_takes_the_place_of_who_never_did(bench: Bench) -> None:
+    """Half-open connections and port scanners must not lock the agents out."""
+    silent = []
+    for taken in range(1, MOST + 1):
+        silent.append(socket.create_connection(bench.adapter.address, 5.0))
+        bench.until(lambda taken=taken: bench.adapter.agents == taken)  # type: ignore[misc]
+    agents = [bench.agent() for _ in range(MOST)]
+    assert all(agent.values["execution"] == "READY" for agent in agents)
+    assert bench.adapter.agents == MOST
+    assert bench.adapter.counts.lost == MOST
+    for wire in silent:
+        wire.close()
+
+
+def test_who_waits_at_the_door_and_never_pings_is_sent_away(bench: Bench) -> None:
+    for _ in range(MOST):
+        bench.agent()
+    with socket.create_connection(bench.adapter.address, 5.0) as wire:
+        bench.until(lambda: len(bench.adapter._links) == MOST + 1)
+        for _ in range(51):
+            bench.silent_look()
+        assert wire.recv(100) == b""
+    assert bench.adapter.agents == MOST
 
 
 def test_closing_hangs_up_on_everybody() -> None:
