@@ -11,7 +11,7 @@ from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.transfer.line_transfer import Received, Transfer
+    from app.transfer.line_transfer import Received, Transfer, TransferProgress
     from core.machine.machine_model import Machine
     from core.machine.serial_table import DncModel
 
@@ -154,6 +154,9 @@ def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> 
     from app.compose.stored_offsets import chosen_offsets
     from app.compose.workshop import workshop
 
+    if args.out and Path(args.out).exists():  # before anything is waited for: it could not be stored
+        sys.stderr.write(f"turndesk: {args.out} is there already and is never replaced; take another name\n")
+        return EXIT_ERRORS
     lines = SerialLines(proving(workshop(machine, chosen_offsets(None), pictures=False)))
     received = carry(lines.receive(settings), f"receiving from {settings.port}")
     if received is None:
@@ -194,6 +197,21 @@ T = TypeVar("T")
 _LOOK = 0.1  # s
 
 
+def _heard(reach: TransferProgress) -> str:
+    """Why what comes is not taken for a program."""
+    if reach.what == "noise":
+        return f"what comes is no text ({reach.heard}): look at --baud, --bits and --parity, and at the cable"
+    return f"text comes, but no %: {reach.heard!r}; --wrap '' takes programs without it"
+
+
+def _tell(told: str, reach: TransferProgress) -> str:
+    """Say once of which kind it is; what has been said by now."""
+    if not reach.heard or told == reach.what:
+        return told
+    sys.stderr.write(f"turndesk: {_heard(reach)}\n")
+    return reach.what
+
+
 def carry(transfer: Transfer[T], what: str) -> T | None:
     """What it answers; None when it came to nothing, which has then been said in one sentence."""
     from concurrent.futures import ThreadPoolExecutor
@@ -204,7 +222,7 @@ def carry(transfer: Transfer[T], what: str) -> T | None:
     from core.ports import DriverError
 
     with ThreadPoolExecutor(1, thread_name_prefix="serial") as pool, Progress(what) as progress:
-        future = pool.submit(transfer.run)
+        future, told = pool.submit(transfer.run), ""
         try:
             while True:
                 try:
@@ -214,6 +232,7 @@ def carry(transfer: Transfer[T], what: str) -> T | None:
                         raise
                     progress.total = transfer.reach.total
                     progress.reach(transfer.reach.done)
+                    told = _tell(told, transfer.reach)
         except (DriverError, FileError) as error:
             sys.stderr.write(f"turndesk: {error}\n")
             return None

@@ -15,7 +15,10 @@ T_co = TypeVar("T_co", covariant=True)
 
 
 class TransferProgress(Protocol):
-    """How far it has come. ``total`` 0: nobody knows; ``what`` it waits for: held, dc1, sender or frame."""
+    """How far it has come. ``total`` 0: nobody knows; ``what`` it waits for: held, dc1, sender, frame, noise.
+
+    ``heard``: what came in its place while a program's first % is waited for.
+    """
 
     @property
     def done(self) -> int: ...
@@ -28,6 +31,9 @@ class TransferProgress(Protocol):
 
     @property
     def what(self) -> str: ...
+
+    @property
+    def heard(self) -> str: ...
 
 
 @dataclass(frozen=True, slots=True)

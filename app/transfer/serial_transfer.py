@@ -45,6 +45,7 @@ def progress_sheet(reach: TransferProgress, settings: DncModel, sends: str) -> S
         Row((tr("LINES"), f"{reach.lines}")),
         Row((tr("DONE"), share)),
         Row((tr("WAITS"), _waits(reach.what)), bool(reach.what), Tone.WAIT),
+        *([Row((tr("HEARS"), reach.heard))] if reach.heard else ()),
     )
     words = f"{settings.port}  {settings.baud} {settings.bits}{settings.parity}{settings.stop}"
     return Sheet(TITLE, ("", ""), (0.35, 0.65), rows, notes=(words,), raw=frozenset({0, 1}))
@@ -57,6 +58,7 @@ def _waits(what: str) -> str:
         "dc1": tr("FOR DC1 FROM THE OTHER SIDE"),
         "sender": tr("FOR THE OTHER SIDE TO SEND"),
         "frame": tr("FOR THE FIRST %"),
+        "noise": tr("WHAT COMES IS NO TEXT: LOOK AT BAUD, BITS AND PARITY"),
     }
     return words.get(what, "—")
 

@@ -43,6 +43,7 @@ def name_of(head: bytes, lines: list[bytes]) -> str:
 
 
 LARGEST = 50_000_000  # bytes: no program is larger
+HEARD = 32  # characters before the first % that are shown
 _SEVEN = 0x7F
 _CR, _LF, _TAB, _DC3 = 0x0D, 0x0A, 0x09, 0x13
 _ENDS = frozenset((0x04, 0x13, 0x14, 0x1A))  # EOT, DC3, DC4, ^Z: the sender has no more
@@ -85,10 +86,25 @@ class Incoming:
         self._parity = PARITIES[settings.line.parity] if settings.own_parity else None
         self._raw = bytearray()  # with parity bits; from behind the first % on
         self._skipped = 0
+        self._before = bytearray()  # the last characters before the first %, leaders left out
         self._begins = 0  # where the line begins that is coming in
         self._feeds = self._returns = 0
         self.phase = Phase.WAITING
         self.count = 0  # characters that have come
+
+    @property
+    def heard(self) -> str:
+        """The last characters before the first %, those that are no text as their codes."""
+        return "".join(self._told())
+
+    @property
+    def noise(self) -> bool:
+        """Whether most of what came before the first % is no text in seven bits or in eight."""
+        return sum(len(one) > 1 for one in self._told()) * 2 > len(self._before)
+
+    def _told(self) -> list[str]:
+        parity = PARITIES["E"] if self._parity is None else self._parity
+        return [_shown(character, parity) for character in self._before]
 
     @property
     def lines(self) -> int:
@@ -156,6 +172,8 @@ class Incoming:
         begins = plain == self._wrap[0] if self._wrap else plain > 0x20 and plain != _SEVEN
         if wrong or not begins:
             self._skipped += 1
+            if plain and plain != _SEVEN:
+                self._before = (self._before + bytes([character]))[-HEARD:]
             return
         self.phase = Phase.STORING
         if not self._wrap:
@@ -215,6 +233,14 @@ class Incoming:
             f"the last {wrap} is missing, {self.lines} lines came: the program is not whole and is not kept; "
             "send it again"
         )
+
+
+def _shown(character: int, parity: int) -> str:
+    """Text of eight bits, or of seven with this parity; a code where it is neither."""
+    plain = character & _SEVEN if parity_of(character) == parity else character
+    if plain in {_CR, _LF, _TAB}:
+        return " "
+    return chr(plain) if 0x20 <= plain < _SEVEN else f"<{character:02X}>"
 
 
 def _even(raw: bytes) -> bool:

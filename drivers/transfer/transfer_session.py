@@ -17,7 +17,7 @@ PATIENCE = 120.0  # s that the other side may hold the line
 AGAIN = 5.0  # s after which DC1 is said again while nothing comes
 LAST = 0.5  # s of silence behind a last % without a line end
 # What a transfer waits for: the screen has the words.
-HELD_BACK, FOR_DC1, FOR_SENDER, FOR_FRAME = "held", "dc1", "sender", "frame"
+HELD_BACK, FOR_DC1, FOR_SENDER, FOR_FRAME, NO_TEXT = "held", "dc1", "sender", "frame", "noise"
 QUIET = 10.0  # s of silence within a program after which it will not go on
 
 
@@ -27,12 +27,16 @@ class CancelledError(DriverError):
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """How far it has come. ``total`` 0: nobody knows; ``what`` it waits for: one of the words above."""
+    """How far it has come. ``total`` 0: nobody knows; ``what`` it waits for: one of the words above.
+
+    ``heard``: what came and is no program, where a first % is waited for.
+    """
 
     done: int = 0
     total: int = 0
     lines: int = 0
     what: str = ""
+    heard: str = ""
 
 
 class _Transfer:
@@ -173,8 +177,11 @@ class Receiving(_Transfer):
                 f"a damaged character in line {incoming.lines}: nothing is kept. Look at the line settings, "
                 "at shield and earth of the cable, and send it again"
             )
-        what = "" if incoming.phase is not Phase.WAITING else FOR_FRAME
-        self.reach = Reach(incoming.count, 0, incoming.lines, what)
+        if incoming.phase is not Phase.WAITING:
+            self.reach = Reach(incoming.count, 0, incoming.lines)
+            return
+        what = NO_TEXT if incoming.noise or self._wire.damaged else FOR_FRAME
+        self.reach = Reach(incoming.count, 0, incoming.lines, what, incoming.heard)
 
     def _ended(self, incoming: Incoming, *, gone: bool) -> None:
         """A last % may have no line end; without one, the sender may only have been slow."""
@@ -187,7 +194,8 @@ class Receiving(_Transfer):
                 raise
 
     def _ask(self) -> None:
-        self.reach = Reach(what=FOR_SENDER)
+        if not self.reach.heard:
+            self.reach = Reach(what=FOR_SENDER)
         self._say(DC1)
 
     def _say(self, code: bytes) -> None:

@@ -56,16 +56,50 @@ def test_every_setting_of_a_line(settings: str, tmp_path: Path) -> None:
             assert out.read_bytes() == source.read_bytes()
 
 
-def test_a_received_program_overwrites_nothing(far: FarEnd, tmp_path: Path, pool: ThreadPoolExecutor) -> None:
+def test_a_received_program_overwrites_nothing(
+    far: FarEnd, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It is refused before anything is waited for: nobody has to send it twice."""
     target = tmp_path / "OLD.nc"
     target.write_bytes(b"M02\n")
-    future = pool.submit(
-        main, ["serial", "receive", "--port", far.port, "--out", str(target), "--flow", "none"]
-    )
+    assert main(["serial", "receive", "--port", far.port, "--out", str(target), "--flow", "none"]) == 1
+    assert f"{target} is there already" in capsys.readouterr().err
+    assert target.read_bytes() == b"M02\n"
+    assert far.hear() == b""
+
+
+def test_a_file_that_comes_while_it_is_received_is_not_replaced(
+    far: FarEnd, tmp_path: Path, pool: ThreadPoolExecutor
+) -> None:
+    target = tmp_path / "OLD.nc"
+    future = pool.submit(main, ["serial", "receive", "--port", far.port, "--out", str(target)])
+    assert _asked(far)
+    target.write_bytes(b"M02\n")
     answer(far, future, b"%\nG90\nM30\n%\n")
     assert future.result(WAIT) == 1
     assert target.read_bytes() == b"M02\n"
-    assert [path.name for path in tmp_path.iterdir()] == ["OLD.nc"]
+
+
+def _asked(far: FarEnd) -> bool:
+    return any(b"\x11" in far.hear(0.2) for _ in range(int(WAIT / 0.2)))
+
+
+def test_what_is_heard_and_is_no_program_is_said(
+    far: FarEnd, tmp_path: Path, pool: ThreadPoolExecutor, capsys: pytest.CaptureFixture[str]
+) -> None:
+    future = pool.submit(main, ["serial", "receive", "--port", far.port, "--out", str(tmp_path / "N.nc")])
+    assert _asked(far)
+    told = ""
+    for _ in range(int(WAIT / 0.2)):
+        if "no %" in told:
+            break
+        far.say(b"O1234 G90\r\n")
+        far.hear(0.2)
+        told += capsys.readouterr().err
+    assert "O1234 G90" in told
+    assert "--wrap ''" in told
+    answer(far, future, b"%\nG90\nM30\n%\n")
+    assert future.result(WAIT) == 0
 
 
 def test_what_is_not_whole_leaves_nothing(far: FarEnd, tmp_path: Path, pool: ThreadPoolExecutor) -> None:

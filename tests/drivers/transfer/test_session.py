@@ -153,6 +153,30 @@ def test_a_disturbance_before_the_program_does_not_end_the_asking() -> None:
     assert bytes(side.taken) == b"\x11\x11\x11\x13"
 
 
+@pytest.mark.parametrize(
+    ("come", "heard", "what"),
+    [
+        (b"O12 G90\r\n", "O12 G90  ", "frame"),  # a program without %
+        (bytes(c | (c.bit_count() & 1) << 7 for c in b"G90"), "G90", "frame"),  # the same in seven bits
+        (b"\x00\x00\xff\x7f", "", "frame"),  # a leader and rubbed out characters: nothing to be said
+        (b"\x9e\x01\x1c\xe6", "<9E><01><1C><E6>", "noise"),  # another rate
+    ],
+)
+def test_what_is_heard_before_a_program_is_told(come: bytes, heard: str, what: str) -> None:
+    side, told = OtherSide(StepClock(), [(1.0, come), (4.0, DATA)]), []
+    job = receiving(side)
+    listens = side.receive
+
+    def look(limit: float) -> bytes:
+        if side.clock.now() > 2.0 and not told:
+            told.append((job.reach.heard, job.reach.what))
+        return listens(limit)
+
+    side.receive = look
+    assert job.run().text == TEXT
+    assert told == [(heard, what)]
+
+
 def test_nothing_is_said_where_no_codes_are_used() -> None:
     side = OtherSide(StepClock(), [(1.0, DATA)])
     receiving(side, dataclasses.replace(SETTINGS, line=LineSettings("bench"))).run()
