@@ -33,6 +33,7 @@ def stock_json(part: PartReport, dialect: Dialect) -> Json | None:
         "milled": part.milled,
         "pieces": [volume(piece.volume) for piece in part.pieces],
         "assumed": list(part.assumed),
+        "unchecked": list(part.unchecked),
     }
 
 
@@ -47,6 +48,7 @@ def stock_lines(part: PartReport, dialect: Dialect) -> str:
         f"  stock {_named(part.stock, dialect)}: {volume(part.removed):.4g} {unit}"
         f" of {volume(part.volume):.4g} cut away{pieces}\n"
         + "".join(f"  {words}\n" for words in part.assumed)
+        + (f"  not checked: {'; '.join(part.unchecked)}\n" if part.unchecked else "")
     )
 
 

@@ -9,6 +9,7 @@ from core.machine.machine_model import Machine
 from core.part.clamping import Clamping
 from core.part.tool_shape import ToolShape
 from core.proving.part_proof import PartSetting
+from core.proving.thread_checks import Drives
 
 
 def known_part(
@@ -22,6 +23,7 @@ def known_part(
         shapes=shapes,
         nose_radii={number: tool.nose_radius for number, tool in tools.items()},
         clamping=_clamping(machine, stick_out),
+        drives=Drives(machine.axes[1].amax, machine.spindle.decel),
         gang={n: (tool.z, tool.x) for n, tool in tools.items()} if machine.tooling == "gang" else {},
     )
 

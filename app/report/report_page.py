@@ -96,7 +96,8 @@ class ProgramReport:
             rows.append(("Part", f"Ø {size} × {self._length(outside[0][0] - outside[-1][0])}"))
         if part.pieces:
             rows.append(("Parted off", _many(len(part.pieces), "piece")))
-        return rows + [("Assumed", words) for words in part.assumed]
+        rows += [("Assumed", words) for words in part.assumed]
+        return rows + [("Not checked", words) for words in part.unchecked]
 
     # --- drawings
 

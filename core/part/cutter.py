@@ -59,6 +59,16 @@ class Cutter:
         """Whether its holder is known."""
         return bool(self._body)
 
+    def clears(self, forward: int) -> float:
+        """Degrees from Z at which the back of the edge rises behind the tip of a tool that cuts towards
+        ``forward`` (sign of Z); 90 where it has none."""
+        outline = self._cutting[0]
+        edge = outline.far if self.side is Side.BORE else outline.near
+        rises = -forward * edge.slope
+        lengths = np.where(rises > 0.0, np.hypot(np.diff(edge.z), np.diff(edge.r)), 0.0)
+        sides = rises[lengths > 0.5 * lengths.max(initial=0.0)]  # and no chord of the nose
+        return float(np.degrees(np.arctan(sides.min()))) if len(sides) else 90.0
+
     def cut(self, part: TurnedPart, start: Point, end: Point) -> Cut:
         """Take off what the edges sweep from one place of the control point to the next."""
         return self._swept(part, start, end, cut=True)

@@ -42,6 +42,15 @@ _WORDS = (
 )
 _SIZE = re.compile(r"(?:(\d+)/(\d+)|(\d*\.\d+))\s*(?:IN(?:CH)?\b|\")?(?=[^/]*\bDRILL|\s*DIA)")
 _MILLIMETRES = re.compile(r"(\d+(?:\.\d+)?)\s*MM\b")
+_TAP_NUMBER = re.compile(r"(?:^|[^\d/.])#?(\d{1,2})\s*-\s*(\d{2})\b")  # 10-32
+_TAP_INCH = re.compile(r"(?:(\d+)/(\d+)|(\d*\.\d+))\s*-\s*(\d{1,2})\b")  # 1/4-20
+_TAP_METRIC = re.compile(r"\bM(\d+(?:\.\d+)?)(?:\s*X\s*(\d*\.?\d+))?")  # M6X1
+_METRIC_COARSE = {
+    **{2.0: 0.4, 2.5: 0.45, 3.0: 0.5, 4.0: 0.7, 5.0: 0.8, 6.0: 1.0, 8.0: 1.25, 10.0: 1.5, 12.0: 1.75},
+    **{14.0: 2.0, 16.0: 2.0, 20.0: 2.5, 24.0: 3.0},
+}  # ISO 261, mm
+_RELEASES = re.compile(r"TAPMATIC|REVERSING|RELEAS|COLLAPS|DIE ?HEAD|SELF[ -]?REV")
+_LEFT_HAND = re.compile(r"\bL\.?H\b|\bLEFT[ -]?HAND")
 
 
 @dataclass(slots=True)
@@ -176,10 +185,33 @@ def _groover(kind: ToolKind, use: ToolUse, *, rear: bool) -> ToolShape:
 
 
 def _round_tool(kind: ToolKind, use: ToolUse) -> ToolShape:
-    diameter = _diameter(" ".join(use.comments))
+    comment = " ".join(use.comments).upper()
+    diameter, hand = _diameter(comment), Hand.LEFT if _LEFT_HAND.search(comment) else Hand.RIGHT
+    if kind is ToolKind.TAP:
+        across, pitch = tap_size(comment)
+        return ToolShape(kind, hand, diameter=across or diameter, pitch=pitch)
     if use.live and not _on_axis(use.moves):
         return ToolShape(kind, tip=8 if use.across else 7, diameter=diameter or _MILL, point=118.0)
-    return ToolShape(kind, diameter=diameter, point=118.0)
+    return ToolShape(kind, hand, diameter=diameter, point=118.0)
+
+
+def tap_size(comment: str) -> tuple[float, float]:
+    """Diameter and pitch, mm, of a tap as a comment names it: 1/4-20, 10-32, M6X1; 0 where it does not."""
+    text = comment.upper()
+    if found := _TAP_METRIC.search(text):
+        across = float(found[1])
+        return across, float(found[2]) if found[2] else _METRIC_COARSE.get(across, 0.0)
+    if found := _TAP_INCH.search(text):
+        inches = float(found[3]) if found[3] else int(found[1]) / max(int(found[2]), 1)
+        return inches * 25.4, 25.4 / max(int(found[4]), 1)
+    if found := _TAP_NUMBER.search(text):  # ASME B1.1: .060 and .013 for each number
+        return (0.060 + 0.013 * int(found[1])) * 25.4, 25.4 / max(int(found[2]), 1)
+    return 0.0, 0.0
+
+
+def releases(use: ToolUse) -> bool:
+    """Whether a comment says that the holder of a tap turns it back, or lets it go, by itself."""
+    return _RELEASES.search(" ".join(use.comments).upper()) is not None
 
 
 def _rear(moves: Sequence[TipMove]) -> bool:

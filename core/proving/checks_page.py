@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from core.proving.part_checks import CHECKS, Check
+from core.proving.part_checks import CHECKS, PROGRAM_CHECKS, Check
 
-_HEAD = """# What the proof of the part looks for
+_HEAD = """# What the proof looks for
 
 Written from `core/proving/part_checks.py` by `python -m core.proving.checks_page docs/checks.md`. Each
 finding has its id, line, elementary block and remedy; an error refuses the program. The metal is exact to
@@ -22,10 +22,18 @@ the slides stand, and all that moves while the collet is open. A bar that is fed
 stood.
 """
 
+_WITHOUT = """
+## Without the stock
+"""
+
 
 def page() -> str:
     """The whole page."""
-    return _HEAD + "\n" + "\n".join(_row(name, check) for name, check in CHECKS.items()) + "\n"
+    return f"{_HEAD}\n{_rows(CHECKS)}{_WITHOUT}\n{_rows(PROGRAM_CHECKS)}"
+
+
+def _rows(checks: Mapping[str, Check]) -> str:
+    return "\n".join(_row(name, check) for name, check in checks.items()) + "\n"
 
 
 def _row(name: str, check: Check) -> str:

@@ -1,4 +1,4 @@
-"""The checks of the part: one entry each, from which the findings and ``docs/checks.md`` come."""
+"""The checks of the proof: one entry each, from which the findings and ``docs/checks.md`` come."""
 
 from __future__ import annotations
 
@@ -57,6 +57,12 @@ CHECKS: Mapping[str, Check] = {
         "A commanded speed over max_rpm under [clamping] of the machine file.",
         "Lower S, or limit G96 by G77.",
     ),
+    "stock-whips": Check(
+        _WARNING,
+        "The spindle turns so fast that the stock may whirl.",
+        "More than half of the first critical speed of what sticks out, as a bar of brass held at one end.",
+        "Lower S, limit G96 by G77, let the part stick out less, or support it.",
+    ),
     "larger-than-stock": Check(
         _ERROR,
         "The part is larger than its stock: a contour is cut in the air outside the bar.",
@@ -66,7 +72,7 @@ CHECKS: Mapping[str, Check] = {
     "cuts-air": Check(
         _WARNING,
         "A feed goes on where there is no metal.",
-        "It stays more than .08 in from all metal for 5 s and .2 in of its way.",
+        "One stays more than .08 in from all metal for 5 s and .2 in, or several in a row for 20 s.",
         "Look for a lost minus or decimal point; move there by a rapid.",
     ),
     "unmade-cut": Check(
@@ -90,19 +96,99 @@ CHECKS: Mapping[str, Check] = {
     "drill-too-deep": Check(
         _ERROR,
         "A drill goes deeper than its flutes are long.",
-        "The hole is deeper than the cutting length of the drill.",
+        "The hole is deeper than the cutting length of the drill; without a length the proof says so.",
         "Use a longer drill, or peck and check the length that was entered.",
     ),
     "wrong-spindle-direction": Check(
         _WARNING,
         "The spindle turns against the cutting edge.",
-        "M04 with a right-hand drill, tap or reamer; M03 with a left-hand one.",
+        "M04 with a right-hand drill, reamer or tap, M03 with a left-hand one; or one edge is made to cut "
+        "both ways.",
         "Change M03 and M04, or the hand that the tool's shape says.",
+    ),
+    "wrong-side": Check(
+        _WARNING,
+        "An insert cuts with its back.",
+        "Fed backwards over .02 in and two nose radii deep, or into a wall that is steeper than its back.",
+        "Use a tool of the other hand, a slimmer insert, or cut from the other side.",
     ),
     "chip-load": Check(
         _WARNING,
-        "The feed is larger than the nose can cut.",
-        "A feed per turn over .8 of the nose radius along a turned face.",
+        "The feed of a turn is larger than the edge can cut.",
+        "Over .8 of the nose radius; .25 of the width of a groover; .1 of the diameter of a drill.",
         "Lower F, or look for a lost decimal point (F.03 for F.003).",
     ),
+    "thread-run-up": Check(
+        _WARNING,
+        "A thread begins before the slide has the speed of its lead, or ends while it brakes.",
+        "The metal begins nearer to the start of the pass than v²/2a of the slide; or the pass stops in "
+        "metal and v²/2a is more than a lead.",
+        "Start farther away, lower S, end in a groove, or pull out with P.",
+    ),
+    "thread-form": Check(
+        _WARNING,
+        "A thread does not fit its lead.",
+        "It is deeper than a sharp V of the lead; or the lead is no multiple of the pitch of the insert.",
+        "Check K, X of the last pass, the X where it starts, and the pitch of the insert.",
+    ),
+    "tap-pitch": Check(
+        _ERROR,
+        "A tap is not fed by its pitch.",
+        "The feed of a turn is off by more than .08 of the pitch that its shape or its comment gives.",
+        "Write F as the pitch: 1 divided by the threads per inch.",
+    ),
+    "tap-reversal": Check(
+        _ERROR,
+        "A tap is drawn out of its thread and not turned out.",
+        "It leaves by a rapid, with the spindle stopped or not reversed, by another feed, or the spindle "
+        "needs more than .5 in to stand. Not asked of a holder that reverses by itself, as its comment says.",
+        "Reverse the spindle at the bottom and feed out by the pitch.",
+    ),
 }
+
+PROGRAM_CHECKS: Mapping[str, Check] = {
+    "no-tool": Check(
+        _ERROR,
+        "A cut with no tool in force.",
+        "A move that cuts before the first T or after T0; a warning where the program names no tool at all.",
+        "Write T with the tool's number before it.",
+    ),
+    "collet-open": Check(
+        _ERROR,
+        "A cut with the collet open.",
+        "Metal is cut behind M13; a warning where a feed does not lead away as a bar is pulled, or the next "
+        "cycle would begin with an open collet.",
+        "Close the collet with M12.",
+    ),
+    "live-tool-off": Check(
+        _ERROR,
+        "A live tool stands while it mills.",
+        "A move of plane switching with no live tool on; a warning with the spindle held as C.",
+        "Switch it on by the M code that the machine file gives.",
+    ),
+    "spindle-off": Check(
+        _WARNING,
+        "A cut with the spindle stopped.",
+        "A feed by time after M05, with no live tool on; an error with a feed per turn, G33 or G96.",
+        "Start it with M03 or M04.",
+    ),
+    "start-place": Check(
+        _WARNING,
+        "The first move is incremental.",
+        "G91 before any move to a place: it begins where the slides stand.",
+        "Begin with X and Z under G90.",
+    ),
+    "no-input": Check(
+        _ERROR,
+        "The machine has no such input.",
+        "M91 to M97 ask for one that the machine file does not name.",
+        "Correct the number, or name it under [io.in].",
+    ),
+    "unreached-branch": Check(
+        _WARNING,
+        "Lines that no way through the program has reached.",
+        "Calls by inputs, block delete and loops are followed both ways, as far as the proof goes.",
+        "Look at the call, or prove again with the inputs that lead there.",
+    ),
+}
+"""What is found without the stock: beside tool, collet, spindle, inputs and ways through the program."""

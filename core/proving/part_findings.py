@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from itertools import pairwise
 
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.modal_state import Modal
 from core.language.diagnostics import Diagnostic
+from core.part.bar_whirl import whirling_rpm
 from core.part.clamping import Clamping
 from core.part.cutter import Cutter
 from core.part.neighbours import Neighbours
 from core.part.polar_field import Taken
 from core.part.stock import Stock
 from core.part.swept_edge import Point
-from core.part.tool_shape import ToolKind, ToolShape
+from core.part.tool_shape import ToolShape
 from core.part.turned_part import NOTHING, Cut, Piece, TurnedPart
+from core.proving.edge_checks import EdgeChecks
 from core.proving.mill_moves import MillMove
 from core.proving.part_checks import CHECKS
+from core.proving.thread_checks import Found, ThreadChecks
 from core.proving.tip_moves import TipMove
 
 _MOST = 100
@@ -27,10 +30,11 @@ _CHUCK_STEP = 0.05  # mm
 _RAPID = 0.0254  # mm of metal that a rapid may touch
 _NEAR = 2.0  # mm; further from all metal than that is in the air
 _AIR_TIME, _AIR_WAY = 5.0, 5.0  # s, mm
+_LONG_AIR = 20.0  # s, of moves one after the other
 _AWAY = 2.54  # mm; a move that leads away from the part
 _PLACES = (0.05, 0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95)
-_COARSE = 0.8  # of the nose radius
 _SLENDER = 5.0
+_SAFE = 0.5  # of the speed at which a bar begins to whirl
 
 
 @dataclass(slots=True)
@@ -41,14 +45,20 @@ class PartFindings:
     stock: Stock | None
     clamping: Clamping | None = None
     neighbours: Neighbours | None = None
+    threads: ThreadChecks = field(default_factory=ThreadChecks)
+    _edges: EdgeChecks = field(init=False)
     _found: dict[tuple[str, int], Diagnostic] = field(default_factory=dict)
     _chuck: TurnedPart | None = None
+    _whirls: float = 0.0  # rpm at which the stock begins to whirl; 0: not known
     _before: TipMove | None = None
     _cut_before: bool = False  # the move before has taken metal off
     _left_part: TipMove | None = None  # a feed that led away from the part, and met nothing
+    _air: float = 0.0  # s without metal since the last cut
 
     def __post_init__(self) -> None:
+        self._edges = EdgeChecks(self.stock)
         if self.clamping is not None and self.clamping.diameter and self.stock is not None:
+            self._whirls = whirling_rpm(self.stock, self.clamping.stick_out)
             self._chuck = TurnedPart(self.clamping.around(self.stock), _CHUCK_STEP)
 
     @property
@@ -59,8 +69,10 @@ class PartFindings:
     def look(self, move: TipMove, cutter: Cutter, part: TurnedPart, tool: int) -> None:
         """Cut, and look at what was met."""
         if move.quick and self._before is not None and self._before.kind is Kind.THREAD:
+            self._found_by(move, self.threads.look(move, NOTHING, part, self.shape(tool), tool))
             self._before = move  # out of its groove, wherever round the part that ends
             return
+        self.threads.before(move, part)
         met, struck = _executed(move, cutter, part)
         if struck:
             text = f"The holder of T{tool} runs into metal, {_depth(struck, move)}."
@@ -77,9 +89,13 @@ class PartFindings:
             self._rapid(move, met)
         else:
             self._feed(move, met, cutter, part)
-            self._tool(move, met, self.shape(tool), tool)
-            self._deep(move, met, cutter, tool)
+            self._found_by(move, self._edges.look(move, met, self.shape(tool), cutter, part, tool))
+        self._found_by(move, self.threads.look(move, met, part, self.shape(tool), tool))
         self._before, self._cut_before = move, bool(met) and not move.quick
+
+    def _found_by(self, move: TipMove, found: Iterable[Found]) -> None:
+        for check, text, at in found:
+            self._add(check, at or move, text)
 
     def _clamped(self, move: TipMove, cutter: Cutter, tool: int) -> None:
         """Chuck or collet: what runs into it, and how fast it turns."""
@@ -95,6 +111,9 @@ class PartFindings:
         if highest and abs(move.rpm) > highest:
             text = f"The spindle turns at {abs(move.rpm):.0f} rpm; the chuck may turn at {highest:.0f}."
             self._add("spindle-overspeed", move, text)
+        if self._whirls and abs(move.rpm) > _SAFE * self._whirls:
+            text = f"The stock sticks out so far that it whirls at {self._whirls:.0f} rpm; it turns at"
+            self._add("stock-whips", move, f"{text} {abs(move.rpm):.0f}.")
 
     def _rapid(self, move: TipMove, met: Cut) -> None:
         self._left_part = None
@@ -110,6 +129,7 @@ class PartFindings:
     def _feed(self, move: TipMove, met: Cut, cutter: Cutter, part: TurnedPart) -> None:
         gone, self._left_part = self._left_part, None
         if met or move.kind is Kind.THREAD:
+            self._air = 0.0
             return
         if self._outside_stock(move):
             self._add("larger-than-stock", move, "This move turns a larger diameter than the stock has.")
@@ -128,6 +148,14 @@ class PartFindings:
         if move.seconds * share >= _AIR_TIME and move.length * share >= _AIR_WAY:
             text = f"This move feeds for {move.seconds * share:.0f} s where there is no metal."
             self._add("cuts-air", move, text)
+        elif self._add_air(move, share):
+            text = f"Up to here tools have fed for {_LONG_AIR:.0f} s where there is no metal."
+            self._add("cuts-air", move, text)
+
+    def _add_air(self, move: TipMove, share: float) -> bool:
+        """Whether short moves one after the other have been in the air for long; told once."""
+        before, self._air = self._air, self._air + move.seconds * share
+        return before < _LONG_AIR <= self._air
 
     def _outside_stock(self, move: TipMove) -> bool:
         """Whether it cuts along Z beside the stock, and further out."""
@@ -135,40 +163,6 @@ class PartFindings:
         if stock is None or max(zs) - min(zs) < _AWAY or min(zs) > stock.front - _AWAY:
             return False
         return min(abs(r) for _, r in move.points) > stock.radius + _NEAR
-
-    def _tool(self, move: TipMove, met: Cut, shape: ToolShape | None, tool: int) -> None:
-        if shape is None or not met:
-            return
-        nose = shape.nose_radius
-        if move.kind is not Kind.THREAD and nose and move.per_rev > _COARSE * nose and not shape.turns_itself:
-            feed = move.modal.feed_text(move.per_rev, per_rev=True)
-            self._add(
-                "chip-load",
-                move,
-                f"T{tool} feeds {feed} with a nose radius of {move.modal.length_text(nose)}.",
-            )
-        if shape.kind in {ToolKind.DRILL, ToolKind.REAMER} and move.rpm < 0.0 and shape.hand == "right":
-            self._add(
-                "wrong-spindle-direction", move, f"T{tool} cuts while the spindle turns backwards (M04)."
-            )
-        deep = part_depth(move, self.stock)
-        if shape.turns_itself and shape.length and deep > shape.length:
-            length = move.modal.length_text(shape.length)
-            self._add(
-                "drill-too-deep", move, f"T{tool} goes {move.modal.length_text(deep)} deep; it cuts {length}."
-            )
-
-    def _deep(self, move: TipMove, met: Cut, cutter: Cutter, tool: int) -> None:
-        """A cut along Z that is deeper than the edge is long; across it the insert goes in as it comes."""
-        (z0, r0), (z1, r1) = move.points[0], move.points[-1]
-        shape = self.shape(tool)
-        if shape is None or shape.kind is not ToolKind.TURNING or abs(z1 - z0) <= abs(r1 - r0):
-            return
-        if not cutter.held:
-            return  # an insert that was assumed
-        if met.depth > cutter.height:
-            deep, edge = (move.modal.length_text(length) for length in (met.depth, cutter.height))
-            self._add("feed-into-holder", move, f"T{tool} cuts {deep} deep; its edge reaches {edge}.")
 
     def milled(self, move: MillMove, met: Taken, shape: ToolShape, modal: Modal) -> None:
         """A live tool has moved."""
@@ -197,11 +191,6 @@ class PartFindings:
             self._found[check, line] = Diagnostic(
                 line, 0, entry.severity, check, text, entry.remedy, check=check, n=n
             )
-
-
-def part_depth(move: TipMove, stock: Stock | None) -> float:
-    """How deep a move ends behind the face of the stock, mm."""
-    return (stock.front if stock is not None else 0.0) - min(z for z, _ in move.points)
 
 
 def _executed(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[Cut, Cut]:

@@ -24,14 +24,16 @@ from core.part.tool_outline import outline
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import STEP, Piece, TurnedPart
 from core.proving.assumed_stock import assumed_stock
-from core.proving.assumed_tools import Assumed, ToolUse, assumed_tool
+from core.proving.assumed_tools import Assumed, ToolUse, assumed_tool, releases
 from core.proving.mill_moves import mill_move
 from core.proving.milling import Milling
 from core.proving.part_findings import PartFindings
 from core.proving.program_timeline import MotionSpan, Part, RestSpan
 from core.proving.proof_report import Report, in_order
 from core.proving.prove_program import Progress, prove
+from core.proving.thread_checks import UNKNOWN, Drives, ThreadChecks
 from core.proving.tip_moves import LiveStep, Place, Step, Steps, TipMove
+from core.proving.unchecked_parts import unchecked
 
 MOST_MOVES = 50_000
 """Of a longer program the part is made when somebody has said its stock: a million take half a minute."""
@@ -47,6 +49,7 @@ class PartSetting:
     clamping: Clamping | None = None
     gang: Mapping[int, Point] = field(default_factory=dict)  # Z and X of the tools that ride one plate
     tips: Mapping[int, Place] = field(default_factory=dict)  # as ``Steps`` has them
+    drives: Drives = UNKNOWN
     step: float = STEP  # width of a column of the part, mm
 
 
@@ -55,7 +58,8 @@ class PartReport:
     """What became of the stock: mm and mm³. ``last`` is the last part that came off, or what the chuck holds.
 
     ``shapes`` are the tools by T, described or assumed, None where nothing is known that would cut.
-    ``assumed`` are sentences, one for each thing that nobody has said.
+    ``assumed`` are sentences, one for each thing that nobody has said, ``unchecked`` what could not be looked
+    at for want of it.
     """
 
     stock: Stock | None
@@ -67,6 +71,7 @@ class PartReport:
     pieces: tuple[Piece, ...]
     assumed: tuple[str, ...]
     findings: tuple[Diagnostic, ...]
+    unchecked: tuple[str, ...] = ()
     shapes: Mapping[int, ToolShape | None] = field(default_factory=dict)
 
 
@@ -90,7 +95,9 @@ def prove_with_part(
 
     report = prove(program, setup, machine, progress, ideal=ideal, seen=see)
     part = gathered.report()
-    return replace(report, diagnostics=in_order((*report.diagnostics, *part.findings))), part
+    known = {(each.line, each.code) for each in report.diagnostics}  # of reading, which knows no stock
+    found = (each for each in part.findings if (each.line, each.code) not in known)
+    return replace(report, diagnostics=in_order((*report.diagnostics, *found))), part
 
 
 def _not_made(moves: int) -> PartReport:
@@ -205,6 +212,10 @@ class Tools:
         """Whether somebody has said what it looks like."""
         return number in self._setting.shapes
 
+    def releases(self, number: int) -> bool:
+        """Whether a comment says that the holder of a tap turns it back, or lets it go, by itself."""
+        return releases(self.uses[number]) if number in self.uses else False
+
     def cutter(self, number: int) -> Cutter | None:
         """The tool ready to cut; without a described holder only its edges count."""
         shape = self.shape(number)
@@ -261,7 +272,9 @@ class Making:
             stock,
             setting.clamping,
             Neighbours(setting.shapes, setting.gang) if setting.gang else None,
+            ThreadChecks(setting.drives, tools.releases),
         )
+        self._unchecked = unchecked(tools.uses, setting.shapes, setting.clamping, setting.gang)
         self.milling: Milling | None = None  # from the first cut of a live tool on
         self.part = TurnedPart(stock, self._step) if stock is not None and not tools.feeds_first else None
 
@@ -384,5 +397,6 @@ class Making:
             pieces=tuple(self._pieces),
             assumed=tuple(assumed),
             findings=self.findings.found,
+            unchecked=self._unchecked,
             shapes={n: self._tools.shape(n) for n, use in self._tools.uses.items() if use.moves},
         )

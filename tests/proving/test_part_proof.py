@@ -11,6 +11,7 @@ import re
 
 import pytest
 
+from app.compose.known_part import known_part
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
@@ -192,7 +193,7 @@ def test_no_false_alarm_on_a_worked_example(example: str) -> None:
     tools = {n: ToolOffset() for n in range(1, 33)}
     setup = setup_for(machine, tools=tools, secondary={n: SecondaryOffset(*d) for n in (1,)})
     source = Source(example, worked(example).read_text(encoding="latin-1"))
-    _, part = prove_with_part(source, setup, machine, PartSetting())
+    _, part = prove_with_part(source, setup, machine, PartSetting(drives=known_part(machine, {}, {}).drives))
     assert part is not None
     assert checks(part) == []
 

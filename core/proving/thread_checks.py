@@ -1,0 +1,223 @@
+"""Checks of threads and taps: run-up and end of a pass, depth and pitch, a tap that is turned back."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from core.interpreter.elementary_blocks import Kind
+from core.part.swept_edge import FloatArray
+from core.part.tool_shape import ToolKind, ToolShape
+from core.part.turned_part import Cut, TurnedPart
+from core.proving.tip_moves import TipMove
+
+_LATENCY = 0.08  # s before a drive follows a new command
+_POINT = 60.0  # degrees, of a thread that nobody has described
+_DEEPER = 1.02  # of a sharp V
+_OTHER_PITCH = 0.08  # of a pitch: 1/2-12 and 1/2-13; holders that give are fed a few hundredths slower
+_OTHER_FEED = 0.15  # of the feed in: how much faster or slower a tap may be drawn out
+_GIVES = 12.7  # mm by which a tap holder gives
+_IN_HOLE = 0.05  # mm
+_NEAR = 1e-6  # mm
+_MOST_STARTS = 24
+
+
+class Found(NamedTuple):
+    """What a check has to say about the move that it has just seen; ``at``: about another one."""
+
+    check: str
+    text: str
+    at: TipMove | None = None
+
+
+class Drives(NamedTuple):
+    """What slide and spindle can do: mm/s² along Z, rpm/s of the spindle as it slows down; 0: not known."""
+
+    slide_accel: float = 0.0
+    spindle_decel: float = 0.0
+
+
+UNKNOWN = Drives()
+
+
+@dataclass(slots=True)
+class ThreadChecks:
+    """Goes with the moves in their order; ``before`` and ``look`` stand around the cut of each.
+
+    ``releases`` tells by T whether the holder of a tap turns it back, or lets it go, by itself.
+    """
+
+    drives: Drives = UNKNOWN
+    releases: Callable[[int], bool] = lambda _: False
+    _crest: tuple[int, int, FloatArray, float] | None = None  # line, first column, radii, 1: towards the axis
+    _pass: tuple[TipMove, Cut] | None = None  # of a thread, until it is known how it ends
+    _fed: TipMove | None = None  # the last feed of a tap into its hole
+    _entry: float = 0.0  # Z of the metal that it has met first
+
+    def before(self, move: TipMove, part: TurnedPart) -> None:
+        """The radii of the metal, before the first pass of a thread is cut into it."""
+        if move.kind is not Kind.THREAD or (self._crest is not None and self._crest[0] == move.line):
+            return
+        z0, z1 = move.points[0][0], move.points[-1][0]
+        short = math.copysign(min(move.per_rev, abs(z1 - z0) / 2.0), z0 - z1)  # what is beside a shoulder
+        low, high = sorted((z0, z1 + short))
+        there = slice(part.columns.at(low), part.columns.at(high))
+        inside = self._in_bore(move, part, there)
+        radii = part.innermost if inside else part.outermost
+        self._crest = move.line, there.start, radii[there], -1.0 if inside else 1.0
+
+    @staticmethod
+    def _in_bore(move: TipMove, part: TurnedPart, there: slice) -> bool:
+        """Whether the thread is cut in a bore: its metal lies further out than its edge."""
+        inner = part.innermost[there]
+        bored = inner[inner > 0.0]
+        if not len(bored):
+            return False
+        edge = max(abs(r) for _, r in move.points)
+        return abs(edge - float(bored.min())) < abs(float(part.outermost[there].max()) - edge)
+
+    def look(
+        self, move: TipMove, met: Cut, part: TurnedPart, shape: ToolShape | None, tool: int
+    ) -> Iterator[Found]:
+        """What is wrong with a move that has just been cut."""
+        goes_on = self._pass is not None and move.kind is Kind.THREAD  # out of the thread at its end
+        yield from self._end_of_pass(move)
+        if shape is not None and shape.kind is ToolKind.TAP:
+            yield from self._tap(move, met, shape, tool)
+        else:
+            self._fed = None
+        if move.kind is Kind.THREAD and move.per_rev and not goes_on:
+            yield from self._thread(move, met, part, shape, tool)
+            self._pass = move, met
+
+    # --- threads that are cut
+
+    def _thread(
+        self, move: TipMove, met: Cut, part: TurnedPart, shape: ToolShape | None, tool: int
+    ) -> Iterator[Found]:
+        text = move.modal.length_text
+        deep, angle = self._depth(move, part), _POINT
+        if shape is not None and shape.kind is ToolKind.THREADING and shape.point:
+            angle = shape.point
+        sharp = move.per_rev / 2.0 / math.tan(math.radians(angle / 2.0))
+        if deep > _DEEPER * sharp:
+            yield Found(
+                "thread-form",
+                f"The thread is {text(deep)} deep; with a lead of {text(move.per_rev)} and {angle:g}° its "
+                f"flanks meet at {text(sharp)}.",
+            )
+        if shape is not None and shape.pitch and shape.kind is ToolKind.THREADING:
+            starts = move.per_rev / shape.pitch
+            if abs(starts - round(starts)) > 0.02 * max(starts, 1.0) or not 0 < round(starts) <= _MOST_STARTS:
+                words = f"T{tool} cuts a pitch of {text(shape.pitch)}; the lead is {text(move.per_rev)}."
+                yield Found("thread-form", words)
+        before, needed = self._run_up(move, met), self._braking(move)
+        if met and before < needed:
+            words = (
+                f"The metal begins {text(max(before, 0.0))} behind the start of the pass; the slide needs "
+                f"{text(needed)} to reach the speed of the lead."
+            )
+            yield Found("thread-run-up", words)
+
+    def _depth(self, move: TipMove, part: TurnedPart) -> float:
+        """How deep the edge stands under what was there before the first pass, mm; 0 where nothing was."""
+        if self._crest is None:
+            return 0.0
+        _, first, radii, inwards = self._crest
+        (z0, r0), (z1, r1) = move.points[0], move.points[-1]
+        if not len(radii) or abs(z1 - z0) <= move.per_rev:
+            return 0.0
+        middles = part.columns.first + part.columns.step * np.arange(first, first + len(radii))
+        edge = np.abs(r0 + (r1 - r0) * (middles - z0) / (z1 - z0))
+        there = (radii > 0.0) & (middles >= min(z0, z1)) & (middles <= max(z0, z1))
+        return float((inwards * (radii - edge))[there].max(initial=0.0))
+
+    @staticmethod
+    def _run_up(move: TipMove, met: Cut) -> float:
+        z0, z1 = move.points[0][0], move.points[-1][0]
+        return z0 - met.front if z1 < z0 else met.back - z0
+
+    def _braking(self, move: TipMove) -> float:
+        """The way in which the slide reaches the speed of the lead, or comes to rest from it, mm."""
+        accel = self.drives.slide_accel
+        return (move.per_rev * abs(move.rpm) / 60.0) ** 2 / (2.0 * accel) if accel else 0.0
+
+    def _end_of_pass(self, move: TipMove) -> Iterator[Found]:
+        """A slide that brakes before it pulls straight out cuts less than its lead on the last of its way."""
+        if self._pass is None:
+            return
+        (cut, met), self._pass = self._pass, None
+        needed = self._braking(cut)
+        if move.kind is Kind.THREAD or needed <= cut.per_rev or not met:
+            return  # the slide goes on while it pulls out, or the last turn is all that it spoils
+        z0, z1 = cut.points[0][0], cut.points[-1][0]
+        left = met.back - z1 if z1 < z0 else z1 - met.front
+        if left < needed:
+            text = cut.modal.length_text
+            yield Found(
+                "thread-run-up",
+                f"The slide needs {text(needed)} to stop from the speed of the lead, and metal ends "
+                f"{text(max(left, 0.0))} before the end of the pass: its last turns have another lead.",
+                cut,
+            )
+
+    # --- taps
+
+    def _tap(self, move: TipMove, met: Cut, shape: ToolShape, tool: int) -> Iterator[Found]:
+        along = move.points[-1][0] - move.points[0][0]
+        if along < -_NEAR and not move.quick and (met or self._inside(move)):
+            if self._fed is None:
+                self._entry = met.front
+            self._fed = move
+            yield from self._pitch(move, shape, tool)
+        elif along > _NEAR and self._fed is not None and self._inside(move):
+            fed = self._fed
+            if move.points[-1][0] >= self._entry:
+                self._fed = None
+            if not self.releases(tool):
+                yield from self._out(move, fed, tool)
+
+    def _inside(self, move: TipMove) -> bool:
+        return self._fed is not None and move.points[0][0] < self._entry - _IN_HOLE
+
+    @staticmethod
+    def _pitch(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+        feed = _per_turn(move)
+        if feed and shape.pitch and abs(feed - shape.pitch) > _OTHER_PITCH * shape.pitch:
+            text = move.modal.length_text
+            yield Found("tap-pitch", f"T{tool} feeds {text(feed)} a turn; its pitch is {text(shape.pitch)}.")
+
+    def _out(self, move: TipMove, fed: TipMove, tool: int) -> Iterator[Found]:
+        if not fed.rpm:
+            return  # a spindle that is switched by hand
+        if move.quick:
+            yield Found("tap-reversal", f"T{tool} is torn out of its thread by a rapid.")
+        elif fed.rpm * move.rpm > 0.0:
+            words = "while the spindle turns on as it went in"
+            yield Found("tap-reversal", f"T{tool} is drawn out of its thread {words}.")
+        elif not move.rpm:
+            yield Found("tap-reversal", f"T{tool} is drawn out of its thread with the spindle stopped.")
+        else:
+            yield from self._reversed(move, fed, tool)
+
+    def _reversed(self, move: TipMove, fed: TipMove, tool: int) -> Iterator[Found]:
+        text, into, out = move.modal.length_text, _per_turn(fed), _per_turn(move)
+        if abs(out - into) > _OTHER_FEED * into:
+            words = f"T{tool} goes in by {text(into)} a turn and out by {text(out)}."
+            yield Found("tap-reversal", words)
+        slows = self.drives.spindle_decel
+        if not slows:
+            return
+        turns = abs(fed.rpm) / 60.0 * (_LATENCY + abs(fed.rpm) / slows / 2.0)
+        if turns * into > _GIVES:
+            words = f"T{tool} goes on for {text(turns * into)} until the spindle stands"
+            yield Found("tap-reversal", f"{words}: more than a holder gives.")
+
+
+def _per_turn(move: TipMove) -> float:
+    """The feed of a turn, mm, of one by time too; 0 where the spindle stands."""
+    return move.per_rev or (move.speed * 60.0 / abs(move.rpm) if move.rpm else 0.0)

@@ -1,0 +1,45 @@
+"""What the proof of the part could not look at, because nobody has said what it would have needed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from core.part.clamping import Clamping
+from core.part.stock import Point
+from core.part.tool_shape import ToolKind, ToolShape
+from core.proving.assumed_tools import ToolUse
+
+_DEEP = frozenset({ToolKind.DRILL, ToolKind.REAMER, ToolKind.TAP, ToolKind.END_MILL})
+
+
+def unchecked(
+    uses: Mapping[int, ToolUse],
+    shapes: Mapping[int, ToolShape],
+    clamping: Clamping | None,
+    gang: Mapping[int, Point],
+) -> tuple[str, ...]:
+    """Short phrases, one for each kind of thing; ``uses`` are the tools of the program."""
+    return tuple(_phrases([n for n in sorted(uses) if uses[n].moves or uses[n].live], shapes, clamping, gang))
+
+
+def _phrases(
+    used: Iterable[int],
+    shapes: Mapping[int, ToolShape],
+    clamping: Clamping | None,
+    gang: Mapping[int, Point],
+) -> Iterator[str]:
+    used = list(used)
+    if without := [n for n in used if n and n not in shapes]:
+        yield f"holder, edge length and hand of {_names(without)}, which nobody has described"
+    if short := [n for n in used if n in shapes and shapes[n].kind in _DEEP and not shapes[n].length]:
+        yield f"how deep {_names(short)} can go, without a flute length"
+    if clamping is None or not clamping.diameter:
+        yield "chuck, jaws and whirling stock, without a diameter under [clamping] and a stick-out"
+    if clamping is None or not clamping.max_rpm:
+        yield "the speed that the chuck may turn at, without max_rpm under [clamping]"
+    if gang and (beside := sorted(gang.keys() - shapes.keys())):
+        yield f"{_names(beside)} as neighbours on the plate, without a shape"
+
+
+def _names(numbers: Iterable[int]) -> str:
+    return ", ".join(f"T{n}" for n in numbers)

@@ -1,0 +1,123 @@
+"""Edges and spindle: each check by a program that triggers it and a near twin, in four ways of writing."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.compose.machine_files import load_machine
+from app.compose.machine_setup import setup_for
+from core.interpreter.job_setup import ToolOffset
+from core.language.source import Source
+from core.part.clamping import Clamping
+from core.part.stock import Stock, bar, tube
+from core.part.tool_shape import Hand, ToolKind, ToolShape
+from core.proving.part_proof import PartReport, PartSetting, prove_with_part
+from tests.proving.test_part_proof import WAYS, text
+
+# 55° in a holder of 93°: the back of the insert rises at 180 - 93 - 55 = 32°.
+RIGHT = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.4, insert="DCMT11T304")
+LEFT = ToolShape(ToolKind.TURNING, Hand.LEFT, tip=4, nose_radius=0.4, insert="DCMT11T304")
+BORER = ToolShape(ToolKind.BORING, tip=2, nose_radius=0.4, insert="DCMT070204", diameter=8.0, stick_out=40.0)
+BLADE = ToolShape(ToolKind.PARTING, tip=3, width=2.0, stick_out=30.0)
+DRILL = ToolShape(ToolKind.DRILL, diameter=6.0, point=118.0, length=60.0)
+LEFT_DRILL = ToolShape(ToolKind.DRILL, Hand.LEFT, diameter=6.0, point=118.0, length=60.0)
+SHAPES = {1: RIGHT, 2: BLADE, 3: DRILL, 4: BORER, 5: LEFT, 6: LEFT_DRILL}
+ROD = bar(25.4, 0.0, -60.0)
+PIPE = tube(38.1, 20.0, 0.0, -60.0)
+
+
+def part_of(
+    program: str, stock: Stock = ROD, shapes: dict[int, ToolShape] = SHAPES, clamping: Clamping | None = None
+) -> PartReport:
+    machine = load_machine(None)
+    tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 12)}
+    setup = setup_for(machine, tools=tools, secondary={})
+    setting = PartSetting(stock, shapes, clamping=clamping)
+    _, part = prove_with_part(Source("P", program), setup, machine, setting)
+    assert part is not None
+    return part
+
+
+def found(program: str, stock: Stock = ROD) -> list[tuple[str, int]]:
+    return [(each.check, each.line) for each in part_of(program, stock).findings]
+
+
+SLOPE = "T1\nX[.6]Z[-.3]\nG95F[.004]X[.5]\nX[.4]Z[{z}]\nZ[-.7]\nX[.6]\nG94F[300]Z[1]"
+BACK = "T{t}\nX[.6]Z[-.6]\nG95F[.004]X[.4]Z[-.9]\nZ[-.5]\nX[.6]\nG94F[300]Z[1]"
+ONCE = "T1\nX[.6]Z[.05]\nX[.4]\nG95F[.004]Z[-.3]\nX[.6]\nG94F[300]Z[.05]\n"
+BOTH = ONCE + "X[.35]\nM05\n{m}S900\nG95F[.004]Z[-.3]\nX[.6]"
+HOLE = "M05\n{m}S900\nT{t}\nX[0]Z[.1]\nG95F[{f}]Z[-.3]\nG94F[300]Z[.1]"
+
+CASES = {
+    # .1 in deep on .1 of Z is 45°, on .25 it is 22°
+    "wrong-side": (SLOPE.format(z="-.4"), SLOPE.format(z="-.55"), ROD, 6),
+    # turned towards the face with the back of a right-hand insert
+    "wrong-side, backwards": (
+        BACK.format(t=1), BACK.format(t=5), ROD, 6,
+    ),
+    "wrong-spindle-direction of one edge": (
+        BOTH.format(m="M04"), BOTH.format(m="M03"), ROD, 12,
+    ),
+    "wrong-spindle-direction of a left-hand drill": (
+        HOLE.format(m="M03", t=6, f=".004"), HOLE.format(m="M04", t=6, f=".004"), ROD, 7,
+    ),
+    # 6 mm: .1 of it is .0236 in
+    "chip-load of a drill": (
+        HOLE.format(m="M03", t=3, f=".03"), HOLE.format(m="M03", t=3, f=".02"), ROD, 7,
+    ),
+    # 2 mm wide: .25 of it is .0197 in
+    "chip-load of a blade": (
+        "T2\nX[.6]Z[-.5]\nG95F[.021]X[.4]\nX[.6]", "T2\nX[.6]Z[-.5]\nG95F[.018]X[.4]\nX[.6]", ROD, 5,
+    ),
+    # 1500 rpm: 20 in/min are .0133 in a turn, .8 of the nose is .0126
+    "chip-load by time": (
+        "T1\nX[.6]Z[.05]\nX[.4]\nF[20]Z[-.5]\nX[.6]", "T1\nX[.6]Z[.05]\nX[.4]\nF[18]Z[-.5]\nX[.6]", ROD, 6,
+    ),
+    # .4 in at 8 in/min is 3 s each, and 20 s are the seventh of them
+    "cuts-air in many moves": (
+        "T1\nX[.6]Z[.05]\nX[.4]\nG95F[.004]Z[-.3]\nX[.6]\nG94F[300]Z[1]\nF[8]\n" + "X[.2]\nX[.6]\n" * 4,
+        "T1\nX[.6]Z[.05]\nX[.4]\nG95F[.004]Z[-.3]\nX[.6]\nG94F[300]Z[1]\nF[8]\n" + "X[.2]\nX[.6]\n" * 3,
+        ROD, 16,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("metric", "diameter"), WAYS)
+@pytest.mark.parametrize("name", CASES)
+def test_a_check_finds_what_it_looks_for_and_spares_its_twin(name: str, metric: bool, diameter: bool) -> None:
+    wrong, sound, stock, line = CASES[name]
+    check = name.split(maxsplit=1)[0].rstrip(",")
+    assert (check, line) in found(text(wrong, metric=metric, diameter=diameter), stock)
+    assert found(text(sound, metric=metric, diameter=diameter), stock) == []
+
+
+def test_a_bore_is_not_entered_more_steeply_than_the_back_of_its_insert_clears() -> None:
+    recess = "T4\nX[.38]Z[.1]\nZ[-.3]\nG95F[.002]X[.394]\nX[.45]Z[{z}]\nZ[-.8]\nX[.38]\nG94F[300]Z[1]"
+    assert ("wrong-side", 7) in found(text(recess.format(z="-.356")), PIPE)
+    assert found(text(recess.format(z="-.5")), PIPE) == []
+
+
+def test_faces_and_insert_backs_that_meet_nothing_are_no_wrong_side() -> None:
+    faced = "T1\nX[.6]Z[.1]\nZ[-.04]\nG95F[.004]X[-.02]\nG94F[300]Z[1]"
+    assert found(text(faced)) == []
+
+
+def test_a_long_thin_bar_turns_slower_than_it_whirls() -> None:
+    """f = 1.8751²/2π · 3500 m/s · (r/2) / L²: 6 mm thick, 200 mm long, that is 73.3 a second, 4397 rpm."""
+    rod, long = bar(6.0, 0.0, -220.0), Clamping(100.0, 200.0, 10.0, 60.0)
+    turned = "M05\nM03S{s}\nT1\nX[.2]Z[.1]\nX[.1]\nG95F[.004]Z[-.2]\nX[.2]\nG94F[300]Z[1]"
+    fast = part_of(text(turned.format(s=2250)), rod, clamping=long)
+    assert [each.check for each in fast.findings] == ["stock-whips"] * len(fast.findings)
+    assert fast.findings
+    assert part_of(text(turned.format(s=2150)), rod, clamping=long).findings == ()
+
+
+def test_what_could_not_be_checked_is_said() -> None:
+    turned = "T1\nX[.6]Z[.05]\nX[.4]\nG95F[.004]Z[-.3]\nX[.6]\nG94F[300]Z[1]\n"
+    plain = turned + "T3\nX[0]Z[.1]\nG95F[.004]Z[-.3]\nG94F[300]Z[1]"
+    said = part_of(text(plain), shapes={3: ToolShape(ToolKind.DRILL, diameter=6.0)}).unchecked
+    assert said[0].endswith("of T1, which nobody has described")
+    assert said[1] == "how deep T3 can go, without a flute length"
+    assert len(said) == 4  # chuck, and its speed
+    held = Clamping(100.0, 40.0, 10.0, 60.0, 5000.0)
+    assert part_of(text(plain), clamping=held).unchecked == ()

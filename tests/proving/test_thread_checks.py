@@ -1,0 +1,136 @@
+"""Threads and taps: each check by a program that triggers it and a near twin that does not, in four ways of
+writing."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.compose.known_part import known_part
+from app.compose.machine_files import load_machine
+from app.compose.machine_setup import setup_for
+from core.interpreter.job_setup import ToolOffset
+from core.language.source import Source
+from core.part.stock import Stock, bar, tube
+from core.part.tool_shape import Hand, ToolKind, ToolShape
+from core.proving.assumed_tools import tap_size
+from core.proving.part_proof import PartSetting, prove_with_part
+from core.proving.thread_checks import Drives
+from tests.proving.test_part_proof import WAYS, text
+
+TAP = ToolShape(ToolKind.TAP, diameter=6.35, pitch=1.27)
+V = ToolShape(ToolKind.THREADING, tip=8, point=60.0, pitch=1.27)
+SHAPES = {4: TAP, 5: V}
+ROD = bar(12.7, 0.0, -60.0)
+DRILLED = tube(25.4, 5.1, 0.0, -60.0)
+WEAK = Drives(slide_accel=100.0, spindle_decel=2500.0)
+
+
+def findings(
+    program: str, stock: Stock = ROD, drives: Drives | None = None, shapes: dict[int, ToolShape] = SHAPES
+) -> list[tuple[str, int]]:
+    machine = load_machine(None)
+    tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 12)}
+    known = known_part(machine, {}, shapes)
+    setting = PartSetting(stock, shapes, drives=drives or known.drives)
+    report, part = prove_with_part(
+        Source("P", program), setup_for(machine, tools=tools, secondary={}), machine, setting
+    )
+    assert part is not None
+    assert report.errors == tuple(each for each in part.findings if each.severity == "error")
+    return [(each.check, each.line) for each in part.findings]
+
+
+TAPPED = "M05\nM03S1000\nT4\nX[0]Z[.1]\nG95F[.05]Z[-.4]\nM04\nG04F.5\nZ[.1]\nG94F[300]Z[1]"
+THREAD = "M05\nM03S600\nT5\nX[.3]Z[.2]\nX[.247]\nG33X[.222]Z[-.5]I[.01]K[.05]{p}\nG94F[300]Z[1]"
+CUT = THREAD.format(p="")
+
+CASES = {
+    "tap-reversal": (TAPPED.replace("M04\nG04F.5\n", ""), TAPPED, DRILLED, 8),
+    "tap-reversal by a rapid": (TAPPED.replace("\nZ[.1]\nG94", "\nG00Z[.1]\nG94"), TAPPED, DRILLED, 10),
+    "tap-reversal, stopped": (
+        TAPPED.replace("M04", "M05").replace("G04F.5\nZ[.1]", "G04F.5\nG94F[20]Z[.1]"), TAPPED, DRILLED, 10,
+    ),
+    "tap-reversal, other feed": (TAPPED.replace("G04F.5\nZ[.1]", "F[.03]Z[.1]"), TAPPED, DRILLED, 9),
+    # 3000 rpm, slowed by 2500 rpm a second: 34 turns of .05 in
+    "tap-reversal, too fast": (TAPPED.replace("S1000", "S3000"), TAPPED, DRILLED, 10),
+    "tap-pitch": (TAPPED.replace("F[.05]", "F[.0625]"), TAPPED, DRILLED, 7),
+    "wrong-spindle-direction of a tap": (
+        TAPPED.replace("M04", "M00").replace("M03", "M04").replace("M00", "M03"), TAPPED, DRILLED, 7,
+    ),
+    # a sharp V of .05 in is .0433 deep: X.2 for X.222 is .05 below a bar of .25
+    "thread-form": (CUT.replace("X[.222]", "X[.2]"), CUT, ROD, 8),
+    "thread-form by the pitch of the insert": (CUT.replace("K[.05]", "K[.075]"), CUT, ROD, 8),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("metric", "diameter"), WAYS)
+@pytest.mark.parametrize("name", CASES)
+def test_a_check_finds_what_it_looks_for_and_spares_its_twin(name: str, metric: bool, diameter: bool) -> None:
+    wrong, sound, stock, line = CASES[name]
+    # I and A are diameters under G72
+    double = [each.replace("I[.01]", "I[.02]") if diameter else each for each in (wrong, sound)]
+    shown = findings(text(double[0], metric=metric, diameter=diameter), stock)
+    assert (name.split(maxsplit=1)[0].rstrip(","), line) in shown
+    assert findings(text(double[1], metric=metric, diameter=diameter), stock) == []
+
+
+def test_a_lead_of_several_pitches_is_that_of_several_starts() -> None:
+    assert findings(text(CUT.replace("K[.05]", "K[.15]"))) == []
+
+
+@pytest.mark.parametrize(("metric", "diameter"), WAYS)
+def test_a_thread_that_begins_in_front_of_part_zero_needs_its_run_up_there(
+    metric: bool, diameter: bool
+) -> None:
+    """.05 in at 600 rpm are 12.7 mm/s: with 20 mm/s² that is 4.03 mm. The bar stands .1 in before Z0."""
+    lines = THREAD.format(p="P")
+    lines = lines.replace("I[.01]", "I[.02]") if diameter else lines
+    slow = Drives(slide_accel=20.0)
+    program = text(lines, metric=metric, diameter=diameter)
+    assert findings(program, bar(12.7, 2.54, -60.0), slow) == [("thread-run-up", 8)]
+    assert findings(program, bar(12.7, 0.5, -60.0), slow) == []
+
+
+def test_a_slide_that_brakes_in_metal_for_more_than_a_lead() -> None:
+    """12.7 mm/s and 50 mm/s² are 1.6 mm, more than the lead of 1.27; run-up is 5 mm."""
+    slow = Drives(slide_accel=50.0)
+    assert findings(text(CUT), drives=slow) == [("thread-run-up", 8)]
+    assert findings(text(THREAD.format(p="P")), drives=slow) == []  # goes on while it pulls out
+    relief = Stock(
+        "", ((-60.0, 6.35), (-15.0, 6.35), (-14.99, 4.0), (-10.0, 4.0), (-9.99, 6.35), (0.0, 6.35))
+    )
+    assert findings(text(CUT), relief, slow) == []
+
+
+def test_a_self_reversing_holder_is_drawn_out_as_it_went_in() -> None:
+    out = TAPPED.replace("M04\nG04F.5\n", "")
+    assert findings(text(out.replace("T4", "T4(1/4-20 TAP, TAPMATIC)")), DRILLED) == []
+
+
+def test_a_comment_gives_the_pitch_of_a_tap_that_nobody_has_described() -> None:
+    named = TAPPED.replace("T4", "T4(1/4-28 TAP)")
+    assert findings(text(named), DRILLED, shapes={}) == [("tap-pitch", 7)]
+    assert findings(text(named.replace("28", "20")), DRILLED, shapes={}) == []
+
+
+def test_a_left_hand_tap_goes_in_backwards() -> None:
+    left = {4: ToolShape(ToolKind.TAP, Hand.LEFT, diameter=6.35, pitch=1.27)}
+    assert ("wrong-spindle-direction", 7) in findings(text(TAPPED), DRILLED, shapes=left)
+    turned = TAPPED.replace("M04", "M00").replace("M03", "M04").replace("M00", "M03")
+    assert findings(text(turned), DRILLED, shapes=left) == []
+
+
+@pytest.mark.parametrize(
+    ("comment", "size"),
+    [
+        ("1/4-20 TAP", (6.35, 1.27)),
+        ("10-32 TAP", (4.826, 0.79375)),
+        ("#4-40 TAP", (2.8448, 0.635)),
+        (".250-28 TAP", (6.35, 25.4 / 28)),
+        ("TAP M6X1.0", (6.0, 1.0)),
+        ("TAP M8", (8.0, 1.25)),
+        ("TAP", (0.0, 0.0)),
+    ],
+)
+def test_the_size_of_a_tap_in_a_comment(comment: str, size: tuple[float, float]) -> None:
+    assert tap_size(comment) == pytest.approx(size)
