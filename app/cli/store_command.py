@@ -25,7 +25,7 @@ def add_parser(subparsers: SubParsers) -> None:
     for name, what, text in (
         ("backup", "FILE", "copy the whole store to FILE, also while it is in use"),
         ("restore", "FILE", "put a backup in the store's place; the replaced store is kept beside it"),
-        ("export", "DIR", "write programs, offsets.toml, events.csv and runs.csv as plain files"),
+        ("export", "DIR", "write programs, offsets.toml, and events, runs and measured parts as CSV"),
         ("import", "DIR", "take the programs and offsets of an exported folder"),
     ):
         actions.add_parser(name, help=text).add_argument("path", metavar=what)

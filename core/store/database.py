@@ -25,6 +25,9 @@ def migrations() -> tuple[str, ...]:
     scripts = sorted(
         (entry for entry in folder.iterdir() if entry.name.endswith(".sql")), key=lambda e: e.name
     )
+    numbers = [int(script.name.partition("_")[0]) for script in scripts]
+    if numbers != list(range(1, len(numbers) + 1)):  # a store counts them: one put in later would be left out
+        raise RuntimeError(f"migrations are numbered from 1 on, each once and without a gap: {numbers}")
     return tuple(script.read_text(encoding="utf-8") for script in scripts)
 
 

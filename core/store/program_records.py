@@ -164,14 +164,21 @@ def proved(connection: sqlite3.Connection, program: str, result: str, planned: f
 
 
 def renamed(connection: sqlite3.Connection, old: str, new: str) -> None:
-    """Versions, count, record and stock go with a program that gets another name.
+    """Versions, count, record, stock and measured parts go with a program that gets another name.
 
-    Versions that are kept under the new name already stay, and then those of the old name stay too.
+    Versions and features that are kept under the new name already stay, then those of the old name stay too.
     """
     check_name(new)
     connection.execute(
         "UPDATE programs SET name = ?2 WHERE name = ?1 AND NOT EXISTS"
         " (SELECT 1 FROM programs WHERE name = ?2)",
+        (old, new),
+    )
+    for table in ("part_cycles", "production_stops"):
+        connection.execute(f"UPDATE {table} SET program = ? WHERE program = ?", (new, old))
+    connection.execute(
+        "UPDATE part_features SET program = ?2 WHERE program = ?1 AND NOT EXISTS"
+        " (SELECT 1 FROM part_features WHERE program = ?2 AND retired = 0)",
         (old, new),
     )
     for table in ("runs", "part_counts"):

@@ -14,11 +14,19 @@ from core.store.store_errors import Cause, StoreError, cause_of, why
 from core.store.store_rows import EventRow, Kind, Row, RunRow, Value, inches
 
 PROGRAMS, OFFSETS, EVENTS, RUNS = "programs", "offsets.toml", "events.csv", "runs.csv"
+TABLES = {  # of measured parts: whole tables, mm and seconds as the store has them
+    "features.csv": "part_features",
+    "readings.csv": "part_readings",
+    "cycles.csv": "part_cycles",
+    "stops.csv": "production_stops",
+    "tool_lives.csv": "tool_lives",
+    "insert_changes.csv": "insert_changes",
+}
 _ALL = 2**62
 
 
 def export(store: Store, folder: Path) -> int:
-    """Writes the newest version of every program, offsets, event log and runs; answers how many programs.
+    """Writes the newest version of every program, and all that is kept besides; answers how many programs.
 
     The folder appears when all of it is written. Raises StoreError when it is there already and not empty.
     """
@@ -46,6 +54,10 @@ def _write_all(store: Store, folder: Path) -> int:
     (folder / OFFSETS).write_text("\n".join(_offset_lines(store)) + "\n", encoding="utf-8")
     _write_table(folder / EVENTS, EventRow._fields, reversed(store.events(limit=_ALL)))
     _write_table(folder / RUNS, _run_columns(), store.runs())
+    with store.read() as connection:
+        for name, table in TABLES.items():
+            rows = connection.execute(f"SELECT * FROM {table}")
+            _write_table(folder / name, (column[0] for column in rows.description), rows)
     return len(names)
 
 

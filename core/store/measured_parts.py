@@ -1,0 +1,133 @@
+"""Features of a program's parts and their readings; what was measured stays when a feature goes."""
+
+from __future__ import annotations
+
+import math
+import sqlite3
+from typing import NamedTuple
+
+from core.store.store_errors import StoreError
+from core.store.store_rows import utc_now
+
+
+class FeatureRow(NamedTuple):
+    """A feature as it is kept, mm; see the tables. ``id`` 0: not kept yet."""
+
+    id: int
+    program: str
+    name: str
+    kind: str
+    nominal: float
+    low: float
+    high: float
+    by_kind: str
+    number: int
+    grows: int
+    every: int
+    sample: int
+
+
+class ReadingRow(NamedTuple):
+    """One reading, mm. ``offset_change`` of the cycle that made its part, -1: nobody knows which."""
+
+    id: int
+    feature: int
+    part: int
+    value: float
+    unit: str
+    at: str
+    source: str
+    gauge: str
+    offset_change: int = -1
+
+
+_COLUMNS = ", ".join(FeatureRow._fields)
+
+
+def features(connection: sqlite3.Connection, program: str | None = None) -> tuple[FeatureRow, ...]:
+    """Those that are measured, in the order of entry; without a program of all."""
+    rows = connection.execute(
+        f"SELECT {_COLUMNS} FROM part_features WHERE retired = 0 AND (?1 IS NULL OR program = ?1)"
+        " ORDER BY program, id",
+        (program,),
+    )
+    return tuple(FeatureRow(*row) for row in rows)
+
+
+def save_feature(connection: sqlite3.Connection, row: FeatureRow) -> int:
+    """A new feature, or other figures of one that is kept; answers its id. Raises StoreError."""
+    taken = connection.execute(
+        "SELECT id FROM part_features WHERE program = ? AND name = ? AND retired = 0 AND id <> ?",
+        (row.program, row.name, row.id),
+    ).fetchone()
+    if taken is not None:
+        raise StoreError(f"{row.program} has a feature {row.name!r} already; give this one another name")
+    values = row[1:]
+    if not row.id:
+        marks = ", ".join("?" * len(values))
+        done = connection.execute(
+            f"INSERT INTO part_features ({_COLUMNS.partition(', ')[2]}) VALUES ({marks})", values
+        )
+        return int(done.lastrowid or 0)
+    setting = ", ".join(f"{name} = ?" for name in FeatureRow._fields[1:])
+    done = connection.execute(
+        f"UPDATE part_features SET {setting} WHERE id = ? AND retired = 0", (*values, row.id)
+    )
+    if not done.rowcount:
+        raise StoreError(f"{row.name} is not measured any more; enter it anew")
+    return row.id
+
+
+def retire_feature(connection: sqlite3.Connection, feature: int) -> None:
+    """It is measured no more; its readings stay."""
+    connection.execute("UPDATE part_features SET retired = 1 WHERE id = ?", (feature,))
+
+
+def add_reading(connection: sqlite3.Connection, row: ReadingRow) -> int:
+    """One reading, at this moment; answers its id. Raises StoreError for a feature that is not there."""
+    if not math.isfinite(row.value):
+        raise StoreError("a reading is a number; measure again")
+    there = connection.execute(
+        "SELECT 1 FROM part_features WHERE id = ? AND retired = 0", (row.feature,)
+    ).fetchone()
+    if there is None:
+        raise StoreError("the feature of this reading is not measured any more; nothing was kept")
+    done = connection.execute(
+        "INSERT INTO part_readings (feature, part, value, unit, at, source, gauge)"
+        " VALUES (?, ?, ?, ?, ?, ?, ?)",
+        (row.feature, row.part, row.value, row.unit, row.at or utc_now(), row.source, row.gauge),
+    )
+    return int(done.lastrowid or 0)
+
+
+def void_reading(connection: sqlite3.Connection, reading: int) -> None:
+    """Take a reading out; it stays in the file and counts no more. Raises StoreError where there is none."""
+    done = connection.execute("UPDATE part_readings SET void = 1 WHERE id = ? AND void = 0", (reading,))
+    if not done.rowcount:
+        raise StoreError("that reading is taken out already")
+
+
+def readings(connection: sqlite3.Connection, program: str, limit: int) -> tuple[ReadingRow, ...]:
+    """The newest readings of a program's features, in the order in which they were taken."""
+    rows = connection.execute(
+        "SELECT r.id, r.feature, r.part, r.value, r.unit, r.at, r.source, r.gauge,"
+        " coalesce((SELECT c.offset_change FROM part_cycles AS c WHERE c.program = f.program"
+        "  AND c.part = r.part AND r.part > 0 ORDER BY c.id DESC LIMIT 1), -1)"
+        " FROM part_readings AS r JOIN part_features AS f ON f.id = r.feature"
+        " WHERE f.program = ? AND r.void = 0 AND f.retired = 0 ORDER BY r.id DESC LIMIT ?",
+        (program, limit),
+    )
+    return tuple(ReadingRow(*row) for row in rows)[::-1]
+
+
+def last_corrections(connection: sqlite3.Connection) -> dict[tuple[str, int, str], int]:
+    """By kind, number and axis of an offset the id of the newest change that moved it, geometry or wear."""
+    rows = connection.execute(
+        "SELECT kind, number, 'x', max(id) FROM offset_changes"
+        " WHERE old_x IS NOT new_x OR coalesce(old_wear_x, 0) IS NOT coalesce(new_wear_x, 0)"
+        " GROUP BY kind, number"
+        " UNION ALL SELECT kind, number, 'z', max(id) FROM offset_changes"
+        " WHERE old_z IS NOT new_z OR coalesce(old_wear_z, 0) IS NOT coalesce(new_wear_z, 0)"
+        " GROUP BY kind, number"
+    )
+    return {(kind, number, axis): newest for kind, number, axis, newest in rows}

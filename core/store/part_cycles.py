@@ -1,0 +1,113 @@
+"""Cycles and stops as they are kept: one row a part that was begun, one a time that production stood."""
+
+from __future__ import annotations
+
+import sqlite3
+from typing import NamedTuple
+
+
+class CycleRow(NamedTuple):
+    """One part: UTC, seconds without stops; ``part`` 0: none was counted, ``ended`` None: cut off."""
+
+    key: str
+    program: str
+    part: int
+    started: str
+    ended: str | None = None
+    seconds: float = 0.0
+    outcome: str = ""
+    load: float | None = None
+
+
+class StopRow(NamedTuple):
+    """Production stood: since when (UTC), seconds, why, at which line; ``cycle`` empty: between two."""
+
+    key: str
+    cycle: str
+    program: str
+    at: str
+    seconds: float
+    reason: str
+    line: int = 0
+
+
+class CorrectionRow(NamedTuple):
+    """A change of wear or of a secondary offset, mm, X a radius, and the parts made before it."""
+
+    id: int
+    at: str
+    kind: str
+    number: int
+    x: float
+    z: float
+    part: int
+    why: str
+    who: str
+
+
+_CYCLE = ", ".join(CycleRow._fields)
+
+
+def save_cycle(connection: sqlite3.Connection, row: CycleRow) -> None:
+    """A cycle that begins, or the same one when it has ended: what it began with stays."""
+    connection.execute(
+        f"INSERT INTO part_cycles ({_CYCLE}, offset_change)"
+        " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, (SELECT coalesce(max(id), 0) FROM offset_changes))"
+        " ON CONFLICT (key) DO UPDATE SET part = ?3, ended = ?5, seconds = ?6, outcome = ?7, load = ?8",
+        row,
+    )
+
+
+def drop_cycle(connection: sqlite3.Connection, key: str) -> None:
+    """What looked like another part was the end of the program."""
+    connection.execute("DELETE FROM part_cycles WHERE key = ?", (key,))
+
+
+def save_stop(connection: sqlite3.Connection, row: StopRow) -> None:
+    """A stop that is over; the same one again tells its length anew."""
+    marks = ", ".join("?" * len(row))
+    connection.execute(
+        f"INSERT INTO production_stops ({', '.join(StopRow._fields)}) VALUES ({marks})"
+        " ON CONFLICT (key) DO UPDATE SET seconds = excluded.seconds, reason = excluded.reason",
+        row,
+    )
+
+
+def cycles(connection: sqlite3.Connection, program: str | None, limit: int) -> tuple[CycleRow, ...]:
+    """The newest cycles in the order of their beginnings; without a program of all."""
+    rows = connection.execute(
+        f"SELECT {_CYCLE} FROM part_cycles WHERE ?1 IS NULL OR program = ?1 ORDER BY id DESC LIMIT ?2",
+        (program, limit),
+    )
+    return tuple(CycleRow(*row) for row in rows)[::-1]
+
+
+def stops(connection: sqlite3.Connection, program: str | None, limit: int) -> tuple[StopRow, ...]:
+    """The newest stops in their order; without a program of all."""
+    rows = connection.execute(
+        f"SELECT {', '.join(StopRow._fields)} FROM production_stops WHERE ?1 IS NULL OR program = ?1"
+        " ORDER BY id DESC LIMIT ?2",
+        (program, limit),
+    )
+    return tuple(StopRow(*row) for row in rows)[::-1]
+
+
+def corrections(connection: sqlite3.Connection, program: str, limit: int) -> tuple[CorrectionRow, ...]:
+    """Changes of wear and of secondary offsets in their order, with how many parts were begun before.
+
+    What they are after the change: wear of a tool, X and Z of a secondary offset.
+    """
+    rows = connection.execute(
+        "SELECT id, at, kind, number,"
+        " CASE kind WHEN 'tool' THEN new_wear_x ELSE new_x END,"
+        " CASE kind WHEN 'tool' THEN new_wear_z ELSE new_z END,"
+        " (SELECT coalesce(max(c.part), 0) FROM part_cycles AS c"
+        "   WHERE c.program = ?1 AND c.offset_change < offset_changes.id),"
+        " why, who FROM offset_changes"
+        " WHERE (kind = 'tool' AND (coalesce(old_wear_x, 0) IS NOT new_wear_x"
+        "   OR coalesce(old_wear_z, 0) IS NOT new_wear_z) AND new_wear_x IS NOT NULL)"
+        " OR (kind = 'secondary' AND new_x IS NOT NULL)"
+        " ORDER BY id DESC LIMIT ?2",
+        (program, limit),
+    )
+    return tuple(CorrectionRow(*row) for row in rows)[::-1]

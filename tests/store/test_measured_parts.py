@@ -1,0 +1,255 @@
+"""Features, readings, tool lives, cycles and stops: kept, found again, exported, and not lost by a kill."""
+
+from __future__ import annotations
+
+import csv
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from core.store import backup, database, measured_parts, part_cycles, tool_lives
+from core.store.measured_parts import FeatureRow, ReadingRow
+from core.store.part_cycles import CycleRow, StopRow
+from core.store.store import Store
+from core.store.store_errors import StoreError
+from core.store.store_export import export
+from core.store.tool_lives import LifeRow
+
+SPIGOT = FeatureRow(0, "pin.nc", "SPIGOT", "diameter", 12.7, -0.02, 0.02, "tool", 3, 1, 10, 1)
+
+
+def feature(store: Store, row: FeatureRow = SPIGOT) -> int:
+    return store.write(lambda c: measured_parts.save_feature(c, row)).result(5)
+
+
+def read(store: Store, of: int, part: int, value: float) -> int:
+    row = ReadingRow(0, of, part, value, "mm", "", "typed", "")
+    return store.write(lambda c: measured_parts.add_reading(c, row)).result(5)
+
+
+def readings(store: Store, program: str = "pin.nc", limit: int = 100) -> list[ReadingRow]:
+    with store.read() as connection:
+        return list(measured_parts.readings(connection, program, limit))
+
+
+def cycle(store: Store, key: str, part: int, **more: object) -> None:
+    row = CycleRow(key, "pin.nc", part, f"2026-01-01T00:0{key}:00Z")._replace(**more)  # type: ignore[arg-type]
+    store.write(lambda c: part_cycles.save_cycle(c, row)).result(5)
+
+
+def test_a_feature_and_its_readings_in_the_order_of_taking(store: Store) -> None:
+    of = feature(store)
+    for part, value in ((1, 12.71), (3, 12.72), (2, 12.69)):
+        read(store, of, part, value)
+    assert [(row.part, row.value) for row in readings(store)] == [(1, 12.71), (3, 12.72), (2, 12.69)]
+    assert [row.part for row in readings(store, limit=2)] == [3, 2], "the newest"
+    with store.read() as connection:
+        assert measured_parts.features(connection, "pin.nc") == (SPIGOT._replace(id=of),)
+        assert measured_parts.features(connection, "other.nc") == ()
+
+
+def test_a_reading_that_is_taken_out_counts_no_more_and_stays_in_the_file(store: Store) -> None:
+    of = feature(store)
+    wrong = read(store, of, 1, 99.0)
+    read(store, of, 1, 12.7)
+    store.write(lambda c: measured_parts.void_reading(c, wrong)).result(5)
+    assert [row.value for row in readings(store)] == [12.7]
+    with pytest.raises(StoreError, match="taken out already"):
+        store.write(lambda c: measured_parts.void_reading(c, wrong)).result(5)
+    with store.read() as connection:
+        assert connection.execute("SELECT count(*) FROM part_readings").fetchone() == (2,)
+
+
+def test_a_retired_feature_frees_its_name_and_takes_no_reading(store: Store) -> None:
+    of = feature(store)
+    store.write(lambda c: measured_parts.retire_feature(c, of)).result(5)
+    with pytest.raises(StoreError, match="not measured any more"):
+        read(store, of, 1, 12.7)
+    assert feature(store) != of
+
+
+@pytest.mark.parametrize(
+    ("row", "why"),
+    [
+        (SPIGOT, "another name"),
+        (SPIGOT._replace(id=77, name="B"), "enter it anew"),
+        (SPIGOT._replace(name="B", number=33), "nothing was stored"),
+        (SPIGOT._replace(name="B", low=1.0), "nothing was stored"),
+        (SPIGOT._replace(name="B", kind="angle"), "nothing was stored"),
+    ],
+)
+def test_a_feature_that_is_refused(store: Store, row: FeatureRow, why: str) -> None:
+    feature(store)
+    with pytest.raises(StoreError, match=why):
+        feature(store, row)
+
+
+def test_a_reading_that_is_no_number(store: Store) -> None:
+    with pytest.raises(StoreError, match="is a number"):
+        read(store, feature(store), 1, math.nan)
+
+
+def test_a_reading_knows_with_which_offsets_its_part_was_made(store: Store) -> None:
+    """Part 1 before the wear, part 2 begun before it and ended after, part 3 after; part 9 is unknown."""
+    of = feature(store)
+    store.set_tool(3, "touched off", x=1.0, z=2.0).result(5)
+    cycle(store, "1", 1)
+    cycle(store, "2", 0)
+    store.set_tool(3, "wear", wear_x=-0.01).result(5)
+    cycle(store, "2", 2, ended="2026-01-01T00:03:00Z")
+    cycle(store, "3", 3)
+    for part in (1, 2, 3, 9):
+        read(store, of, part, 12.7)
+    with store.read() as connection:
+        last = measured_parts.last_corrections(connection)[("tool", 3, "x")]
+        assert measured_parts.last_corrections(connection)[("tool", 3, "z")] < last, "Z was only touched off"
+    known = [(row.part, row.offset_change) for row in readings(store)]
+    assert [part for part, change in known if change >= last] == [3]
+    assert known[-1] == (9, -1)
+
+
+def test_corrections_stand_between_the_parts(store: Store) -> None:
+    store.set_tool(3, "touched off", x=1.0, z=2.0).result(5)
+    for part in (1, 2):
+        cycle(store, str(part), part)
+    store.set_tool(3, "wear", wear_x=-0.01).result(5)
+    cycle(store, "3", 3)
+    store.set_tool(3, "remark", remark="new").result(5)
+    store.set_secondary(4, "D", x=0.02).result(5)
+    with store.read() as connection:
+        rows = part_cycles.corrections(connection, "pin.nc", 100)
+    assert [(row.kind, row.number, row.x, row.part) for row in rows] == [
+        ("tool", 3, -0.01, 2),
+        ("secondary", 4, 0.02, 3),
+    ]
+
+
+def test_cycles_and_stops(store: Store) -> None:
+    cycle(store, "1", 0)
+    cycle(store, "1", 1, ended="2026-01-01T00:02:00Z", seconds=58.5, outcome="COMPLETE")
+    cycle(store, "2", 0)
+    stop = StopRow("s1", "1", "pin.nc", "2026-01-01T00:01:30Z", 4.5, "FEED HOLD", 7)
+    store.write(lambda c: part_cycles.save_stop(c, stop)).result(5)
+    store.write(lambda c: part_cycles.drop_cycle(c, "2")).result(5)
+    with store.read() as connection:
+        (row,) = part_cycles.cycles(connection, "pin.nc", 10)
+        assert (row.part, row.seconds, row.load) == (1, 58.5, None)
+        assert part_cycles.stops(connection, None, 10) == (stop,)
+        assert part_cycles.stops(connection, "other.nc", 10) == ()
+
+
+def test_an_insert_is_changed_and_what_it_made_is_remembered(store: Store) -> None:
+    store.write(lambda c: tool_lives.set_limits(c, LifeRow(3, 50, 1800.0, 0.8, True))).result(5)
+    store.write(lambda c: tool_lives.set_use(c, 3, 50, 1200.5)).result(5)
+    with store.read() as connection:
+        assert tool_lives.lives(connection) == {3: LifeRow(3, 50, 1800.0, 0.8, True, 50, 1200.5)}
+    store.write(lambda c: tool_lives.change_insert(c, 3, "spent")).result(5)
+    store.write(lambda c: tool_lives.change_insert(c, 7, "by eye")).result(5)
+    with store.read() as connection:
+        assert tool_lives.lives(connection)[3] == LifeRow(3, 50, 1800.0, 0.8, True, 0, 0.0)
+        told = [
+            (row.number, row.parts, row.seconds, row.why) for row in tool_lives.insert_changes(connection, 9)
+        ]
+    assert told == [(7, 0, 0.0, "by eye"), (3, 50, 1200.5, "spent")]
+
+
+@pytest.mark.parametrize("number", [0, 33])
+def test_a_tool_that_is_none_has_no_life(store: Store, number: int) -> None:
+    for operation in (
+        lambda c: tool_lives.set_limits(c, LifeRow(number, 5)),
+        lambda c: tool_lives.change_insert(c, number, ""),
+    ):
+        with pytest.raises(StoreError, match="there is no tool"):
+            store.write(operation).result(5)
+
+
+def test_all_of_it_goes_with_another_name(store: Store) -> None:
+    read(store, feature(store), 1, 12.7)
+    cycle(store, "1", 1)
+    store.rename_program("pin.nc", "axle.nc").result(5)
+    assert [row.value for row in readings(store, "axle.nc")] == [12.7]
+    assert readings(store) == []
+    with store.read() as connection:
+        assert len(part_cycles.cycles(connection, "axle.nc", 9)) == 1
+
+
+def test_features_of_two_programs_are_not_mixed_by_a_name(store: Store) -> None:
+    feature(store)
+    feature(store, SPIGOT._replace(program="axle.nc"))
+    store.rename_program("pin.nc", "axle.nc").result(5)
+    with store.read() as connection:
+        assert [row.program for row in measured_parts.features(connection)] == ["axle.nc", "pin.nc"]
+
+
+def test_an_export_and_a_backup_have_it(store: Store, folder: Path, tmp_path: Path) -> None:
+    read(store, feature(store), 7, 12.7)
+    export(store, tmp_path / "out")
+    with (tmp_path / "out" / "readings.csv").open(newline="", encoding="utf-8") as file:
+        (row,) = csv.DictReader(file)
+    assert (row["part"], row["value"], row["source"]) == ("7", "12.7", "typed")
+    assert (tmp_path / "out" / "tool_lives.csv").read_text(encoding="utf-8").startswith("number,limit_parts,")
+    backup.backup(folder, tmp_path / "copy.db")
+    assert backup.problems(tmp_path / "copy.db") == ()
+
+
+def test_a_reading_without_its_feature_is_found(store: Store, folder: Path) -> None:
+    read(store, feature(store), 1, 12.7)
+    store.close()
+    with database.connect(folder / database.FILE_NAME, read_only=False) as connection:
+        connection.execute("PRAGMA foreign_keys = OFF")
+        connection.execute("DELETE FROM part_features")
+    assert any("part_readings" in problem for problem in backup.problems(folder / database.FILE_NAME))
+
+
+def test_a_migration_that_is_put_in_between_is_refused(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """A store that has counted past it would never get it."""
+    (tmp_path / "migrations").mkdir()
+    for name in ("0001_a.sql", "0003_b.sql"):
+        (tmp_path / "migrations" / name).write_text("SELECT 1;")
+    monkeypatch.setattr(database, "files", lambda _package: tmp_path)
+    with pytest.raises(RuntimeError, match=r"without a gap: \[1, 3\]"):
+        database.migrations()
+
+
+WRITER = """
+import sys
+from pathlib import Path
+from core.store import measured_parts, part_cycles
+from core.store.measured_parts import FeatureRow, ReadingRow
+from core.store.part_cycles import CycleRow
+from core.store.store import Store
+
+store = Store.open(Path(sys.argv[1]))
+row = FeatureRow(0, "pin.nc", "D", "diameter", 10.0, -0.1, 0.1, "tool", 1, 1, 0, 1)
+of = store.write(lambda c: measured_parts.save_feature(c, row)).result()
+number = 0
+while True:
+    number += 1
+    cycle = CycleRow(str(number), "pin.nc", number, "2026", "2026", 1.0, "COMPLETE")
+    store.keep(lambda u: u.latest(("cycle", cycle.key), lambda c: part_cycles.save_cycle(c, cycle))).result()
+    reading = ReadingRow(0, of, number, 10.0 + number, "mm", "", "typed", "")
+    store.write(lambda c: measured_parts.add_reading(c, reading)).result()
+    sys.stdout.write(f"{number}\\n")
+    sys.stdout.flush()
+"""
+
+
+def test_a_kill_loses_no_reading_that_was_acknowledged(folder: Path) -> None:
+    with subprocess.Popen([sys.executable, "-c", WRITER, str(folder)], stdout=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        told = [process.stdout.readline() for _ in range(25)]
+        process.kill()
+        told += process.stdout.read().splitlines(keepends=True)
+    last = int([line for line in told if line.endswith(b"\n")][-1])
+    assert backup.problems(folder / database.FILE_NAME) == ()
+    with Store.open(folder, read_only=True) as store:
+        kept = readings(store, limit=10**6)
+        assert len(kept) in (last, last + 1)
+        assert [row.value for row in kept] == [10.0 + number for number in range(1, len(kept) + 1)]
+        with store.read() as connection:
+            assert len(part_cycles.cycles(connection, None, 10**6)) >= last
