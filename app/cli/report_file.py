@@ -36,7 +36,7 @@ class _HtmlPages:
     """One page for a browser."""
 
     def __init__(self, path: Path) -> None:
-        from app.report.report_page import page_head
+        from app.report.html_tables import page_head
 
         self._file = path.open("w", encoding="utf-8", errors="backslashreplace")
         self._file.write(page_head(_TITLE, _now()))
@@ -45,7 +45,7 @@ class _HtmlPages:
         self._file.write(part)
 
     def end(self) -> None:
-        from app.report.report_page import PAGE_END
+        from app.report.html_tables import PAGE_END
 
         self._file.write(PAGE_END)
         self._file.flush()
@@ -59,11 +59,12 @@ class _PdfPages:
     """Numbered pages for a printer; each program begins a new one."""
 
     def __init__(self, path: Path, paper: str | None) -> None:
-        from app.report.report_page import headline
-        from app.screen.pdf_pages import Paper, PdfPages
+        from app.report.html_tables import headline
+        from app.report.pdf_file import Paper
+        from app.screen.pdf_pages import PdfPages, usual_paper
 
         self._head = headline(_TITLE, _now())
-        self._pages = PdfPages(path, _TITLE, Paper(paper) if paper is not None else Paper.at_home())
+        self._pages = PdfPages(path, _TITLE, Paper(paper) if paper is not None else usual_paper())
 
     def add(self, name: str, part: str) -> None:
         self._pages.add(self._head + part, name)

@@ -25,6 +25,7 @@ from app.special.machine_file_acceptance import MachineFileAcceptance
 from app.special.part_count import PartCounter
 from app.special.parts_counter import PartsCounterFunction
 from app.special.preferences import ScreenPreferences
+from app.special.setup_sheet_function import SetupSheetFunction
 from app.special.special_functions import SpecialFunction, SpecialFunctions
 from app.special.spindle_limit import SpindleSpeedLimit
 from app.transfer.serial_transfer import SerialTransfer
@@ -43,6 +44,10 @@ def _backup(desk: Desk, _machine: Machine, persistence: Persistence, worker: Lat
 
     backup.restored = restored
     return backup
+
+
+def _setup_sheet(desk: Desk, machine: Machine, persistence: Persistence, worker: Latest) -> SpecialFunction:
+    return SetupSheetFunction(desk, machine, persistence, worker, data_folder() / "sheets")
 
 
 def _transfer(
@@ -81,6 +86,7 @@ def furnish(
     own = own or data_folder() / "programs"
     functions = [make(desk, machine, persistence, worker) for make in ITEMS]
     functions.append(_transfer(desk, machine, persistence, workshop, own))
+    functions.append(_setup_sheet(desk, machine, persistence, worker))
     desk.attach(SpecialFunctions(functions, worker))
     desk.attach(_files(desk, persistence, workshop, own))
 

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from app.desk.arithmetic import CHARACTERS, LONGEST
 from app.desk.machine_status import Tone
+
+if TYPE_CHECKING:
+    from core.part.tool_outline import ToolOutline
 
 T = TypeVar("T")
 STEPS = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}  # of the mark, by keys
@@ -28,11 +31,15 @@ def edited(text: str, key: str, longest: int = LONGEST) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One line of a table. ``lit`` draws its lamp, filled or hollow; None: it has none."""
+    """One line of a table. ``lit`` draws its lamp, filled or hollow; None: it has none.
+
+    A cell may have two lines where the sheet is ``tall``. ``outline`` is drawn in the last cell.
+    """
 
     cells: tuple[str, ...]
     lit: bool | None = None
     tone: Tone = Tone.READY
+    outline: ToolOutline | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +60,7 @@ class Sheet:
     notes: tuple[str, ...] = ()
     raw: frozenset[int] = frozenset()
     figures: frozenset[int] = frozenset()  # columns that stand at the right, as figures do
+    tall: bool = False  # rows high enough for two lines and a picture
 
 
 class Key(NamedTuple):

@@ -6,13 +6,12 @@ anywhere, and nothing runs.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from hashlib import sha256
+from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
 from app.report import part_drawings
-from app.report.page_style import STYLE
+from app.report.html_tables import clock, figure, pairs, table, text_hash, verdict
 from app.report.run_record import RunRecord
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, Source
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
 
 _PICTURES = 30  # of findings; each of them stands where its line is told
 _MM_PER_INCH = 25.4
-_NOTHING_LOADED = "default-src 'none'; style-src 'unsafe-inline'"
 
 
 class ProgramReport:
@@ -62,18 +60,18 @@ class ProgramReport:
     def _head(self) -> str:
         report, times = self._report, self._report.times
         errors, warnings = len(report.errors), self._count(Severity.WARNING)
-        verdict = _many(errors, "error") + ": will not run" if errors else "Proved"
-        verdict += f", {_many(warnings, 'warning')}" if warnings else ""
+        words = _many(errors, "error") + ": will not run" if errors else "Proved"
+        words += f", {_many(warnings, 'warning')}" if warnings else ""
         rows = [
             ("Machine", f"{self._machine.name} ({self._machine.source})"),
             ("Program", f"{report.blocks} blocks, {report.elementary} elementary, {report.dialect}"),
-            ("Text (SHA-256)", sha256(self._source.text.encode("utf-8", "surrogatepass")).hexdigest()),
-            ("Cycle", f"{_clock(times.cycle)}: cutting {times.cutting:.1f} s, rapid {times.rapid:.1f} s, "
+            ("Text (SHA-256)", text_hash(self._source)),
+            ("Cycle", f"{clock(times.cycle)}: cutting {times.cutting:.1f} s, rapid {times.rapid:.1f} s, "
              f"dwell {times.dwell:.1f} s, waiting {times.wait:.1f} s"),
             *self._stock_rows(),
         ]  # fmt: skip
         look = "bad" if errors else "doubt" if warnings else "good"
-        return f'<p class="verdict {look}">{escape(verdict)}</p>{_pairs(rows)}'
+        return verdict(look, words) + pairs(rows)
 
     def _count(self, severity: Severity) -> int:
         return sum(each.severity is severity for each in self._report.diagnostics)
@@ -108,13 +106,13 @@ class ProgramReport:
         clamping = record.setting.clamping
         short = f"; the first {len(record.moves):,} moves" if record.cut_short else ""
         milled = "; what live tools mill is not in it" if part.milled else ""
-        cut_open = _figure(
+        cut_open = figure(
             part_drawings.section(part.stock, part.last, clamping),
             f"Section: stock light, finished part dark{milled}",
         )
         if not record.moves:
             return cut_open
-        return cut_open + _figure(
+        return cut_open + figure(
             part_drawings.path(part.stock, part.last, clamping, record.moves),
             f"Path of the tools: cuts full, rapids dashed, threads thick{short}",
         )
@@ -158,7 +156,7 @@ class ProgramReport:
         shapes = self._part.shapes if self._part is not None else {}
         numbers = sorted({*self._report.tools, *(n for n, time in self._record.times.items() if time.total)})
         rows = [self._tool(n, shapes.get(n)) for n in numbers]
-        return "<h3>Tools, and their times</h3>" + _table(
+        return "<h3>Tools, and their times</h3>" + table(
             ("Tool", "Outline", "Shape", "Cutting s", "Rapid s", "At rest s"), rows
         )
 
@@ -186,11 +184,11 @@ class ProgramReport:
 
     def _stops(self) -> str:
         rows = [
-            (f"M0{int(stop.optional)}", str(stop.line), _clock(stop.at), escape(stop.message))
+            (f"M0{int(stop.optional)}", str(stop.line), clock(stop.at), escape(stop.message))
             for stop in self._record.stops
         ]
         head = ("Stop", "Line", "After", "What the operator reads")
-        return "<h3>Stops</h3>" + (_table(head, rows) if rows else "<p>None.</p>")
+        return "<h3>Stops</h3>" + (table(head, rows) if rows else "<p>None.</p>")
 
     def _offsets(self) -> str:
         setup, length = self._setup, self._length
@@ -210,25 +208,10 @@ class ProgramReport:
             for n in sorted(self._record.settable)
             if (zero := setup.zero.get(n)) is not None
         ]
-        return "<h3>Offsets</h3>" + _table(("Offset", "X (radius)", "Z", ""), rows)
+        return "<h3>Offsets</h3>" + table(("Offset", "X (radius)", "Z", ""), rows)
 
 
 # --- the page
-
-
-def page_head(title: str, made: str) -> str:
-    """What stands before the first program; ``made`` is the date."""
-    return (
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width">'
-        f'<meta http-equiv="Content-Security-Policy" content="{_NOTHING_LOADED}">'
-        f"<title>{escape(title)}</title><style>{STYLE}</style></head><body>{headline(title, made)}\n"
-    )
-
-
-def headline(title: str, made: str) -> str:
-    """What it is, and its date."""
-    return f'<h1>{escape(title)}</h1><p class="made">{escape(made)}</p>'
 
 
 def program_part(name: str, section: str) -> str:
@@ -238,7 +221,7 @@ def program_part(name: str, section: str) -> str:
 
 def not_proved(why: str) -> str:
     """The section of a program that there is no proof of."""
-    return f'<p class="verdict bad">Not proved</p><p>{escape(why)}</p>'
+    return verdict("bad", "Not proved") + f"<p>{escape(why)}</p>"
 
 
 def compared_part(lines: str) -> str:
@@ -246,29 +229,5 @@ def compared_part(lines: str) -> str:
     return f"<h3>With other offsets</h3><pre>{escape(lines)}</pre>"
 
 
-PAGE_END = "</body></html>\n"
-
-
-def _figure(drawing: str, caption: str) -> str:
-    return f"<figure>{drawing}<figcaption>{escape(caption)}</figcaption></figure>"
-
-
-def _pairs(rows: Iterable[tuple[str, str]]) -> str:
-    lines = "".join(f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows)
-    return f'<table class="facts">{lines}</table>'
-
-
-def _table(head: Iterable[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table; the cells are HTML already."""
-    top = "".join(f"<th>{escape(each)}</th>" for each in head)
-    lines = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
-    return f"<table><tr>{top}</tr>{lines}</table>"
-
-
 def _many(count: int, what: str) -> str:
     return f"{count} {what}{'s' * (count != 1)}"
-
-
-def _clock(seconds: float) -> str:
-    minutes, rest = divmod(seconds, 60.0)
-    return f"{minutes:.0f} min {rest:04.1f} s" if minutes else f"{rest:.1f} s"

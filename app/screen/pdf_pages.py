@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from enum import StrEnum
+import sys
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -30,6 +30,7 @@ from PySide6.QtGui import (
 from PySide6.QtSvg import QSvgRenderer
 
 from app.report.page_style import DRAWINGS, PAPER
+from app.report.pdf_file import Paper
 from app.screen.look import FAMILY, load_fonts
 
 _DPI = 96  # of the pixels that drawings and letters are measured in
@@ -42,19 +43,6 @@ _INSTEAD = {
     "<figure>": "<div>", "</figure>": "</div>", "<figcaption>": '<p class="hint">', "</figcaption>": "</p>",
 }  # fmt: skip
 _SVG = re.compile(r'<svg role="img" width="(\d+)" height="(\d+)".*?</svg>', re.DOTALL)
-
-
-class Paper(StrEnum):
-    """The sizes of paper."""
-
-    A4 = "a4"
-    LETTER = "letter"
-
-    @staticmethod
-    def at_home() -> Paper:
-        """Letter where inches are at home, as the computer's own settings say; else A4."""
-        system = QLocale.system().measurementSystem()
-        return Paper.LETTER if system is QLocale.MeasurementSystem.ImperialUSSystem else Paper.A4
 
 
 class PdfPages:
@@ -188,11 +176,17 @@ class _Drawings(QPyTextObject):
         QSvgRenderer(QByteArray(text.encode())).render(painter, rect)
         painter.restore()
         painter.setPen(QPen(QColor(_FRAME), 0.5))
-        painter.drawRect(rect)
+        painter.drawRect(rect.adjusted(0.5, 0.5, -0.5, -0.5))
 
     @staticmethod
     def _number(form: QTextFormat) -> int:
         return int(form.toImageFormat().name())
+
+
+def usual_paper() -> Paper:
+    """Letter where inches are at home, as the computer's own settings say; else A4."""
+    system = QLocale.system().measurementSystem()
+    return Paper.LETTER if system is QLocale.MeasurementSystem.ImperialUSSystem else Paper.A4
 
 
 def _application() -> None:
@@ -203,3 +197,19 @@ def _application() -> None:
 
 
 _kept: list[QGuiApplication] = []  # an application that nobody holds is gone
+
+
+def main() -> int:
+    """``python -m app.screen.pdf_pages FILE TITLE PAPER < HTML``: a process that nothing else waits for."""
+    path, title, paper = sys.argv[1:]
+    try:
+        with PdfPages(Path(path), title, Paper(paper)) as pages:
+            pages.add(sys.stdin.buffer.read().decode(), title)
+    except OSError as error:
+        sys.stderr.write(f"{error.strerror}\n")
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

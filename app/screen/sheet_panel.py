@@ -16,8 +16,10 @@ from app.screen.entry_panel import draw_entry_box
 from app.screen.look import LEFT, RIGHT, Look, Painter
 from app.screen.page_base import Host, ModelPage, PageModel
 from app.screen.panel import Panel, Shown
+from app.screen.tool_outline_drawing import draw_outline
 
 ROW, HEAD, ASKED, NOTE = 4.0, 2.6, 5.4, 2.4  # units
+TALL = 6.0
 LAMP = 3.2
 
 
@@ -38,10 +40,15 @@ class SheetPanel(Panel):
         self.sheet = sheet
 
     @property
+    def _high(self) -> float:
+        """Of a row, units."""
+        return TALL if self.sheet.tall else ROW
+
+    @property
     def rows(self) -> int:
         """How many rows of the table fit into the panel."""
         foot = len(self.sheet.notes) * NOTE + (ASKED if self.sheet.question else 0.0)
-        return max(1, int((self.height() / self.look.u - 4.0 - HEAD - foot) / ROW))
+        return max(1, int((self.height() / self.look.u - 4.0 - HEAD - foot) / self._high))
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Three rows a notch."""
@@ -64,7 +71,8 @@ class SheetPanel(Panel):
         self._head(painter, row)
         for number in range(self.top, min(len(sheet.rows), self.top + self.rows)):
             place = number - self.top
-            box = QRectF(room.x(), row.bottom() + place * ROW * u, room.width(), ROW * u)
+            high = self._high * u
+            box = QRectF(room.x(), row.bottom() + place * high, room.width(), high)
             self._row(painter, box, sheet.rows[number], number == sheet.marked)
             self.place(box, partial(self._choose, number))
         self._bar(painter, room)
@@ -96,7 +104,15 @@ class SheetPanel(Panel):
             painter.box(lamp, row.tone.value, 0.2, row.tone.value if row.lit else "")
         for number, at in self._columns(box):
             side, bold, raw = self._side(number), number == 0 or marked, number in self.sheet.raw
-            painter.write(at, row.cells[number], 2.1, "text", at=side, bold=bold, raw=raw)
+            first, two, second = row.cells[number].partition("\n")
+            if two:
+                half = QRectF(at.x(), at.center().y(), at.width(), 0.44 * at.height())
+                painter.write(half, second, 1.8, "soft", at=side, bold=False, raw=raw)
+                at.setTop(at.y() + 0.06 * at.height())
+                at.setHeight(half.height())
+            painter.write(at, first, 2.1, "text", at=side, bold=bold, raw=raw)
+            if row.outline is not None and number == len(row.cells) - 1:
+                draw_outline(painter, at.adjusted(0, 0.2 * u, 0, -0.2 * u), row.outline, small=True)
 
     def _bar(self, painter: Painter, room: QRectF) -> None:
         """How much of the table is seen, and where."""
@@ -104,7 +120,7 @@ class SheetPanel(Panel):
         if count <= self.rows:
             return
         u = self.look.u
-        track = QRectF(room.right() - 0.5 * u, room.y() + HEAD * u, 0.6 * u, self.rows * ROW * u)
+        track = QRectF(room.right() - 0.5 * u, room.y() + HEAD * u, 0.6 * u, self.rows * self._high * u)
         painter.fill(track, "key")
         part = QRectF(track.x(), 0, track.width(), track.height() * self.rows / count)
         part.moveTop(track.y() + track.height() * self.top / count)

@@ -164,7 +164,7 @@ def proved(connection: sqlite3.Connection, program: str, result: str, planned: f
 
 
 def renamed(connection: sqlite3.Connection, old: str, new: str) -> None:
-    """Versions, count, record, stock and measured parts go with a program that gets another name.
+    """Versions, count, record, stock, notes and measured parts go with a program that gets another name.
 
     Versions and features that are kept under the new name already stay, then those of the old name stay too.
     """
@@ -184,13 +184,19 @@ def renamed(connection: sqlite3.Connection, old: str, new: str) -> None:
     for table in ("runs", "part_counts"):
         connection.execute(f"DELETE FROM {table} WHERE program = ?", (new,))
         connection.execute(f"UPDATE {table} SET program = ? WHERE program = ?", (new, old))
-    connection.execute("DELETE FROM settings WHERE key = ?", (stock_key(new),))
-    connection.execute("UPDATE settings SET key = ? WHERE key = ?", (stock_key(new), stock_key(old)))
+    for key in (stock_key, notes_key):
+        connection.execute("DELETE FROM settings WHERE key = ?", (key(new),))
+        connection.execute("UPDATE settings SET key = ? WHERE key = ?", (key(new), key(old)))
 
 
 def stock_key(program: str) -> str:
     """The setting that holds the stock of a program."""
     return f"stock:{program}"
+
+
+def notes_key(program: str) -> str:
+    """The setting that holds what the setup person has noted about a program."""
+    return f"notes:{program}"
 
 
 def _row(connection: sqlite3.Connection, program: str) -> None:

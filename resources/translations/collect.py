@@ -51,6 +51,7 @@ APART = frozenset(
     {
         *("code_table.py", "language_page.py", "keys.py", "run_without_screen.py"),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
+        "screen/pdf_pages.py",
     }
 )
 # Read by somebody, and not to be told from names by their looks.

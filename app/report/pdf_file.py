@@ -1,0 +1,37 @@
+"""A page as PDF, made by a process of its own: setting text takes its time, and nothing here waits for it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from enum import StrEnum
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+_LONGEST = 120.0  # s
+
+
+class Paper(StrEnum):
+    """The sizes of paper."""
+
+    A4 = "a4"
+    LETTER = "letter"
+
+
+def pdf_of(html: str, title: str, paper: Paper) -> bytes:
+    """The body of a page as a PDF; ``title`` stands under each page. On a worker. Raises OSError."""
+    with TemporaryDirectory(prefix="turndesk-") as folder:
+        path = Path(folder) / "sheet.pdf"
+        command = [sys.executable, "-m", "app.screen.pdf_pages", str(path), title, paper.value]
+        around = {**os.environ, "QT_QPA_PLATFORM": "offscreen"}
+        try:
+            done = subprocess.run(
+                command, input=html.encode(), capture_output=True, timeout=_LONGEST, check=False, env=around
+            )
+        except subprocess.TimeoutExpired as error:
+            raise OSError(0, f"no PDF after {_LONGEST:.0f} s") from error
+        if done.returncode:
+            lines = done.stderr.decode(errors="replace").strip().splitlines()
+            raise OSError(0, lines[-1] if lines else f"the PDF was not made ({done.returncode})")
+        return path.read_bytes()

@@ -1,0 +1,155 @@
+"""The setup sheet of a program: tools by station, offsets, stock, chuck, stops, time a part."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from app.desk.translation import tr
+from app.report.run_record import RunRecord, Stop, ToolTime
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
+from core.language.source import Dialect
+from core.machine.machine_model import Machine
+from core.part.clamping import Clamping
+from core.part.stock import Stock
+from core.part.tool_shape import ToolKind, ToolShape
+from core.part.turned_part import Piece
+from core.proving.part_proof import PartSetting, prove_with_part
+from core.proving.prove_program import Progress
+
+_MM_PER_INCH = 25.4
+
+
+@dataclass(frozen=True, slots=True)
+class SheetTool:
+    """One station; ``assumed``: nobody has described its shape. Without ``offset`` it was never set."""
+
+    number: int
+    shape: ToolShape | None
+    assumed: bool
+    offset: ToolOffset | None
+    time: ToolTime
+
+
+@dataclass(frozen=True, slots=True)
+class SetupSheet:
+    """What has to be on the machine before a program is started; mm, seconds."""
+
+    metric: bool
+    cycle: float
+    errors: int
+    stock: Stock | None
+    part: Piece | None
+    milled: bool
+    clamping: Clamping | None
+    tools: tuple[SheetTool, ...]
+    secondary: tuple[tuple[int, SecondaryOffset], ...]
+    zero: tuple[tuple[int, ZeroOffset], ...]
+    stops: tuple[Stop, ...]
+
+    def length(self, mm: float) -> str:
+        """A length with its unit, as the program counts."""
+        return f"{mm:.3f} mm" if self.metric else f"{mm / _MM_PER_INCH:.4f} in"
+
+    @property
+    def stock_words(self) -> str:
+        """What the part is made of."""
+        stock = self.stock
+        if stock is None:
+            return tr("not known")
+        round_ = f"Ø {self.length(2.0 * stock.radius)}"
+        if stock.bore:
+            round_ += ", " + tr("bore {size}").format(size=self.length(2.0 * stock.bore[0][1]))
+        if stock.given:
+            return f"{round_} ({stock.given})"
+        return tr("{size} at least, as nobody has said it").format(size=round_)
+
+    @property
+    def held_words(self) -> tuple[tuple[str, str], ...]:
+        """Stick-out and chuck or collet, each with its name."""
+        held = self.clamping
+        if held is None or not held.diameter:
+            return ((tr("STICK-OUT"), tr("not known: the machine file says nothing under [clamping]")),)
+        chuck = f"Ø {self.length(held.diameter)}"
+        if held.jaws:
+            size = f"Ø {self.length(held.jaw_diameter)} × {self.length(held.jaws)}"
+            chuck += ", " + tr("jaws {size}").format(size=size)
+        if held.max_rpm:
+            chuck += ", " + tr("{rpm} rpm at most").format(rpm=f"{held.max_rpm:.0f}")
+        return (tr("STICK-OUT"), self.length(held.stick_out)), (tr("CHUCK"), chuck)
+
+    def shape_words(self, tool: SheetTool) -> str:
+        """What the tool is."""
+        shape = tool.shape
+        if shape is None:
+            return tr("not known")
+        words = ", ".join(filter(None, self._of_shape(shape)))
+        return tr("{tool} (assumed)").format(tool=words) if tool.assumed else words
+
+    def _of_shape(self, shape: ToolShape) -> Iterator[str]:
+        yield kind_word(shape.kind)
+        yield shape.insert
+        yield shape.holder
+        for name, mm in (
+            (tr("WIDTH"), shape.width), ("Ø", shape.diameter),
+            (tr("PITCH"), shape.pitch), (tr("CUTTING LENGTH"), shape.length),
+            (tr("STICK-OUT"), shape.stick_out),
+        ):  # fmt: skip
+            yield f"{name} {self.length(mm)}" if mm else ""
+        yield f"{tr('POINT ANGLE')} {shape.point:g}°" if shape.point else ""
+        yield f"{tr('TIP')} {shape.tip}" if shape.tip else ""
+
+    def offset_words(self, tool: SheetTool) -> str:
+        """Its offset: X a radius."""
+        if tool.offset is None:
+            return tr("NOT SET")
+        x, z, r = (self.length(mm) for mm in (tool.offset.x, tool.offset.z, tool.offset.nose_radius))
+        return tr("X (radius) {x}   Z {z}   R {r}").format(x=x, z=z, r=r)
+
+
+def setup_sheet(
+    program: ReadProgram, setup: Setup, machine: Machine, setting: PartSetting, watch: Progress | None = None
+) -> SetupSheet:
+    """Prove the program once more and put together what its setup asks for. ``watch`` may raise."""
+    record = RunRecord(setting)
+    report, part = prove_with_part(program, setup, machine, setting, watch, seen=record.see)
+    shapes = part.shapes if part is not None else {}
+    numbers = sorted({*report.tools, *(n for n, time in record.times.items() if n and time.total)})
+    return SetupSheet(
+        metric=report.metric or report.dialect is not Dialect.OMNITURN,
+        cycle=report.times.cycle,
+        errors=len(report.errors),
+        stock=part.stock if part is not None else None,
+        part=part.last if part is not None else None,
+        milled=part is not None and part.milled,
+        clamping=setting.clamping,
+        tools=tuple(
+            SheetTool(
+                n,
+                shapes.get(n),
+                n not in setting.shapes,
+                setup.tools.get(n),
+                record.times.get(n, ToolTime()),
+            )
+            for n in numbers
+        ),
+        secondary=tuple((n, setup.secondary.get(n, SecondaryOffset())) for n in sorted(record.secondary)),
+        zero=tuple((n, setup.zero.get(n, ZeroOffset())) for n in sorted(record.settable)),
+        stops=tuple(record.stops),
+    )
+
+
+def kind_word(kind: ToolKind) -> str:
+    """What the screen calls a kind of tools."""
+    words = kind.upper().replace("-", " ")
+    return tr("FORM TOOL") if kind is ToolKind.FORM else tr(words)
+
+
+def outside_words(sheet: SetupSheet) -> str:
+    """Size of the finished part; empty where nothing is turned."""
+    if sheet.part is None or not sheet.part.outside:
+        return ""
+    outside = sheet.part.outside
+    size = sheet.length(2.0 * max(r for _, r in outside))
+    return f"Ø {size} × {sheet.length(outside[0][0] - outside[-1][0])}"

@@ -1,0 +1,340 @@
+"""The setup sheet of the program on the desk, on F10: its rows, notes, and where it is written to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.desk.desk import Desk
+from app.desk.latest import Latest
+from app.desk.persistence import Persistence
+from app.desk.sheet import Entry, Key, Row, Sheet
+from app.desk.translation import tr
+from app.programs.folder_chooser import Stick, sticks
+from app.report.pdf_file import Paper
+from app.special.special_functions import SpecialFunction
+from core.executor.job import Job
+from core.executor.snapshot import Snapshot
+from core.machine.machine_model import Machine
+from core.store.program_records import notes_key
+from core.store.store_errors import StoreError
+
+if TYPE_CHECKING:
+    from app.special.setup_sheet_work import Made
+
+NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN SETUP SHEET"
+MOST_NOTES, LONGEST = 30, 200
+_PAPER = "paper"  # the setting
+_WIDTHS = (0.15, 0.63, 0.22)
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A folder that the sheet can be written to."""
+
+    label: str
+    path: Path
+
+
+class SetupSheetFunction(SpecialFunction):
+    """Rows of the sheet, then the notes; F6 shows the places that it can be written to."""
+
+    name = "SETUP SHEET"
+    use = "tools, stock, stops, notes; on paper"
+
+    def __init__(
+        self,
+        desk: Desk,
+        machine: Machine,
+        persistence: Persistence,
+        worker: Latest,
+        folder: Path,
+        plugged: Callable[[], Sequence[Stick]] = sticks,
+    ) -> None:
+        super().__init__(desk)
+        self.machine, self.persistence, self.worker = machine, persistence, worker
+        self.folder, self.plugged = folder, plugged
+        self.made: Made | None = None
+        self.trouble = ""
+        self.entry: Entry | None = None  # a note is typed
+        self.places: tuple[Place, ...] = ()  # to be chosen from
+        self.busy = ""
+        self._asked: Job | None = None  # the job whose sheet is being made
+        self._changing: int | None = None  # the note that is typed anew; None: one more
+        self._notes_of: tuple[str, list[str]] = ("", [])
+        self._paper: Paper | None = None  # None: not read yet
+
+    # --- what is shown -------------------------------------------------------------------------------
+
+    @property
+    def program(self) -> str:
+        """Its name; empty where none is on the desk."""
+        return self.desk.session.now.name
+
+    @property
+    def notes(self) -> list[str]:
+        """What was noted about the program."""
+        program = self.program
+        if self._notes_of[0] != program:
+            self._notes_of = program, _texts(self._kept(notes_key(program))) if program else []
+        return self._notes_of[1]
+
+    def _kept(self, key: str) -> object:
+        try:
+            return self.persistence.setting(key)
+        except StoreError:
+            return None  # the desk says by itself that nothing is kept
+
+    @property
+    def paper(self) -> Paper:
+        """Of the PDF: as it was chosen last, else as the program's unit has it."""
+        if self._paper is None:
+            kept = self._kept(_PAPER)
+            usual = Paper.A4 if self.desk.snapshot().modal.metric else Paper.LETTER
+            self._paper = Paper(kept) if isinstance(kept, str) and kept in set(Paper) else usual
+        return self._paper
+
+    @property
+    def count(self) -> int:
+        """How many rows can be marked."""
+        return len(self.places) if self.places else len(list(self._rows()))
+
+    def sheet(self, _snapshot: Snapshot) -> Sheet:
+        """The sheet, or the places that it can be written to."""
+        self._make_when_changed()
+        if self.places:
+            return self._sheet_of_places()
+        name = self.program
+        rows = tuple(self._rows())
+        self.marked = max(0, min(self.marked, len(rows) - 1))
+        return Sheet(
+            f"SETUP SHEET  ·  {name}" if name else "SETUP SHEET",
+            ("", "", ""),
+            _WIDTHS,
+            rows,
+            self.marked,
+            question="NOTE" if self.entry is not None else "",
+            text=self.entry.text if self.entry is not None else "",
+            notes=self._foot(),
+            raw=frozenset({1}),
+            tall=True,
+        )
+
+    def _foot(self) -> tuple[str, ...]:
+        if not self.program:
+            return (NO_PROGRAM,)
+        if self.trouble:
+            return (self.trouble,)
+        if self.busy:
+            return (self.busy,)
+        return ("Making the sheet …",) if self.made is None else ()
+
+    def _rows(self) -> Iterator[Row]:
+        if not self.program:
+            return
+        if self.made is not None:
+            from app.special.setup_sheet_work import rows_of
+
+            yield from rows_of(self.made, self._remarks())
+        for number, text in enumerate(self.notes, 1):
+            yield Row((f"{tr('NOTE')} {number}", text, ""))
+
+    def _remarks(self) -> dict[int, str]:
+        return {number: row.remark for number, row in self.desk.book.tools.items() if row.remark}
+
+    def _sheet_of_places(self) -> Sheet:
+        rows = tuple(Row((place.label, str(place.path))) for place in self.places)
+        return Sheet(
+            "SETUP SHEET  ·  WRITE TO WHERE?",
+            ("WHERE", "FOLDER"),
+            (0.35, 0.65),
+            rows,
+            self.marked,
+            notes=(self.busy or "Return writes it there, as PDF and as HTML.",),
+            raw=frozenset({0, 1}),
+        )
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def keys(self) -> Mapping[str, Key]:
+        """A note, its end, the paper, and where to."""
+        if self.places:
+            return {"F4": Key("LOOK", self.look)}
+        return {
+            "F2": Key("NOTE", self.note),
+            "F3": Key("NO NOTE", self.forget),
+            "F5": Key("A4" if self.paper is Paper.A4 else "LETTER", self.next_paper),
+            "F6": Key("WRITE", self.look),
+        }
+
+    def typed(self, key: str) -> bool:
+        """The note that is typed, or the mark."""
+        if self.entry is None:
+            return super().typed(key)
+        if key == "Enter":
+            self._keep_note(self.entry.text.strip())
+            return True
+        if len(self.entry.text) >= LONGEST and len(key) == 1:
+            self.desk.say(tr("A NOTE HAS {most} LETTERS AT MOST: TAKE ANOTHER ONE").format(most=LONGEST))
+            return True
+        return self.entry.type(key)
+
+    def takes(self, key: str) -> bool:
+        """Whether a character is text of a note."""
+        return self.entry is not None and self.entry.takes(key)
+
+    def escape(self) -> bool:
+        """Leave the note as it was, or the list of places."""
+        open_ = self.entry is not None or bool(self.places)
+        self.entry, self.places = None, ()
+        return open_
+
+    def left(self) -> None:
+        """Nothing stays half typed."""
+        self.entry, self.places = None, ()
+
+    def act(self) -> bool:
+        """Return on a note changes it; on a place writes there."""
+        if self.places:
+            self._write(self.places[min(self.marked, len(self.places) - 1)])
+        elif (at := self._note_marked) is not None:
+            self._changing, self.entry = at, Entry(words=True, text=self.notes[at])
+        elif self.program:
+            self.desk.say("F2 TAKES A NOTE; RETURN CHANGES THE NOTE THAT IS MARKED")
+        return True
+
+    @property
+    def _note_marked(self) -> int | None:
+        """Which of the notes is marked."""
+        at = self.marked - (self.count - len(self.notes))
+        return at if 0 <= at < len(self.notes) else None
+
+    def note(self) -> None:
+        """One more note is typed."""
+        self.desk.clear()
+        if not self.program:
+            self.desk.say(NO_PROGRAM)
+        elif len(self.notes) >= MOST_NOTES:
+            self.desk.say(tr("THERE ARE {most} NOTES ALREADY: CHANGE ONE OF THEM").format(most=MOST_NOTES))
+        else:
+            self._changing, self.entry = None, Entry(words=True)
+
+    def forget(self) -> None:
+        """The marked note goes, after asking."""
+        at = self._note_marked
+        if at is None:
+            self.desk.say("MARK A NOTE FIRST")
+        else:
+            self.desk.ask("PRESS Y TO THROW THIS NOTE AWAY, ESC TO KEEP IT", partial(self._without, at))
+
+    def _without(self, at: int) -> None:
+        self._keep([text for number, text in enumerate(self.notes) if number != at])
+
+    def _keep_note(self, text: str) -> None:
+        at, self.entry = self._changing, None
+        notes = list(self.notes)
+        if at is None:
+            notes += [text] if text else []
+            self.marked = self.count if text else self.marked
+        elif text:
+            notes[at] = text
+        else:
+            notes.pop(at)
+        self._keep(notes)
+
+    def _keep(self, notes: list[str]) -> None:
+        program = self.program
+
+        def save() -> None:
+            self.persistence.save_setting(notes_key(program), notes or None)
+            self._notes_of = program, notes
+
+        self.desk.clear()
+        self.desk.keep(save)
+
+    def next_paper(self) -> None:
+        """A4 or Letter."""
+        other = self._paper = Paper.LETTER if self.paper is Paper.A4 else Paper.A4
+        self.desk.keep(lambda: self.persistence.save_setting(_PAPER, other.value))
+
+    def prompt(self) -> str:
+        """What the keys do."""
+        if self.entry is not None:
+            return "TYPE THE NOTE AND PRESS RETURN; ESC LEAVES IT AS IT WAS"
+        if self.places:
+            return "RETURN WRITES THE SHEET TO THE MARKED PLACE; F4 LOOKS FOR STICKS AGAIN"
+        return "F2 TAKES A NOTE, F6 WRITES THE SHEET AS PDF AND HTML; ESC GOES BACK TO THE LIST"
+
+    # --- making it, on the worker --------------------------------------------------------------------
+
+    def opened(self) -> None:
+        """As it is now."""
+        self._notes_of, self._paper = ("", []), None
+
+    def _make_when_changed(self) -> None:
+        """A sheet is of one job: another text or other offsets make another."""
+        loaded = self.desk.session.now
+        job, picture = loaded.job, loaded.picture
+        if job is None or picture is None or job is self._asked:
+            return
+        self._asked, self.made, self.trouble = job, None, ""
+        from app.special.setup_sheet_work import made_of
+
+        setting = picture.part.setting if picture.part is not None else None
+        self.worker.ask(partial(made_of, job, self.machine, setting), self._take, self._failed)
+
+    def _take(self, made: Made) -> None:
+        self.made = made
+
+    def _failed(self, why: str) -> None:
+        self.trouble = why
+
+    # --- writing it ----------------------------------------------------------------------------------
+
+    def look(self) -> None:
+        """Look what is plugged in; the answer comes with a later frame."""
+        self.desk.clear()
+        if self.made is None or not self.program:
+            self.desk.say(NO_PROGRAM if not self.program else "THE SHEET IS STILL BEING MADE: WAIT A MOMENT")
+            return
+        self.worker.queue(lambda: _places(self.folder, self.plugged()), self._found, self._not_written)
+
+    def _found(self, places: tuple[Place, ...]) -> None:
+        self.places, self.marked = places, 0
+
+    def _write(self, place: Place) -> None:
+        if self.busy:
+            self.desk.say("STILL AT IT: WAIT UNTIL IT IS DONE")
+            return
+        if self.made is None:
+            self.desk.say("THE SHEET IS STILL BEING MADE: WAIT A MOMENT")
+            return
+        self.busy = "Writing …"
+        self.desk.clear()
+        from app.special.setup_sheet_work import page_of, write
+
+        page = page_of(self.made, self.program, self.machine, self._remarks(), tuple(self.notes))
+        self.worker.queue(
+            partial(write, page, self.program, place.path, self.paper), self._done, self._not_written
+        )
+
+    def _done(self, name: str) -> None:
+        self.busy, self.places = "", ()
+        self.desk.say(tr("{name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED").format(name=name))
+
+    def _not_written(self, why: str) -> None:
+        self.busy = ""
+        self.desk.refuse(why)
+
+
+def _texts(kept: object) -> list[str]:
+    """The notes that were kept; anything else is none."""
+    return [each for each in kept if isinstance(each, str)] if isinstance(kept, list) else []
+
+
+def _places(folder: Path, plugged: Sequence[Stick]) -> tuple[Place, ...]:
+    """The media, and the control's own folder."""
+    return (*(Place(stick.label, stick.path) for stick in plugged), Place("THIS CONTROL", folder))

@@ -1,0 +1,99 @@
+"""What a setup sheet takes time for: its proof, its rows, its page, its files; loaded when it is needed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from app.desk.latest import Request
+from app.desk.sheet import Row
+from app.desk.translation import tr
+from app.programs.whole_file import FileError, settle, write_out
+from app.report.html_tables import PAGE_END, clock, headline, page_head, text_hash
+from app.report.pdf_file import Paper, pdf_of
+from app.special.setup_sheet import SetupSheet, outside_words, setup_sheet
+from app.special.setup_sheet_page import setup_sheet_html
+from core.executor.job import Job
+from core.machine.machine_model import Machine
+from core.part.insert_codes import InsertCodeError
+from core.part.tool_outline import ToolOutline, outline
+from core.part.tool_shape import ToolShape
+from core.proving.part_proof import PartSetting
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """The sheet of one job, and the outlines of its tools by number."""
+
+    job: Job
+    sheet: SetupSheet
+    outlines: Mapping[int, ToolOutline | None]
+
+
+def rows_of(made: Made, remarks: Mapping[int, str]) -> Iterator[Row]:
+    """Time, stock, what holds it, tools, offsets, stops."""
+    sheet = made.sheet
+    if sheet.errors:
+        text = tr("{count} ERRORS: this program will not run as it stands").format(count=sheet.errors)
+        yield Row((tr("ERRORS"), text, ""))
+    part = outside_words(sheet)
+    stock = sheet.stock_words + (f"\n{tr('PART')} {part}" if part else "")
+    yield Row((tr("TIME A PART"), clock(sheet.cycle), ""))
+    yield Row((tr("STOCK"), stock, ""))
+    for name, words in sheet.held_words:
+        yield Row((name, words, ""))
+    for tool in sheet.tools:
+        remark = remarks.get(tool.number, "")
+        words = f"{remark}: {sheet.shape_words(tool)}" if remark else sheet.shape_words(tool)
+        offset = f"{sheet.offset_words(tool)}   {tool.time.total:.1f} s"
+        name = f"T{tool.number}" if tool.number else tr("no T")
+        yield Row((name, f"{words}\n{offset}", ""), outline=made.outlines.get(tool.number))
+    length = sheet.length
+    for n, d in sheet.secondary:
+        yield Row((f"D{n}", f"X {length(d.x)}   Z {length(d.z)}   R {length(d.r)}", ""))
+    for n, zero in sheet.zero:
+        yield Row((f"G{n}", f"X {length(zero.x)}   Z {length(zero.z)}   C {zero.c:g}°", ""))
+    for stop in sheet.stops:
+        at = tr("LINE {line}").format(line=stop.line)
+        yield Row((f"M0{int(stop.optional)}", f"{stop.message}\n{at}, {clock(stop.at)}", ""))
+
+
+def made_of(job: Job, machine: Machine, setting: PartSetting | None, watch: Request) -> Made:
+    """Put it together; on a worker."""
+    sheet = setup_sheet(job.reading, job.setup, machine, setting or PartSetting(), watch)
+    return Made(job, sheet, {tool.number: _outline(tool.shape) for tool in sheet.tools})
+
+
+def _outline(shape: ToolShape | None) -> ToolOutline | None:
+    try:
+        return outline(shape) if shape is not None else None
+    except InsertCodeError:
+        return None
+
+
+def page_of(
+    made: Made, program: str, machine: Machine, remarks: Mapping[int, str], notes: Sequence[str]
+) -> tuple[str, str, str]:
+    """Title, date and body of the page."""
+    facts = [(tr("MACHINE"), machine.name), (tr("TEXT (SHA-256)"), text_hash(made.job.source))]
+    body = setup_sheet_html(made.sheet, facts, remarks, notes)
+    title = tr("Setup sheet: {program}").format(program=program)
+    return title, datetime.now().strftime("%Y-%m-%d %H:%M"), body
+
+
+def write(page: tuple[str, str, str], program: str, folder: Path, paper: Paper) -> str:
+    """On the worker: PDF and HTML, each old or new at every moment. Raises FileError."""
+    title, made, body = page
+    name = f"{program}-setup"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        pdf = pdf_of(headline(title, made) + body, title, paper)
+    except OSError as error:
+        raise FileError(f"{folder} CANNOT BE WRITTEN: {error.strerror}") from error
+    html = page_head(title, made) + body + PAGE_END
+    write_out(folder / f"{name}.html", html.encode("utf-8", "backslashreplace"))
+    write_out(folder / f"{name}.pdf", pdf)
+    settle(folder)
+    return f"{name}.pdf"

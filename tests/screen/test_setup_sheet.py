@@ -1,0 +1,219 @@
+"""The setup sheet on F10: what stands on it, notes, its files; and what is refused."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.compose.journal import Journal
+from app.compose.stored_offsets import read_offsets
+from app.compose.workshop import samples
+from app.programs.folder_chooser import Stick
+from app.report.pdf_file import Paper
+from app.screen.look import Look
+from app.screen.main_window import MainWindow
+from app.screen.theme import DARK
+from app.special.setup_sheet_function import MOST_NOTES, SetupSheetFunction
+from app.special.special_view import SpecialPage
+from tests.pdf_text import Pdf
+from tests.screen.desks import desk_on
+from tests.screen.fake import FakeMachine
+from tests.screen.hands import Hands, Key
+from tests.screen.yes import yes
+
+SETUP = "SETUP SHEET"
+
+
+@pytest.fixture
+def journal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+    journal = Journal.at_home()
+    yield journal
+    journal.close()
+
+
+@pytest.fixture
+def hands(qtbot: QtBot, machine: FakeMachine, journal: Journal) -> Iterator[Hands]:
+    desk = desk_on(machine, keep=journal)
+    window = MainWindow(Look(DARK))
+    window.resize(1024, 600)
+    with qtbot.waitExposed(window):
+        window.show()
+    window.open_desk(desk)
+    window.activateWindow()
+    yield Hands(qtbot, window, desk, machine)
+    machine.idle()
+    window.close()
+    desk.close()
+    window.deleteLater()
+
+
+def opened(hands: Hands, program: str = "bushing") -> tuple[SpecialPage, SetupSheetFunction]:
+    if program:
+        hands.desk.choose(program)
+        hands.desk.session.settled(60.0)
+    hands.key(Key.Key_F10)
+    page = hands.frame.page
+    assert isinstance(page, SpecialPage)
+    names = [function.name for function in page.model.functions]
+    page.model.enter(names.index(SETUP))
+    function = page.model.shown
+    assert isinstance(function, SetupSheetFunction)
+    if program:
+        hands.sees(lambda: function.made is not None)
+        hands.sees(lambda: len(page.table.sheet.rows) > 3)
+    return page, function
+
+
+def rows(page: SpecialPage) -> dict[str, str]:
+    return {row.cells[0]: row.cells[1] for row in page.table.sheet.rows}
+
+
+def take_note(hands: Hands, text: str) -> None:
+    hands.key(Key.Key_F2)
+    hands.type(text)
+    hands.key(Key.Key_Return)
+
+
+def test_tools_offsets_stock_and_stops_stand_on_it(hands: Hands) -> None:
+    page, _ = opened(hands)
+    said = rows(page)
+    offset = read_offsets(samples() / "offsets.toml").tools[2]
+    assert f"X (radius) {offset.x / 25.4:.4f} in   Z {offset.z / 25.4:.4f} in" in said["T2"]
+    assert said["T2"].startswith("BORING")
+    assert "(assumed)" in said["T2"]
+    assert said["STOCK"].startswith("Ø 1.06")
+    assert "GAUGE THE OUTSIDE AND CORRECT D1" in said["M01"]
+    assert {"TIME A PART", "STICK-OUT", "T1", "T3", "D1"} <= set(said)
+    drawn = {row.cells[0] for row in page.table.sheet.rows if row.outline is not None}
+    assert drawn == {"T1", "T2", "T3"}
+
+
+def test_notes_stay_with_their_program(hands: Hands, journal: Journal) -> None:
+    page, function = opened(hands)
+    take_note(hands, "SOFT JAWS")
+    take_note(hands, "BAR .02 OUT")
+    hands.sees(lambda: rows(page).get("NOTE 2") == "BAR .02 OUT")
+    hands.key(Key.Key_Return)  # the one that was typed last is marked
+    hands.type(" MORE")
+    hands.key(Key.Key_Return)
+    assert function.notes == ["SOFT JAWS", "BAR .02 OUT MORE"]
+    hands.sees(lambda: journal.setting("notes:bushing.nc") == ["SOFT JAWS", "BAR .02 OUT MORE"])
+    function.opened()  # read anew from what is kept
+    assert function.notes == ["SOFT JAWS", "BAR .02 OUT MORE"]
+    hands.desk.choose("pin")
+    hands.desk.session.settled(60.0)
+    assert function.notes == []
+    store = journal.book().store
+    assert store is not None
+    store.rename_program("bushing.nc", "other.nc").result(5)
+    assert journal.setting("notes:other.nc") == ["SOFT JAWS", "BAR .02 OUT MORE"]
+
+
+def test_a_note_goes_only_after_asking(hands: Hands) -> None:
+    page, function = opened(hands)
+    take_note(hands, "SOFT JAWS")
+    hands.sees(lambda: "NOTE 1" in rows(page))
+    hands.key(Key.Key_F3)
+    assert function.notes == ["SOFT JAWS"]
+    yes(hands.window)
+    hands.sees(lambda: function.notes == [])
+    hands.key(Key.Key_F3)
+    assert hands.prompt() == "MARK A NOTE FIRST"
+
+
+def test_escape_leaves_a_note_as_it_was(hands: Hands) -> None:
+    _, function = opened(hands)
+    take_note(hands, "SOFT JAWS")
+    hands.key(Key.Key_Return)
+    hands.type("X")
+    hands.key(Key.Key_Escape)
+    assert function.notes == ["SOFT JAWS"]
+    assert function.entry is None
+
+
+def test_it_is_written_as_pdf_and_html(hands: Hands, tmp_path: Path) -> None:
+    _, function = opened(hands)
+    take_note(hands, "<SOFT> JAWS & MORE")
+    stick = tmp_path / "stick"
+    stick.mkdir()
+    function.plugged = lambda: (Stick("BLUE", stick, 10**9),)
+    before = function.paper
+    hands.key(Key.Key_F5)
+    assert function.paper is not before
+    if before is Paper.A4:
+        hands.key(Key.Key_F5)
+    hands.key(Key.Key_F6)
+    hands.sees(lambda: [place.label for place in function.places] == ["BLUE", "THIS CONTROL"])
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: "IS WHOLE AND ON THE DISK" in hands.prompt())
+    page = (stick / "bushing.nc-setup.html").read_text()
+    pdf = Pdf(stick / "bushing.nc-setup.pdf")
+    made = "".join(pdf.pages)
+    digest = hashlib.sha256((samples() / "bushing.nc").read_bytes()).hexdigest()
+    for words in (
+        "Setup sheet: bushing.nc",
+        "GAUGE THE OUTSIDE AND CORRECT D1",
+        digest,
+        "BORING, VNMG160404",
+    ):
+        assert words in page
+        assert words.replace(" ", "") in made
+    assert "&lt;SOFT&gt; JAWS &amp; MORE" in page
+    assert "<SOFT>JAWS&MORE" in made
+    assert pdf.papers == {(210, 297)}
+    assert sorted(each.name for each in stick.iterdir()) == ["bushing.nc-setup.html", "bushing.nc-setup.pdf"]
+
+
+# --- what is refused
+
+
+def test_without_a_program_there_is_no_sheet(hands: Hands) -> None:
+    page, function = opened(hands, "")
+    hands.sees(lambda: page.table.sheet.title == SETUP)
+    assert page.table.sheet.rows == ()
+    for key in (Key.Key_F2, Key.Key_F6):
+        hands.key(key)
+        assert hands.prompt().startswith("CHOOSE A PROGRAM FIRST")
+    assert function.entry is None
+    assert function.places == ()
+
+
+def test_there_are_no_more_notes_than_can_be_read(hands: Hands) -> None:
+    _, function = opened(hands)
+    function._keep([f"NOTE {n}" for n in range(MOST_NOTES)])
+    hands.key(Key.Key_F2)
+    assert "NOTES ALREADY" in hands.prompt()
+    assert function.entry is None
+
+
+def test_a_place_that_cannot_be_written_is_told(hands: Hands, tmp_path: Path) -> None:
+    _, function = opened(hands)
+    (tmp_path / "file").write_text("no folder")
+    function.plugged = lambda: (Stick("GONE", tmp_path / "file", 0),)
+    hands.key(Key.Key_F6)
+    hands.sees(lambda: bool(function.places))
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: "CANNOT BE WRITTEN" in hands.prompt())
+    assert function.busy == ""
+
+
+def test_a_full_disk_is_told(hands: Hands, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    _, function = opened(hands)
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    function.folder = tmp_path / "sheets"
+    hands.key(Key.Key_F6)
+    hands.sees(lambda: bool(function.places))
+    hands.key(Key.Key_End)
+    function.marked = len(function.places) - 1
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: "No space left on device" in hands.prompt())
+    assert list((tmp_path / "sheets").iterdir()) == []
