@@ -10,8 +10,9 @@ from collections.abc import Iterator
 from concurrent.futures import CancelledError, Executor, Future
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from app.cli.part_options import with_kept_stock
+from app.cli.part_options import with_kept
 from app.cli.program_files import ProgramFiles, program_files
 from app.cli.program_options import read_source
 from app.cli.progress_bar import Progress
@@ -21,9 +22,12 @@ from app.cli.proof_pool import KILLED, Proving, Workers, WorkerSource, cores
 from app.cli.proof_table import table
 from app.cli.proof_work import OtherVersionError, Proof, code_version, proof_of
 from app.cli.report_file import ReportFile, report_file
-from app.compose.kept_stock import programs_with_stock
+from app.compose.kept_stock import kept_with_all
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 from core.language.source import Source
+
+if TYPE_CHECKING:
+    from core.proving.part_proof import PartSetting
 
 
 def prove_many(args: argparse.Namespace, job: ProofJob) -> int:
@@ -66,7 +70,7 @@ class _Run:
         self._args, self._job, self._files, self._workers = args, job, files, workers
         self._report = report
         names = (path.name for path in files.paths)
-        self._stocked = programs_with_stock(names) if args.stock is None else frozenset[str]()
+        self._kept_parts = kept_with_all(names)
         self._version = code_version() if args.scheduler is not None else ""  # our own workers have ours
         self._cache = None if args.no_cache else ProofCache(data_folder() / "proofs", job)
         self._proofs: dict[int, Proof] = {}
@@ -112,7 +116,7 @@ class _Run:
             except CommandError as error:
                 self._add(index, Proof({}, fault=str(error)))
                 continue
-            own = job.setting.stock if job is not self._job else None
+            own = _own(job.setting) if job is not self._job else None
             key = self._cache.key(source, own) if self._cache is not None else ""
             found = self._cache.find(key) if self._cache is not None else None
             if found is not None:
@@ -121,10 +125,11 @@ class _Run:
                 yield _Unit(index, source, job, key)
 
     def _job_of(self, source: Source) -> ProofJob:
-        """The job of all, or with the stock that the store remembers with this program."""
-        if source.name not in self._stocked:
+        """The job of all, or with what the store keeps of the part of this program."""
+        kept = self._kept_parts.get(source.name)
+        if kept is None:
             return self._job
-        return replace(self._job, setting=with_kept_stock(self._job.setting, source.name, self._args))
+        return replace(self._job, setting=with_kept(self._job.setting, source.name, kept, self._args))
 
     def _kept(self, unit: _Unit, made: Proof | BaseException) -> Proof:
         if isinstance(made, BaseException):
@@ -173,3 +178,8 @@ def _status(proof: Proof) -> int:
     if proof.fault:
         return EXIT_USAGE
     return EXIT_ERRORS if proof.count("error") else EXIT_OK
+
+
+def _own(setting: PartSetting) -> object:
+    """What counts for one program alone: what the store keeps of its part."""
+    return setting.stock, setting.clamping, setting.silenced

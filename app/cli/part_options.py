@@ -11,9 +11,12 @@ from typing import TYPE_CHECKING
 from app.cli.figures import MM_PER_INCH
 from app.cli.program_options import circumstances, read_source
 from app.desk.command_errors import CommandError
+from app.desk.kept_part import lasting
 
 if TYPE_CHECKING:
     from app.cli.program_options import Circumstances
+    from app.desk.kept_part import KeptPart
+    from core.language.source import Source
     from core.machine.machine_model import Machine
     from core.part.stock import Stock
     from core.part.stock_spec import StockSpec
@@ -39,32 +42,40 @@ def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting
 
 def with_kept_stock(setting: PartSetting, program: str, args: argparse.Namespace) -> PartSetting:
     """Without --stock that of the store; with --keep-stock the store remembers it. Raises CommandError."""
-    from app.compose.kept_stock import keep_stock, kept_stock
+    from app.compose.kept_stock import keep_stock, kept_with
 
     if args.keep_stock:
-        keep_stock(program, _lasting(args.stock))
-    if args.stock is not None or not (text := kept_stock(program)):
+        around = circumstances(args)
+        keep_stock(program, lasting(args.stock), _stick_out(args, around.machine))
+    return with_kept(setting, program, kept_with(program), args)
+
+
+def with_kept(setting: PartSetting, program: str, kept: KeptPart, args: argparse.Namespace) -> PartSetting:
+    """With what the store keeps of this program, as far as no option says it. Raises CommandError."""
+    from app.compose.known_part import with_kept_clamping
+
+    around = circumstances(args)
+    setting = with_kept_clamping(setting, around.machine, kept, said=args.stick_out is not None)
+    if args.stock is not None or not kept.stock:
         return setting
     try:
-        return replace(setting, stock=_said(text, args, circumstances(args), setting))
+        return replace(setting, stock=_said(kept.stock, args, around, setting))
     except CommandError as error:
         way = "say another with --stock and --keep-stock"
         raise CommandError(f"the stock that is kept with {program} cannot be used: {error}; {way}") from error
 
 
-def _lasting(text: str) -> str:
-    """The same from every folder: a file by its whole path."""
-    kind, _, rest = text.partition(":")
-    return f"{kind}:{Path(rest).resolve()}" if kind in {"profile", "after"} else text
-
-
 def _said(
     text: str, args: argparse.Namespace, around: Circumstances, setting: PartSetting
 ) -> Stock | StockSpec:
+    from app.compose.said_stock import Around, said_stock
     from core.part.stock_spec import StockError
 
+    def read(path: Path) -> Source:
+        return read_source(path, args)
+
     try:
-        return _stock(text, args, around, setting)
+        return said_stock(text, Around(read, around.setup, around.machine, setting))
     except StockError as error:
         raise CommandError(f"--stock {error}") from error
 
@@ -88,39 +99,3 @@ def _stick_out(args: argparse.Namespace, machine: Machine) -> float | None:
     if not 0.0 < stick_out <= _LONGEST:
         raise CommandError(f"--stick-out {args.stick_out:g} is not between 0 and 40 in")
     return stick_out
-
-
-def _stock(
-    text: str, args: argparse.Namespace, around: Circumstances, setting: PartSetting
-) -> Stock | StockSpec:
-    from core.part.stock_spec import profile_stock, stock_spec
-
-    spec = stock_spec(text)
-    if spec.after:
-        return _left_by(Path(spec.after), args, around, setting, spec)
-    if spec.profile:
-        path = Path(spec.profile)
-        try:
-            points = path.read_text(encoding="utf-8")
-        except OSError as error:
-            raise CommandError(f"{path} cannot be read ({error.strerror}); check name and rights") from error
-        except UnicodeDecodeError as error:
-            raise CommandError(f"{path} is no text; a profile is a CSV file of z, r") from error
-        return profile_stock(spec.given, points, 25.4, spec.allowance)
-    return spec
-
-
-def _left_by(
-    path: Path, args: argparse.Namespace, around: Circumstances, setting: PartSetting, spec: StockSpec
-) -> Stock:
-    """What the program before leaves: its last part."""
-    from core.part.stock import Stock
-    from core.proving.part_proof import prove_with_part
-
-    report, part = prove_with_part(read_source(path, args), around.setup, around.machine, setting)
-    if report.errors or part is None or part.last is None:
-        first = f": {report.errors[0].text}" if report.errors else ""
-        raise CommandError(f"--stock {spec.given}: {path} leaves no part{first}")
-    outside = tuple((z + spec.allowance, r) for z, r in reversed(part.last.outside))
-    bore = tuple((z + spec.allowance, r) for z, r in reversed(part.last.bore or ()))
-    return Stock(spec.given, outside, bore)

@@ -29,6 +29,8 @@ def diagnostic_json(diagnostic: Diagnostic) -> Json:
         "check": diagnostic.check or _CHECKS.get(diagnostic.code),
         "n": diagnostic.n or None,
         "count": diagnostic.count,
+        "assumed": list(diagnostic.assumed),
+        "silenced": diagnostic.silenced or None,
     }
 
 
@@ -58,6 +60,7 @@ def report_json(
         "blocks": report.blocks,
         "elementary": report.elementary,
         "diagnostics": [diagnostic_json(d) for d in report.diagnostics],
+        "silenced": sum(1 for d in report.diagnostics if d.silenced),
         "cycle_time_s": seconds(times.cycle),
         "cutting_time_s": seconds(times.cutting),
         "rapid_time_s": seconds(times.rapid),

@@ -3,63 +3,53 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
+from app.desk.kept_part import NOTHING_KEPT, KeptPart, kept_part
 
 if TYPE_CHECKING:
-    from core.part.stock_spec import StockSpec
+    from core.store.store import Store
 
 
-def kept_stock(program: str) -> str:
-    """What was said last, such as ``bar:1.0+.02``; empty where nothing was, or where there is no store.
+def kept_with(program: str) -> KeptPart:
+    """What was said last; nothing where there is no store.
 
     Raises CommandError when the store cannot be trusted.
     """
+    return kept_with_all([program]).get(program, NOTHING_KEPT)
+
+
+def kept_with_all(programs: Iterable[str]) -> dict[str, KeptPart]:
+    """Of those with which the store remembers something what is kept. Raises CommandError, as above."""
     folder = data_folder()
     if not folder.is_dir():
-        return ""
+        return {}
     from core.store.store import Store, StoreError
 
     try:
         with Store.open(folder, read_only=True) as store:
-            return store.stock_of(program)
+            found = {program: kept_part(store.setting, program) for program in programs}
     except StoreError as error:
         raise CommandError(str(error)) from error
+    return {program: kept for program, kept in found.items() if kept != NOTHING_KEPT}
 
 
-def programs_with_stock(programs: Iterable[str]) -> frozenset[str]:
-    """Those with which the store remembers a stock. Raises CommandError as ``kept_stock``."""
-    folder = data_folder()
-    if not folder.is_dir():
-        return frozenset()
-    from core.store.store import Store, StoreError
-
-    try:
-        with Store.open(folder, read_only=True) as store:
-            return frozenset(program for program in programs if store.stock_of(program))
-    except StoreError as error:
-        raise CommandError(str(error)) from error
-
-
-def keep_stock(program: str, text: str) -> None:
-    """Remember it. Raises CommandError when the store cannot be written."""
+def keep_stock(program: str, text: str, stick_out: float | None) -> None:
+    """Remember it; ``stick_out`` mm, None: that of before. Raises CommandError when it cannot be kept."""
     from core.store.store import Store, StoreError
 
     try:
         with Store.open(data_folder()) as store:
-            store.keep_stock(program, text).result()
+            kept = replace(kept_part(store.setting, program), stock=text)
+            write(store, program, kept if stick_out is None else replace(kept, stick_out=stick_out))
     except StoreError as error:
         raise CommandError(str(error)) from error
 
 
-def round_stock_at_hand(program: str) -> StockSpec | None:
-    """The bar or tube that is kept with a program, for a picture; None without one that can be read."""
-    from core.part.stock_spec import StockError, stock_spec
-
-    try:
-        spec = stock_spec(kept_stock(program))
-    except (CommandError, StockError):
-        return None
-    return spec if spec.diameter else None
+def write(store: Store, program: str, kept: KeptPart) -> None:
+    """Keep it, to the disk. Raises StoreError."""
+    for key, value in kept.settings(program).items():
+        store.set_setting(key, value).result()

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
+from app.desk.kept_part import KeptPart
 from core.interpreter.job_setup import ToolOffset
 from core.machine.machine_model import Machine
 from core.part.clamping import Clamping
@@ -26,6 +28,15 @@ def known_part(
         drives=Drives(machine.axes[1].amax, machine.spindle.decel),
         gang={n: (tool.z, tool.x) for n, tool in tools.items()} if machine.tooling == "gang" else {},
     )
+
+
+def with_kept_clamping(
+    setting: PartSetting, machine: Machine, kept: KeptPart, *, said: bool = False
+) -> PartSetting:
+    """With what is kept of stick-out and silenced checks; a stick-out that is ``said`` stays."""
+    if kept.stick_out is not None and not said and machine.clamping.diameter:
+        setting = replace(setting, clamping=_clamping(machine, kept.stick_out))
+    return replace(setting, silenced={**setting.silenced, **kept.silenced})
 
 
 def _clamping(machine: Machine, stick_out: float | None) -> Clamping | None:

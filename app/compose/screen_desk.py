@@ -22,6 +22,7 @@ from app.desk.alarm_log import KEPT, KINDS
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
+from app.desk.kept_part import kept_part
 from app.desk.persistence import Persistence
 from app.desk.program_folder import ProgramFile, ProgramFolders
 from app.desk.program_loading import LoadingSteps, ProgramLoader
@@ -183,12 +184,13 @@ def _desk(
     def left() -> Modal:
         return executor.snapshot.modal
 
+    kept = partial(kept_part, keep.setting)
     changed = file_changes(machine, keep, partial(say, "machine"))
     desk = Desk(
         post=guarded(executor.post, changed, partial(say, "refused")),
         snapshot=lambda: executor.snapshot,
         session=ProgramLoader(
-            workshop(machine, offsets, journal, left=left, shapes=shapes_at_hand),
+            workshop(machine, offsets, journal, left=left, shapes=shapes_at_hand, kept=kept),
             executor.post,
         ),
         program_folders=ProgramFolders((data_folder() / "programs", samples())),
@@ -201,7 +203,8 @@ def _desk(
         book=book_of(offsets, journal),
     )
     desk.attach(Effect(drawer(machine)))
-    desk.attach(_editor(workshop(machine, offsets, left=left, shapes=shapes_at_hand), journal))
+    beside = workshop(machine, offsets, left=left, shapes=shapes_at_hand, kept=kept)
+    desk.attach(_editor(beside, journal))
     furnish(desk, machine, keep, workshop(machine, offsets, left=left))
     give_mdi(desk, machine, offsets, keep)
     give_searchto(desk, machine)

@@ -8,6 +8,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.compose.desk_part import Kept, PartDesk, Shapes, nothing_kept
 from app.compose.journal import Journal
 from app.compose.machine_setup import setup_for
 from app.compose.stored_offsets import Offsets
@@ -15,7 +16,7 @@ from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
 from app.desk.latest import Watch
 from app.desk.persistence import Persistence
-from app.desk.program_loading import LoadingSteps, Proved
+from app.desk.program_loading import LoadingSteps, PartProved, Proved
 from app.mdi.mdi_model import MdiLine, MdiModel, ProveLine
 from app.searchto.searchto_model import SearchtoModel
 from core.executor.job import Job, Proof, make_job
@@ -24,6 +25,7 @@ from core.interpreter.checkpoint import Begin, Checkpoint
 from core.interpreter.job_setup import ToolOffset
 from core.interpreter.modal_state import Modal
 from core.interpreter.restart.restart_approach import Choices
+from core.language.diagnostics import Diagnostic
 from core.language.source import Dialect, Source, SourceError, load_source
 from core.machine.machine_model import Machine
 from core.proving.proof_report import Report
@@ -33,13 +35,7 @@ if TYPE_CHECKING:
     from app.offsets.offset_effect import Draw
     from app.path.path_picture import Picture, Timed
     from core.interpreter.restart.state_rebuild import StateRebuild
-    from core.part.tool_shape import ToolShape
-    from core.proving.part_proof import PartSetting
     from core.proving.program_timeline import MotionSpan, RestSpan
-
-
-Shapes = Callable[[], Mapping[int, "ToolShape"]]
-"""The shapes of tools, by T, as they are when it is called; on the worker."""
 
 
 def samples() -> Path:
@@ -54,10 +50,12 @@ def workshop(
     *,
     left: Callable[[], Modal] | None = None,
     shapes: Shapes = dict,
+    kept: Kept = nothing_kept,
     pictures: bool = True,
 ) -> LoadingSteps:
     """What loading needs; offsets, shapes of tools, and unit and rapid rate that the job before has ``left``,
-    are those of the moment of loading. ``pictures``: what is proved will be drawn."""
+    are those of the moment of loading. ``kept`` is what is kept of the parts of programs. ``pictures``: what
+    is proved will be drawn, and its part proved."""
 
     def new_job(source: Source, block_delete: bool) -> Job:
         if journal is not None:
@@ -74,17 +72,19 @@ def workshop(
         setup = replace(job.setup, tools=tools, secondary=secondary, zero=zero)
         return replace(make_job(job.source, setup), reading=job.reading)
 
-    passes = _ProofAndPicture(machine, shapes, pictures=pictures)
-    return LoadingSteps(_read, new_job, passes.prove, passes.draw, renewed)
+    parts = PartDesk(machine, shapes, kept, _read)
+    passes = _ProofAndPicture(machine, parts, pictures=pictures)
+    return LoadingSteps(_read, new_job, passes.prove, passes.draw, renewed, passes.part)
 
 
 class _ProofAndPicture:
     """One pass through a program proves it and draws it; the picture is kept until it is asked for."""
 
-    def __init__(self, machine: Machine, shapes: Shapes, *, pictures: bool) -> None:
-        self._machine, self._shapes = machine, shapes
+    def __init__(self, machine: Machine, parts: PartDesk, *, pictures: bool) -> None:
+        self._machine, self._parts = machine, parts
         self._pictures = pictures
         self._drawn: tuple[Job, Picture] | None = None  # of the job that was proved last
+        self._trouble: Diagnostic | None = None  # what of its stock cannot be used
 
     def prove(self, job: Job, watch: Watch) -> Proved:
         from app.path.path_picture import PictureBuilder
@@ -92,9 +92,10 @@ class _ProofAndPicture:
         from core.proving.prove_program import prove
 
         self._drawn, sketch = None, PictureBuilder()
-        gathered = None
+        gathered, waits = None, False
         if self._pictures and self._machine.kind == "lathe":
-            gathered = PartGathering(_part_setting(job, self._machine, self._shapes()))
+            setting, self._trouble = self._parts.setting(job, watch)
+            gathered = PartGathering(setting)
 
         def seen(span: MotionSpan | RestSpan) -> None:
             for each in span.times_of_parts():
@@ -104,9 +105,16 @@ class _ProofAndPicture:
 
         report = prove(job.reading, job.setup, self._machine, watch, seen=seen if self._pictures else None)
         if self._pictures:
-            part = gathered.moves() if gathered is not None else None
-            self._drawn = job, replace(sketch.picture(), part=part)
-        return Proved(proof_of(job, report), report.diagnostics)
+            part, why = (gathered.moves(), gathered.too_many) if gathered is not None else (None, "")
+            waits = part is not None and part.setting.may_refuse
+            self._drawn = job, replace(sketch.picture(), part=part, no_part=why)
+        return Proved(proof_of(job, report), report.diagnostics, waits)
+
+    def part(self, picture: Picture, watch: Watch) -> PartProved | None:
+        """The proof of its part, of the job that was drawn last; None: there is none."""
+        if picture.part is None:
+            return PartProved(trouble=picture.no_part) if picture.no_part else None
+        return self._parts.proved(picture.part, self._trouble, watch)
 
     def draw(self, job: Job, watch: Watch) -> Picture:
         from app.path.path_picture import picture_of
@@ -116,15 +124,6 @@ class _ProofAndPicture:
         if drawn is not None and drawn[0] is job:
             return drawn[1]
         return picture_of(timed_series(Timeline.of(job.reading, job.setup, self._machine)), watch)
-
-
-def _part_setting(job: Job, machine: Machine, shapes: Mapping[int, ToolShape]) -> PartSetting:
-    """What is known of the part, and the stock that is kept with the program."""
-    from app.compose.kept_stock import round_stock_at_hand
-    from app.compose.known_part import known_part
-
-    known = known_part(machine, job.setup.tools, shapes)
-    return replace(known, stock=round_stock_at_hand(job.source.name))
 
 
 def _read(path: Path) -> Source:

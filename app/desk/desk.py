@@ -19,7 +19,7 @@ from app.desk.alarm_log import AlarmLog
 from app.desk.machine_file_changes import FileChanges
 from app.desk.machine_status import MachineStatus, SilenceWatch, Tone, status_of
 from app.desk.program_folder import ProgramFolders
-from app.desk.program_loading import Loaded, Phase, ProgramLoader
+from app.desk.program_loading import Loaded, PartProved, Phase, ProgramLoader
 from app.desk.program_renewal import ProgramRenewal
 from app.desk.prompt_line import UNDER_WAY, YES, PromptAnswers
 from app.desk.readouts import Readout
@@ -108,6 +108,7 @@ class Desk:
     own_starts: list[OwnStart] = field(default_factory=list)
     _attached: dict[type[Attached], Attached] = field(default_factory=dict)
     _silence: SilenceWatch = field(default_factory=SilenceWatch)
+    _part_told: PartProved | None = None
 
     def __post_init__(self) -> None:
         self.log = AlarmLog(self.time_of_day)
@@ -240,6 +241,7 @@ class Desk:
         if snapshot.starts is not Starts.LINE:  # a line of MDI is no run of the program
             self.counter.see(snapshot, self.post, self.say)
             self.record.see(snapshot, loaded)
+        self._tell_part(snapshot, loaded)
         view = status_of(snapshot, self.readout, self.with_c, self.settings.units)
         if self._silence.silent(snapshot.t, self.hands.clock()):
             view = replace(view, state=SILENT, tone=Tone.ALARM)
@@ -256,7 +258,8 @@ class Desk:
             self.clear()
         if self.keyboard_away and snapshot.state in prompt_line.MOVING:
             return prompt_line.KEYBOARD_AWAY
-        return prompt_line.announced(snapshot) + self._prompt(snapshot, loaded, page)
+        announced = prompt_line.announced(snapshot, starts_here=self.starts_here)
+        return announced + self._prompt(snapshot, loaded, page)
 
     def _prompt(self, snapshot: Snapshot, loaded: Loaded, page: str) -> str:
         if self.notice:
@@ -275,6 +278,13 @@ class Desk:
         to_go = math.dist(snapshot.block_end[:2], snapshot.actual[:2])
         left = picture.time_left(snapshot.block, to_go)
         return left / snapshot.feed_override if snapshot.feed_override > 0 else float("inf")
+
+    def _tell_part(self, snapshot: Snapshot, loaded: Loaded) -> None:
+        """What the part of a program was warned of after it was started is told at once."""
+        part, told = loaded.part, self._part_told
+        self._part_told = part
+        if part is not None and part is not told and part.warned and snapshot.state in UNDER_WAY:
+            self.say(tr("LOOK: {what}; H HOLDS THE FEED").format(what=part.warned[0]))
 
     # --- program -------------------------------------------------------------------------------------
 

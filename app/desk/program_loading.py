@@ -18,6 +18,7 @@ from core.language.source import Source
 
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
+    from core.proving.part_proof import PartReport
 
 
 class Phase(StrEnum):
@@ -27,6 +28,7 @@ class Phase(StrEnum):
     READING = "READING"
     PROVING = "PROVING"
     DRAWING = "DRAWING"
+    PART = "PROVING THE PART OF"  # before it is known, the program will not start
     READY = "READY"
     REFUSED = "REFUSED"  # the proof found errors: it is shown, but it will not run
     UNREADABLE = "UNREADABLE"
@@ -34,10 +36,41 @@ class Phase(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Proved:
-    """A proof and everything that proving had to say."""
+    """A proof and everything that proving had to say.
+
+    ``waits``: so much is said of its part that an error of it may refuse the start, so it waits for that.
+    """
 
     proof: Proof
     diagnostics: tuple[Diagnostic, ...] = ()
+    waits: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class PartProved:
+    """What proving the part had to say, each finding with the weight that it has here.
+
+    ``warned``: in a few words each, what is announced before a start because it rests on something assumed.
+    ``report`` is None where the part could not be made; ``trouble`` then says why.
+    """
+
+    diagnostics: tuple[Diagnostic, ...] = ()
+    warned: tuple[str, ...] = ()
+    report: PartReport | None = None
+    trouble: str = ""
+
+    def completes(self, proof: Proof, name: str) -> Proof:
+        """The proof of the program with that of its part."""
+        errors = tuple(d.shown(name) for d in self.diagnostics if d.severity is Severity.ERROR)
+        return replace(proof, errors=(*proof.errors, *errors), warned=self.warned)
+
+    def among(self, diagnostics: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
+        """All findings, in the order of lines and columns."""
+        return tuple(sorted((*diagnostics, *self.diagnostics), key=lambda each: (each.line, each.column)))
+
+
+def _no_part(_picture: Picture, _watch: Watch) -> PartProved | None:
+    return None
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +85,7 @@ class LoadingSteps:
     prove: Callable[[Job, Watch], Proved]
     draw: Callable[[Job, Watch], Picture]
     renew_job: Callable[[Job], Job] = field(default=lambda job: job)  # the same with the offsets of now
+    part: Callable[[Picture, Watch], PartProved | None] = field(default=_no_part)  # None: it has none
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +100,7 @@ class Loaded:
     proof: Proof | None = None
     diagnostics: tuple[Diagnostic, ...] = ()
     picture: Picture | None = None
+    part: PartProved | None = None
     reached: int = 0  # blocks that proving or drawing has come to
     trouble: str = ""  # why it could not be read
 
@@ -82,7 +117,7 @@ class Loaded:
     @property
     def busy(self) -> bool:
         """Whether the worker is still at it."""
-        return self.phase in {Phase.READING, Phase.PROVING, Phase.DRAWING}
+        return self.phase in {Phase.READING, Phase.PROVING, Phase.DRAWING, Phase.PART}
 
 
 @dataclass(slots=True)
@@ -135,11 +170,27 @@ class ProgramLoader:
             request,
             lambda now: replace(now, phase=Phase.DRAWING, proof=proof, diagnostics=found, reached=0),
         )
-        self.post(GiveProof(proof))
+        if not proved.waits:
+            self.post(GiveProof(proof))
         picture = steps.draw(job, partial(self._reached, request))
-        phase = Phase.REFUSED if proof.errors else Phase.READY
-        self._publish(request, lambda now: replace(now, phase=phase, picture=picture))
+        phase = Phase.PART if proved.waits else settled(proof)
+        self._publish(request, lambda now: replace(now, phase=phase, picture=picture, reached=0))
+        self._prove_part(job, proved, picture, request)
         _keep_out_of_collections()
+
+    def _prove_part(self, job: Job, proved: Proved, picture: Picture, request: Request) -> None:
+        """What it makes of the stock; a program that did not have to wait for it may be running by now."""
+        part = self.workshop.part(picture, partial(self._reached, request))
+        found, whole = proved.diagnostics, proved.proof
+        if part is not None:
+            found, whole = part.among(found), part.completes(whole, job.source.name)
+        phase = settled(whole)
+        self._publish(
+            request,
+            lambda now: replace(now, phase=phase, proof=whole, diagnostics=found, part=part, reached=0),
+        )
+        if proved.waits or whole != proved.proof:
+            self.post(GiveProof(whole))
 
     def _reached(self, request: Request, count: float) -> None:
         self._publish(request, lambda now: replace(now, reached=int(count)))
@@ -149,6 +200,11 @@ class ProgramLoader:
 
     def _failed(self, why: str) -> None:
         self._now = replace(self._now, phase=Phase.UNREADABLE, trouble=why)
+
+
+def settled(proof: Proof) -> Phase:
+    """How far a program has come when its proof is known whole."""
+    return Phase.REFUSED if proof.errors else Phase.READY
 
 
 def _keep_out_of_collections() -> None:

@@ -11,12 +11,12 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 
 from app.desk.latest import AbandonedError, Latest, Request
-from app.desk.program_loading import Loaded, Phase, ProgramLoader
+from app.desk.program_loading import Loaded, Phase, ProgramLoader, settled
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook, secondary_offsets, tool_offsets
-from core.executor.commands import Command, Renew, UseOffsets
-from core.executor.job import Job, outdated
+from core.executor.commands import Command, GiveProof, Renew, UseOffsets
+from core.executor.job import Job, Proof, outdated
 from core.executor.snapshot import Snapshot, State
 
 # --- while the program runs ---------------------------------------------------------------------------
@@ -35,6 +35,7 @@ class RunningRenewal:
     _loads: int = 0  # of the session when it was begun
     _next: Loaded | None = None
     _shown: Loaded | None = None
+    _given: Proof | None = None  # the last that the executor has
     _told: bool = True
     _trouble: str = ""
 
@@ -62,6 +63,9 @@ class RunningRenewal:
         if ready is not self._shown:
             self._shown = ready
             self.session.adopt(ready)
+            if ready.proof is not None and ready.proof != self._given:  # with what its part was found to be
+                self._given = ready.proof
+                self.session.post(GiveProof(ready.proof))
         return True
 
     def trouble(self) -> str:
@@ -82,12 +86,33 @@ class RunningRenewal:
         job = steps.renew_job(old)
         proved = steps.prove(job, watch)
         fresh = replace(
-            now, job=job, proof=proved.proof, diagnostics=proved.diagnostics, phase=Phase.DRAWING, reached=0
+            now,
+            job=job,
+            proof=proved.proof,
+            diagnostics=proved.diagnostics,
+            phase=Phase.DRAWING,
+            part=None,
+            reached=0,
         )
-        request.publish(partial(self._publish, fresh))
-        self.session.post(Renew(job, proved.proof))
+        if not proved.waits:
+            request.publish(partial(self._publish, fresh))
+            self._give(job, proved.proof)
         picture = steps.draw(job, watch)
-        return replace(fresh, phase=Phase.REFUSED if proved.proof.errors else Phase.READY, picture=picture)
+        part = steps.part(picture, watch)
+        found, whole = proved.diagnostics, proved.proof
+        if part is not None:
+            found, whole = part.among(found), part.completes(whole, job.source.name)
+        fresh = replace(
+            fresh, picture=picture, part=part, proof=whole, diagnostics=found, phase=settled(whole)
+        )
+        if proved.waits:
+            request.publish(partial(self._publish, fresh))
+            self._give(job, whole)
+        return fresh
+
+    def _give(self, job: Job, proof: Proof) -> None:
+        self._given = proof
+        self.session.post(Renew(job, proof))
 
     def _go_on(self, request: Request, reached: float) -> None:
         request(reached)

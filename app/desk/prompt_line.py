@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from app.desk import interrupted_notice
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded, Phase
+from core.executor.job import WARNING
 from core.executor.snapshot import Alarm, Event, Snapshot, State
 from core.language.diagnostics import Severity
 
@@ -54,9 +55,13 @@ def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str) -> str:
     return standing.get(snapshot.state) or _idle(snapshot, loaded, start)
 
 
-def announced(snapshot: Snapshot) -> str:
-    """What goes before everything else: what will start with the next start; empty when nothing will."""
-    return "".join(f"{text} · " for text in snapshot.announced)
+def announced(snapshot: Snapshot, *, starts_here: bool = True) -> str:
+    """What goes before everything else: what will start with the next start; empty when nothing will.
+
+    What the proof has warned of is told where a cycle can be started.
+    """
+    told = (text for text in snapshot.announced if starts_here or not text.startswith(WARNING))
+    return "".join(f"{text} · " for text in told)
 
 
 def alarm_of(snapshot: Snapshot, release: str) -> str:
@@ -131,7 +136,7 @@ def remedy(loaded: Loaded, prompt: str) -> str:
     errors = loaded.errors
     if errors:
         return errors[0].hint if prompt == refusal(loaded) else ""
-    if not prompt.startswith("TO START"):
+    if "TO START" not in prompt:
         return ""
     warned = (each for each in loaded.diagnostics if each.check and each.severity is Severity.WARNING)
     first = next(warned, None)

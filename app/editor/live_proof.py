@@ -87,14 +87,21 @@ class LiveProof:
         self.worker.close()
 
     def _prove(self, number: int, source: Source, block_delete: bool, request: Request) -> Findings:
-        """On the worker. The findings are shown before the picture is drawn."""
+        """On the worker. The findings are shown before the picture is drawn, those of the part last."""
         job = self.workshop.make_job(source, block_delete)
         proved = self.workshop.prove(job, request)
         found, proof = proved.diagnostics, proved.proof
         before = self._now.picture
         findings = Findings(number, found, by_line(found), before, proof.cycle_time, proof.blocks)
         request.publish(partial(self._show, findings))
-        return replace(findings, picture=self.workshop.draw(job, request))
+        picture = self.workshop.draw(job, request)
+        findings = replace(findings, picture=picture)
+        request.publish(partial(self._show, findings))
+        part = self.workshop.part(picture, request)
+        if part is None:
+            return findings
+        found = part.among(found)
+        return replace(findings, diagnostics=found, by_line=by_line(found))
 
     def _show(self, findings: Findings) -> None:
         if findings.number >= self._now.number:

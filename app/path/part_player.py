@@ -90,7 +90,7 @@ class PartPlayer:
             return
         self.worker.give_up()
         before, self._picture = self._picture, picture
-        self._asked, self.playing, self.trouble = None, False, ""
+        self._asked, self.playing, self.trouble = None, False, picture.no_part if picture is not None else ""
         if picture is None or before is None:
             self._shown = None
         if not self.bound:

@@ -75,6 +75,8 @@ def views_of(picture: Picture, *, part: bool = False) -> list[View]:
     more = [aspect for aspect in (Aspect.FACE, Aspect.SIDE) if polyline_of(picture, aspect) is not None]
     both = [(Aspect.PATH, aspect) for aspect in more]
     views = [*both, *((aspect,) for aspect in more), (Aspect.PATH,)]
+    if part and picture.part is None and picture.no_part:
+        return [*views, (Aspect.SECTION,)]  # where it is told
     return [*views, (Aspect.SECTION,), (Aspect.SOLID,)] if part and picture.part is not None else views
 
 

@@ -48,6 +48,7 @@ class Picture(Polyline):
     metric: bool = False
     scene: Scene | None = None  # of a mill
     part: PartMoves | None = None  # what the part can be made of
+    no_part: str = ""  # why it is not made
 
     def block_of_line(self, line: int) -> int:
         """The block that ends the first pass through a source line, or through the nearest one before that

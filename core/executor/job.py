@@ -37,9 +37,17 @@ class Job:
     part_of: str = ""  # digest of the program's job, when this one begins in the middle of it
 
 
+WARNING = "WARNING: "
+"""What an announcement of something that a proof has warned of begins with."""
+
+
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """What proving said of the job with this digest."""
+    """What proving said of the job with this digest.
+
+    ``warned`` says in a few words each what may go wrong as far as something is assumed: it refuses no start,
+    but is announced before it.
+    """
 
     digest: str
     errors: tuple[str, ...]
@@ -47,6 +55,7 @@ class Proof:
     cycle_time: float = 0.0
     tools: tuple[int, ...] = ()  # offsets the program asks for
     needs: tuple[Need, ...] = ()  # what it asks of the machine beyond straight lines
+    warned: tuple[str, ...] = ()
 
 
 def make_job(source: Source, setup: Setup, whole: Job | None = None) -> Job:

@@ -14,14 +14,14 @@ from core.executor.handwheel import Handwheel
 from core.executor.homing_order import Homing
 from core.executor.interrupted_job import CLOSED, ESTOP, InterruptedJob
 from core.executor.interruption_watch import Note
-from core.executor.job import Job
+from core.executor.job import WARNING, Job
 from core.executor.jogging import jogger_of
 from core.executor.machine_context import MachineContext
 from core.executor.program_run import ProgramRun
 from core.executor.raised_alarm import AlarmError, alarm_and_reaction, log_alarm, log_line
 from core.executor.read_ahead import ProgramPass
 from core.executor.safe_stop import SafeStop
-from core.executor.snapshot import ACTIVE, BY_HAND, CYCLE, STOPPED, Event, State, demand_allowed
+from core.executor.snapshot import ACTIVE, BY_HAND, CYCLE, STOPPED, Event, Starts, State, demand_allowed
 from core.executor.start_conditions import SPINDLE, Announcement, Starting
 from core.executor.supervision import OutputsWatch, Supervisor
 from core.interpreter.job_setup import Setup
@@ -54,7 +54,7 @@ class MachineControl:
         self.homing = Homing(context)
         self.announcement = Announcement()
         self.disturbance = OutputsWatch(context, self.program_run)
-        self.announcement.sources += [self._spindle_starts, self.disturbance.starts]
+        self.announcement.sources += [self._spindle_starts, self.disturbance.starts, self._warned]
         self.meant_at = -MEANT  # when what the next start begins was answered for
         self._giving_up = False
         self._hindered = ""  # by what a start was kept, a tick ago
@@ -150,6 +150,15 @@ class MachineControl:
             way = "FORWARD" if rpm > 0.0 else "REVERSE"
             text = f"THE SPINDLE STARTS AT {abs(rpm):.0f} RPM {way}"
             yield Starting(SPINDLE, text if spindle.auto else f"SWITCH TO AUTO: {text}", spindle.permit, rpm)
+
+    def _warned(self) -> Iterator[Starting]:
+        """What the proof of the program that would begin has warned of: it is read before it is begun."""
+        status = self.status
+        job, proof = status.job, status.proof
+        begins = self.state is State.IDLE and status.starts is not Starts.LINE
+        if begins and job is not None and proof is not None and proof.digest == job.digest and proof.warned:
+            more = f" ({len(proof.warned) - 1} MORE)" if len(proof.warned) > 1 else ""
+            yield Starting(f"warned {job.digest}", f"{WARNING}{proof.warned[0]}{more}", lambda: None)
 
     def feed_hold(self, reason: str, by: str = "") -> None:
         """Hold the cycle, end a jog, brake a homing, take the handwheel away.

@@ -19,7 +19,8 @@ class Diagnostic:
     """One finding. Lines and columns count from 1; column 0 speaks of the whole line, line 0 of the file.
 
     ``check`` names the check of the part that has found it, ``n`` the elementary block (0: none). One that
-    repeats is told once: ``count`` says how often, and its place is the first.
+    repeats is told once: ``count`` says how often, and its place is the first. ``assumed`` names what it
+    rests on that nobody has said (``stock``, ``T3``), ``silenced`` why it is only a note.
     """
 
     line: int
@@ -31,6 +32,8 @@ class Diagnostic:
     check: str = ""
     n: int = 0
     count: int = 1
+    assumed: tuple[str, ...] = ()
+    silenced: str = ""
 
     @property
     def text(self) -> str:

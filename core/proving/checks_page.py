@@ -14,6 +14,9 @@ Written from `core/proving/part_checks.py` by `python -m core.proving.checks_pag
 finding has its id, line, elementary block and remedy; an error refuses the program. The metal is exact to
 .004 mm (.00016 in) along Z and .0015 mm (.00006 in) in r.
 
+At a machine an error refuses Cycle Start where what it rests on was said: the stock (command line, store, the
+page PART), the shape of the tool. Where that is assumed it is a warning, announced before the start.
+
 What nobody has said is assumed and told: the stock as a bar just larger than what is cut (a tube where a
 boring tool begins without a drill), a tool by the comment beside its `T` or by its moves, with a slim
 insert and no holder. What an assumption cannot know is not checked: holders and shanks of tools without a
@@ -43,6 +46,8 @@ def _row(name: str, check: Check) -> str:
 def _lines(name: str, check: Check) -> Iterator[str]:
     yield f"**{name}** ({check.severity}): {check.looks_for}  "
     yield f"Found when: {check.decides}  "
+    if name in CHECKS:
+        yield f"Rests on: {' and '.join(check.rests_on) or 'what the machine file says'}.  "
     yield f"Do: {check.remedy}"
     yield ""
 

@@ -7,15 +7,21 @@ from dataclasses import dataclass
 
 from core.language.diagnostics import Severity
 
+STOCK, TOOL = "stock", "tool"
+
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One check: what it looks for, how it decides, and what to do when it finds something."""
+    """One check: what it looks for, how it decides, and what to do when it finds something.
+
+    ``rests_on`` is what it takes from stock and tools: where nobody has said them, it is only assumed.
+    """
 
     severity: Severity
     looks_for: str
     decides: str
     remedy: str
+    rests_on: tuple[str, ...] = (STOCK, TOOL)
 
 
 _ERROR, _WARNING = Severity.ERROR, Severity.WARNING
@@ -44,18 +50,21 @@ CHECKS: Mapping[str, Check] = {
         "A tool, or its holder, runs into chuck, jaws or collet.",
         "An outline comes into the contour that the machine file gives under [clamping].",
         "Let the part stick out further, or stop earlier.",
+        (TOOL,),
     ),
     "neighbour-tool": Check(
         _ERROR,
         "Another tool of the gang plate runs into the stock.",
         'With [tooling] kind = "gang": its outline, placed by its tool offset, overlaps metal.',
         "Take another way there, a shorter tool, or another place on the plate.",
+        (STOCK,),
     ),
     "spindle-overspeed": Check(
         _ERROR,
         "The spindle turns faster than chuck or collet may.",
         "A commanded speed over max_rpm under [clamping] of the machine file.",
         "Lower S, or limit G96 by G77.",
+        (),
     ),
     "stock-whips": Check(
         _WARNING,
@@ -68,6 +77,7 @@ CHECKS: Mapping[str, Check] = {
         "The part is larger than its stock: a contour is cut in the air outside the bar.",
         "A feed along Z beside the stock, .1 in and longer, stays .08 in and more outside of it.",
         "Check the stock, and X as a radius or a diameter.",
+        (STOCK,),
     ),
     "cuts-air": Check(
         _WARNING,
@@ -136,6 +146,7 @@ CHECKS: Mapping[str, Check] = {
         "A tap is not fed by its pitch.",
         "The feed of a turn is off by more than .08 of the pitch that its shape or its comment gives.",
         "Write F as the pitch: 1 divided by the threads per inch.",
+        (TOOL,),
     ),
     "tap-reversal": Check(
         _ERROR,
@@ -143,6 +154,7 @@ CHECKS: Mapping[str, Check] = {
         "It leaves by a rapid, with the spindle stopped or not reversed, by another feed, or the spindle "
         "needs more than .5 in to stand. Not asked of a holder that reverses by itself, as its comment says.",
         "Reverse the spindle at the bottom and feed out by the pitch.",
+        (TOOL,),
     ),
 }
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.modal_state import Modal
-from core.language.diagnostics import Diagnostic
+from core.language.diagnostics import Diagnostic, Severity
 from core.part.bar_whirl import whirling_rpm
 from core.part.clamping import Clamping
 from core.part.cutter import Cutter
@@ -21,7 +21,7 @@ from core.part.tool_shape import ToolShape
 from core.part.turned_part import NOTHING, Cut, Piece, TurnedPart
 from core.proving.edge_checks import EdgeChecks
 from core.proving.mill_moves import MillMove
-from core.proving.part_checks import CHECKS
+from core.proving.part_checks import CHECKS, Check
 from core.proving.thread_checks import Found, ThreadChecks
 from core.proving.tip_moves import TipMove
 
@@ -46,6 +46,8 @@ class PartFindings:
     clamping: Clamping | None = None
     neighbours: Neighbours | None = None
     threads: ThreadChecks = field(default_factory=ThreadChecks)
+    not_said: Callable[[Check], tuple[str, ...]] = lambda _check: ()
+    silenced: Mapping[str, str] = field(default_factory=dict)  # why, by check
     _edges: EdgeChecks = field(init=False)
     _found: dict[tuple[str, int], Diagnostic] = field(default_factory=dict)
     _chuck: TurnedPart | None = None
@@ -187,10 +189,11 @@ class PartFindings:
 
     def _tell(self, check: str, line: int, n: int, text: str) -> None:
         if len(self._found) < _MOST and (check, line) not in self._found:
-            entry = CHECKS[check]
-            self._found[check, line] = Diagnostic(
-                line, 0, entry.severity, check, text, entry.remedy, check=check, n=n
-            )
+            entry, why = CHECKS[check], self.silenced.get(check, "")
+            weight = Severity.NOTE if why else entry.severity
+            remedy = f"Silenced: {why}" if why else entry.remedy
+            found = Diagnostic(line, 0, weight, check, text, remedy, check=check, n=n, silenced=why)
+            self._found[check, line] = replace(found, assumed=self.not_said(entry))
 
 
 def _executed(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[Cut, Cut]:

@@ -21,12 +21,9 @@ from core.part.surface_points import Solid, solid_of, turned_solid
 from core.part.swept_edge import FloatArray, Point
 from core.part.tool_outline import ToolOutline, outline
 from core.part.turned_part import TurnedPart
-from core.proving.part_proof import Making, PartSetting, Tools
+from core.proving.part_proof import MOST_MOVES, Making, PartSetting, Tools
 from core.proving.program_timeline import MotionSpan, Part, RestSpan
 from core.proving.tip_moves import LiveStep, Step, Steps, TipMove
-
-MOST_BLOCKS = 60_000
-"""Blocks of a program whose part is kept; of a longer one there is none."""
 
 _EVERY = 16  # blocks from one copy to the next, at first
 _MOST_COPIES = 96
@@ -47,7 +44,7 @@ class PartMoves:
 
 @dataclass(slots=True)
 class PartGathering:
-    """Collects the blocks of a pass through a program, as long as they are not too many."""
+    """Collects the blocks of a pass through a program, as long as they are not too many for a desk."""
 
     setting: PartSetting
     _parts: list[Part] = field(default_factory=list)
@@ -60,10 +57,18 @@ class PartGathering:
         else:
             parts = ([span.block],) if span.block is not None else ()
         self._blocks += sum(len(part) for part in parts)
-        if self._blocks <= MOST_BLOCKS:
+        if self._blocks <= MOST_MOVES:
             self._parts += parts
         else:
             self._parts.clear()
+
+    @property
+    def too_many(self) -> str:
+        """Why there is no part, in a sentence; empty where it can be made."""
+        if self._blocks <= MOST_MOVES:
+            return ""
+        way = "'turndesk prove --stock' makes that of a longer one"
+        return f"{self._blocks} blocks: the desk makes the part of up to {MOST_MOVES}; {way}"
 
     def moves(self) -> PartMoves | None:
         """What was gathered; None: nothing, or too much."""

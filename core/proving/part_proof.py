@@ -6,7 +6,7 @@ All moves are gathered first, because stock and tools that nobody has described 
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from core.interpreter.actions import Collet, ToolChange
@@ -27,6 +27,7 @@ from core.proving.assumed_stock import assumed_stock
 from core.proving.assumed_tools import Assumed, ToolUse, assumed_tool, releases
 from core.proving.mill_moves import mill_move
 from core.proving.milling import Milling
+from core.proving.part_checks import STOCK, TOOL, Check
 from core.proving.part_findings import PartFindings
 from core.proving.program_timeline import MotionSpan, Part, RestSpan
 from core.proving.proof_report import Report, in_order
@@ -36,7 +37,12 @@ from core.proving.tip_moves import LiveStep, Place, Step, Steps, TipMove
 from core.proving.unchecked_parts import unchecked
 
 MOST_MOVES = 50_000
-"""Of a longer program the part is made when somebody has said its stock: a million take half a minute."""
+"""Of a longer program the part is made when somebody has said its stock: a million take half a minute.
+
+On the desk, where it would be in the way of a machine, never: ``part_history``.
+"""
+
+_WATCHED = 200  # moves between two looks at whether the part is still wanted
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +57,12 @@ class PartSetting:
     tips: Mapping[int, Place] = field(default_factory=dict)  # as ``Steps`` has them
     drives: Drives = UNKNOWN
     step: float = STEP  # width of a column of the part, mm
+    silenced: Mapping[str, str] = field(default_factory=dict)  # why, by check
+
+    @property
+    def may_refuse(self) -> bool:
+        """Whether enough is said for an error of the part to rest on nothing that is assumed."""
+        return self.stock is not None or self.clamping is not None
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,9 +120,9 @@ def _not_made(moves: int) -> PartReport:
 class PartProof:
     """Gathers the blocks of a pass, and makes the part of them."""
 
-    def __init__(self, setting: PartSetting) -> None:
+    def __init__(self, setting: PartSetting, parts: Iterable[Part] = ()) -> None:
         self._setting = setting
-        self._parts: list[Part] = []
+        self._parts: list[Part] = list(parts)
 
     def see(self, span: MotionSpan | RestSpan) -> None:
         """The next span of the program."""
@@ -119,13 +131,18 @@ class PartProof:
         elif span.block is not None:
             self._parts.append([span.block])
 
-    def report(self) -> PartReport:
-        """The part, when the whole program has been seen; of a very long one only where a stock is said."""
+    def report(self, watch: Callable[[float], None] | None = None) -> PartReport:
+        """The part, when the whole program has been seen; of a very long one only where a stock is said.
+
+        ``watch`` is told how many moves are done, now and then, and may raise to give up.
+        """
         moves = sum(len(part) for part in self._parts)
         if moves > MOST_MOVES and self._setting.stock is None:
             return _not_made(moves)
         making, steps = self._begun()
-        for step in steps:
+        for done, step in enumerate(steps):
+            if watch is not None and done % _WATCHED == 0:
+                watch(done)
             making.see(step)
         return making.report()
 
@@ -259,6 +276,7 @@ class Making:
     def __init__(self, tools: Tools, stock: Stock | None, setting: PartSetting | None = None) -> None:
         setting = setting or PartSetting()
         self._tools, self._stock, self._step = tools, stock, setting.step
+        self._stock_said = setting.stock is not None
         self._cutters: dict[int, Cutter | None] = {}
         self._tool = 0
         self._begun = False
@@ -273,6 +291,8 @@ class Making:
             setting.clamping,
             Neighbours(setting.shapes, setting.gang) if setting.gang else None,
             ThreadChecks(setting.drives, tools.releases),
+            self._not_said,
+            setting.silenced,
         )
         self._unchecked = unchecked(tools.uses, setting.shapes, setting.clamping, setting.gang)
         self.milling: Milling | None = None  # from the first cut of a live tool on
@@ -299,6 +319,12 @@ class Making:
         part, milling = self.part, self.milling
         turned = part.low.nbytes + part.high.nbytes if part is not None else 0
         return turned + (milling.nbytes if milling is not None else 0)
+
+    def _not_said(self, check: Check) -> tuple[str, ...]:
+        """What a finding of this check rests on and nobody has described, at the tool in work."""
+        stock = (STOCK,) if STOCK in check.rests_on and not self._stock_said else ()
+        described = TOOL not in check.rests_on or self._tools.described(self._tool)
+        return stock if described else (*stock, f"T{self._tool}")
 
     def copy(self) -> Making:
         """The same once more, to be gone on with later; what never changes is shared."""

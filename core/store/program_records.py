@@ -164,7 +164,7 @@ def proved(connection: sqlite3.Connection, program: str, result: str, planned: f
 
 
 def renamed(connection: sqlite3.Connection, old: str, new: str) -> None:
-    """Versions, count, record, stock, notes and measured parts go with a program that gets another name.
+    """Versions, count, record, part, notes and measured parts go with a program that gets another name.
 
     Versions and features that are kept under the new name already stay, then those of the old name stay too.
     """
@@ -184,7 +184,7 @@ def renamed(connection: sqlite3.Connection, old: str, new: str) -> None:
     for table in ("runs", "part_counts"):
         connection.execute(f"DELETE FROM {table} WHERE program = ?", (new,))
         connection.execute(f"UPDATE {table} SET program = ? WHERE program = ?", (new, old))
-    for key in (stock_key, notes_key):
+    for key in (stock_key, part_key, notes_key):
         connection.execute("DELETE FROM settings WHERE key = ?", (key(new),))
         connection.execute("UPDATE settings SET key = ? WHERE key = ?", (key(new), key(old)))
 
@@ -197,6 +197,11 @@ def stock_key(program: str) -> str:
 def notes_key(program: str) -> str:
     """The setting that holds what the setup person has noted about a program."""
     return f"notes:{program}"
+
+
+def part_key(program: str) -> str:
+    """The setting that holds what else is kept of a program's part: stick-out, remark, silenced checks."""
+    return f"part:{program}"
 
 
 def _row(connection: sqlite3.Connection, program: str) -> None:

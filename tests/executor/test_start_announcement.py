@@ -7,8 +7,9 @@ import dataclasses
 import pytest
 
 from app.compose.machine_files import load_machine
-from core.executor.commands import CycleStart, FeedHold, Reset, SpindleLimit
-from core.executor.snapshot import State
+from core.executor.commands import CycleStart, FeedHold, GiveProof, Prepare, Reset, SpindleLimit
+from core.executor.job import Proof
+from core.executor.snapshot import Starts, State
 from core.executor.start_conditions import TIME_TO_READ
 from tests.executor.rig import TICK, Rig
 
@@ -348,3 +349,62 @@ def test_a_refusal_ends_with_its_cause() -> None:
     rig.sim.machine.set_input("guard", True)
     rig.run(0.1)
     assert rig.shot.start_refused == ""
+
+
+# --- what the proof has warned of ----------------------------------------------------------------------
+
+
+def warned(*what: str) -> Rig:
+    """A program is loaded, and its proof has warned of something."""
+    rig = Rig()
+    job = rig.load(CUT)
+    rig.ready()
+    rig.run(1.0)
+    rig.post(GiveProof(Proof(job.digest, (), warned=what)))
+    return rig
+
+
+def test_what_was_warned_of_is_read_before_the_first_start() -> None:
+    rig = warned("LINE 3: RAPID-INTO-STOCK", "LINE 4: CUTS-AIR")
+    said = "WARNING: LINE 3: RAPID-INTO-STOCK (1 MORE)"
+    rig.post(CycleStart())
+    assert rig.state is State.IDLE
+    assert rig.shot.start_refused == f"look first: {said}; then start again"
+    assert rig.shot.announced == (said,)
+    rig.run(TIME_TO_READ)
+    rig.post(CycleStart())
+    assert rig.state in {State.RUN, State.WAIT}
+    assert rig.shot.announced == ()
+
+
+def test_it_stands_again_between_two_parts_and_keeps_nobody_from_the_next() -> None:
+    rig = warned("LINE 3: RAPID-INTO-STOCK")
+    rig.run(TIME_TO_READ)
+    rig.post(CycleStart())
+    rig.until(State.IDLE)
+    rig.run(TIME_TO_READ + TICK)
+    assert rig.shot.announced == ("WARNING: LINE 3: RAPID-INTO-STOCK",)
+    rig.post(CycleStart())
+    assert rig.state in {State.RUN, State.WAIT}
+
+
+def test_it_is_no_matter_of_a_line_of_mdi_nor_of_another_program() -> None:
+    rig = warned("LINE 3: RAPID-INTO-STOCK")
+    rig.post(Prepare(Starts.LINE))
+    assert rig.shot.announced == ()
+    rig.post(Prepare(Starts.PROGRAM))
+    assert rig.shot.announced
+    rig.load(CUT.replace("1500", "1200"))
+    assert rig.shot.announced == ()
+
+
+def test_going_on_after_a_hold_announces_nothing_of_it() -> None:
+    rig = warned("LINE 3: RAPID-INTO-STOCK")
+    rig.run(TIME_TO_READ)
+    rig.post(CycleStart())
+    rig.until_true(lambda shot: shot.actual[1] < -0.5)
+    rig.post(FeedHold())
+    rig.until(State.HOLD)
+    assert rig.shot.announced == ()
+    rig.post(CycleStart())
+    assert rig.state in {State.RUN, State.WAIT}

@@ -10,6 +10,7 @@ import resources
 from app.compose.machine_files import load_machine, parse_machine
 from app.compose.workshop import workshop
 from app.path.part_player import FAST, PartPlayer, PartPlayers
+from app.path.path_aspects import Aspect, views_of
 from app.path.path_picture import Picture
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
@@ -196,3 +197,15 @@ def test_players_end_with_the_desk() -> None:
     players.close()
     players[0].show(picture(SHAFT))
     assert not players[0].worker.busy
+
+
+def test_of_a_program_that_is_too_long_the_view_says_why(
+    player: PartPlayer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("core.proving.part_history.MOST_MOVES", 5)
+    made = picture(SHAFT)
+    assert views_of(made, part=True)[-1] == (Aspect.SECTION,)
+    assert views_of(made) == [(Aspect.PATH,)]
+    player.show(made)
+    assert player.trouble.startswith("12 blocks")
+    assert settled(player).shown is None

@@ -154,7 +154,7 @@ def test_work_that_is_given_up_can_be_gone_on_with() -> None:
 
 
 def test_of_a_program_that_is_too_long_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(part_history, "MOST_BLOCKS", 5)
+    monkeypatch.setattr(part_history, "MOST_MOVES", 5)
     assert moves(SHAFT) is None
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from app.desk.kept_part import KeptPart, kept_part
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_export import export
@@ -112,3 +113,21 @@ def test_the_stock_of_a_program_is_kept_renamed_and_forgotten(tmp_path: Path) ->
         assert store.stock_of("KNOB") == ""
         with pytest.raises(StoreError, match="reading only"):
             store.keep_stock("KNOB", "bar:1")
+
+
+def test_what_is_kept_of_a_part_goes_with_its_program(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        said = KeptPart("bar:1", 20.0, "bars of the left rack", {"cuts-air": "it waits there"})
+        for key, value in said.settings("PIN").items():
+            store.set_setting(key, value).result()
+        store.rename_program("PIN", "KNOB").result()
+        assert kept_part(store.setting, "PIN") == KeptPart()
+        assert kept_part(store.setting, "KNOB") == said
+
+
+def test_what_nobody_could_have_kept_of_a_part_counts_as_not_there() -> None:
+    kept: dict[str, object] = {
+        "stock:PIN": 3,
+        "part:PIN": {"stick_out": True, "remark": 1, "silenced": "all"},
+    }
+    assert kept_part(kept.get, "PIN") == KeptPart()

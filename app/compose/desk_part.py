@@ -1,0 +1,120 @@
+"""The proof of the part on the desk: what is known of it, and what each finding weighs there.
+
+Beside the proof of the program, and after it: decision 0045 says what waits for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.desk.kept_part import NOTHING_KEPT, KeptPart
+from app.desk.latest import AbandonedError, Watch, sentence
+from app.desk.program_loading import PartProved
+from app.desk.translation import tr
+from core.language.diagnostics import Diagnostic, Severity
+from core.store.store_errors import StoreError
+
+if TYPE_CHECKING:
+    from core.executor.job import Job
+    from core.language.source import Source
+    from core.machine.machine_model import Machine
+    from core.part.tool_shape import ToolShape
+    from core.proving.part_history import PartMoves
+    from core.proving.part_proof import PartReport, PartSetting
+
+Shapes = Callable[[], Mapping[int, "ToolShape"]]
+"""The shapes of tools, by T, as they are when it is called; on the worker."""
+Kept = Callable[[str], KeptPart]
+"""What is kept of a program's part, by its name; on the worker."""
+
+NOT_MADE, NO_STOCK = "part-not-made", "stock-unusable"
+
+
+def nothing_kept(_program: str) -> KeptPart:
+    """Of no program is anything kept."""
+    return NOTHING_KEPT
+
+
+@dataclass(frozen=True, slots=True)
+class PartDesk:
+    """What the desk knows of parts on this machine. ``read`` reads a program that leaves another's stock."""
+
+    machine: Machine
+    shapes: Shapes
+    kept: Kept
+    read: Callable[[Path], Source]
+
+    def setting(self, job: Job, watch: Watch) -> tuple[PartSetting, Diagnostic | None]:
+        """What has been said of stock, tools and clamping, and what of it cannot be used."""
+        from app.compose.known_part import known_part, with_kept_clamping
+        from app.compose.said_stock import Around, said_stock
+
+        setting = known_part(self.machine, job.setup.tools, self.shapes())
+        try:
+            kept = self.kept(job.source.name)
+        except StoreError as error:
+            return setting, _unusable(str(error))
+        setting = with_kept_clamping(setting, self.machine, kept)
+        if not kept.stock:
+            return setting, None
+        try:
+            around = Around(self.read, job.setup, self.machine, setting, watch)
+            return replace(setting, stock=said_stock(kept.stock, around)), None
+        except ValueError as error:  # of the words, or of a program that cannot be read
+            return setting, _unusable(str(error))
+
+    def proved(self, moves: PartMoves, trouble: Diagnostic | None, watch: Watch) -> PartProved:
+        """The part, as far as the setting of the moves says it. A proof that fails is told as a warning."""
+        from core.proving.part_proof import PartProof
+
+        try:
+            report = PartProof(moves.setting, moves.parts).report(watch)
+        except AbandonedError:
+            raise
+        except Exception as error:  # noqa: BLE001 - the program itself is proved, and may be run
+            failed = Diagnostic(
+                0,
+                0,
+                Severity.WARNING,
+                NOT_MADE,
+                f"The part could not be proved: {sentence(error)}.",
+                "Say another stock, or other shapes of tools.",
+            )
+            return _weighed([failed], None)
+        return _weighed([*([trouble] if trouble else []), *report.findings], report)
+
+
+def _unusable(why: str) -> Diagnostic:
+    return Diagnostic(
+        0,
+        0,
+        Severity.WARNING,
+        NO_STOCK,
+        f"The stock that was said cannot be used, and is assumed: {why}.",
+        "Say it anew on the page PART.",
+    )
+
+
+def _weighed(found: Iterable[Diagnostic], report: PartReport | None) -> PartProved:
+    """With the weight that each finding has on the desk, and what of them is announced before a start."""
+    seen = [(each, as_known(each)) for each in found]
+    warned = [now for was, now in seen if was is not now or was.code in {NOT_MADE, NO_STOCK}]
+    return PartProved(tuple(now for _, now in seen), tuple(_in_short(each) for each in warned), report)
+
+
+def as_known(found: Diagnostic) -> Diagnostic:
+    """An error that rests on what nobody has said is a warning at a machine."""
+    if found.severity is not Severity.ERROR or not found.assumed:
+        return found
+    what = ", ".join(found.assumed)
+    return replace(found, severity=Severity.WARNING, message=f"{found.message} Assumed: {what}.")
+
+
+def _in_short(found: Diagnostic) -> str:
+    """What is announced; the sentence with its remedy stands in the list of findings."""
+    if not found.line:
+        return tr("THE PART IS NOT PROVED AS IT WAS SAID")
+    return tr("LINE {line}: {check}").format(line=found.line, check=found.check.upper())

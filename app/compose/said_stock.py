@@ -1,0 +1,63 @@
+"""The stock that somebody has said: a bar or tube, the profile of a file, or what another program leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from core.part.stock_spec import StockError, profile_stock, stock_spec
+
+if TYPE_CHECKING:
+    from core.interpreter.job_setup import Setup
+    from core.language.source import Source
+    from core.machine.machine_model import Machine
+    from core.part.stock import Stock
+    from core.part.stock_spec import StockSpec
+    from core.proving.part_proof import PartSetting
+    from core.proving.prove_program import Progress
+
+
+class Around(NamedTuple):
+    """What a program before is proved with: how it is read, and its circumstances.
+
+    ``read`` may raise what its caller takes; ``go_on`` is told how far that proof has come.
+    """
+
+    read: Callable[[Path], Source]
+    setup: Setup
+    machine: Machine
+    setting: PartSetting
+    go_on: Progress | None = None
+
+
+def said_stock(text: str, around: Around) -> Stock | StockSpec:
+    """What the words mean. Raises StockError with what is wrong in them."""
+    spec = stock_spec(text)
+    if spec.after:
+        return _left_by(Path(spec.after), around, spec)
+    if not spec.profile:
+        return spec
+    path = Path(spec.profile)
+    try:
+        points = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise StockError(f"{path} cannot be read ({error.strerror}); check name and rights") from error
+    except UnicodeDecodeError as error:
+        raise StockError(f"{path} is no text; a profile is a CSV file of z, r") from error
+    return profile_stock(spec.given, points, 25.4, spec.allowance)
+
+
+def _left_by(path: Path, around: Around, spec: StockSpec) -> Stock:
+    """What the program before leaves: its last part."""
+    from core.part.stock import Stock
+    from core.proving.part_proof import prove_with_part
+
+    source = around.read(path)
+    report, part = prove_with_part(source, around.setup, around.machine, around.setting, around.go_on)
+    if report.errors or part is None or part.last is None:
+        first = f": {report.errors[0].text}" if report.errors else ""
+        raise StockError(f"{spec.given}: {path} leaves no part{first}")
+    outside = tuple((z + spec.allowance, r) for z, r in reversed(part.last.outside))
+    bore = tuple((z + spec.allowance, r) for z, r in reversed(part.last.bore or ()))
+    return Stock(spec.given, outside, bore)

@@ -1,0 +1,240 @@
+"""The part of a program on the desk: after its proof, what waits for it, and what is only announced."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.compose.desk_part import NO_STOCK, NOT_MADE
+from app.compose.machine_files import load_machine
+from app.compose.workshop import workshop
+from app.desk.kept_part import KeptPart
+from app.desk.latest import Watch
+from app.desk.program_loading import Loaded, PartProved, Phase, ProgramLoader
+from app.desk.program_renewal import RunningRenewal
+from app.path.path_picture import Picture
+from core.executor.commands import Command, GiveProof, LoadJob, Renew
+from core.executor.snapshot import Snapshot, State
+from core.interpreter.job_setup import ToolOffset
+from core.language.diagnostics import Severity
+from core.machine.machine_model import ClampingModel, Machine
+from core.part.tool_shape import ToolKind, ToolShape
+from core.proving import part_history
+
+LIMIT = 20.0
+SHAFT = "G90G94F100\nM03S1500\nT1\nX.6Z.05\nX.4\nG95F.008Z-.5\nX.45Z-.6\nX.55\nG94F100Z.05\nM30\n"
+SLIP = SHAFT.replace("M30", "X.3\nG00Z-.3\nX.55\nM30")  # the G00 of line 11 goes into metal
+TURNING = ToolShape(ToolKind.TURNING, tip=3, insert="DCMT11T304")
+BAR = KeptPart(stock="bar:1.0+.02")
+TOOLS = {1: ToolOffset(-12.7, -50.8)}
+
+
+class Desk:
+    """Loads real programs as the desk does; what it posts is kept."""
+
+    def __init__(
+        self, kept: KeptPart, shapes: Mapping[int, ToolShape], folder: Path, machine: Machine | None = None
+    ) -> None:
+        self.folder, self.posted = folder, list[Command]()
+        steps = workshop(
+            machine or load_machine(None),
+            lambda: (TOOLS, {}, {}),
+            shapes=lambda: shapes,
+            kept=lambda _program: kept,
+        )
+        self.session = ProgramLoader(steps, self.posted.append)
+
+    def load(self, text: str) -> Loaded:
+        (self.folder / "part.nc").write_text(text)
+        self.session.load(self.folder / "part.nc")
+        return self.session.settled(LIMIT)
+
+    @property
+    def kinds(self) -> list[type[Command]]:
+        return [type(command) for command in self.posted]
+
+
+Make = Callable[..., Desk]
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> Iterator[Make]:
+    made: list[Desk] = []
+
+    def make(
+        kept: KeptPart | None = None,
+        shapes: Mapping[int, ToolShape] | None = None,
+        machine: Machine | None = None,
+    ) -> Desk:
+        made.append(Desk(kept or KeptPart(), shapes or {}, tmp_path, machine))
+        return made[-1]
+
+    yield make
+    for each in made:
+        each.session.close()
+
+
+def part_of(loaded: Loaded) -> PartProved:
+    assert loaded.part is not None
+    return loaded.part
+
+
+def test_a_sound_program_has_nothing_to_announce_and_is_given_once(desk: Make) -> None:
+    bench = desk()
+    loaded = bench.load(SHAFT)
+    assert (loaded.phase, loaded.diagnostics, part_of(loaded).warned) == (Phase.READY, (), ())
+    assert bench.kinds == [LoadJob, GiveProof]
+
+
+def test_what_rests_on_an_assumed_bar_is_a_warning_that_is_announced(desk: Make) -> None:
+    bench = desk()
+    loaded = bench.load(SLIP)
+    (found,) = loaded.diagnostics
+    assert (found.line, found.check, found.severity) == (11, "rapid-into-stock", Severity.WARNING)
+    assert found.assumed == ("stock", "T1")
+    assert found.message.endswith("Assumed: stock, T1.")
+    assert "G00 left on" in found.hint
+    assert found.n > 0
+    assert loaded.phase is Phase.READY
+    assert bench.kinds == [LoadJob, GiveProof, GiveProof]
+    first, last = (command.proof for command in bench.posted if isinstance(command, GiveProof))
+    assert first.warned == ()  # it may be started before its part is known
+    assert (last.errors, last.warned) == ((), ("LINE 11: RAPID-INTO-STOCK",))
+
+
+def test_a_stock_alone_does_not_make_an_error_of_it(desk: Make) -> None:
+    bench = desk(BAR)
+    loaded = bench.load(SLIP)
+    assert [(d.assumed, d.severity) for d in loaded.diagnostics] == [(("T1",), Severity.WARNING)]
+    assert bench.kinds == [LoadJob, GiveProof]  # it has waited for the part
+    assert loaded.phase is Phase.READY
+
+
+def test_on_a_stock_and_a_tool_that_were_said_it_refuses_the_start(desk: Make) -> None:
+    bench = desk(BAR, {1: TURNING})
+    loaded = bench.load(SLIP)
+    assert loaded.phase is Phase.REFUSED
+    assert [(d.line, d.assumed) for d in loaded.errors] == [(11, ())]
+    (given,) = (command.proof for command in bench.posted if isinstance(command, GiveProof))
+    assert len(given.errors) == 1
+    assert "rapid-into-stock" in given.errors[0]
+    assert desk(BAR, {1: TURNING}).load(SHAFT).phase is Phase.READY
+
+
+def test_it_is_not_proved_before_its_part_is_known_where_that_may_refuse(desk: Make) -> None:
+    for kept, given in ((BAR, [LoadJob]), (KeptPart(), [LoadJob, GiveProof])):
+        bench = desk(kept, {1: TURNING})
+        making, go_on = threading.Event(), threading.Event()
+        real = bench.session.workshop.part
+
+        def held(
+            picture: Picture,
+            watch: Watch,
+            made: threading.Event = making,
+            let: threading.Event = go_on,
+            then: Callable[[Picture, Watch], PartProved | None] = real,
+        ) -> PartProved | None:
+            made.set()
+            assert let.wait(LIMIT)
+            return then(picture, watch)
+
+        bench.session.workshop = replace(bench.session.workshop, part=held)
+        (bench.folder / "part.nc").write_text(SLIP)
+        bench.session.load(bench.folder / "part.nc")
+        assert making.wait(LIMIT)
+        assert bench.kinds == given
+        assert bench.session.now.busy is (kept is BAR)
+        assert bench.session.now.picture is not None  # what there is, is shown
+        go_on.set()
+        bench.session.settled(LIMIT)
+
+
+def test_a_silenced_check_is_a_note_with_its_reason(desk: Make) -> None:
+    silenced = replace(BAR, silenced={"rapid-into-stock": "the bar is drilled before"})
+    loaded = desk(silenced, {1: TURNING}).load(SLIP)
+    (found,) = loaded.diagnostics
+    assert (found.severity, found.silenced) == (Severity.NOTE, "the bar is drilled before")
+    assert found.hint == "Silenced: the bar is drilled before"
+    assert loaded.phase is Phase.READY
+    assert part_of(loaded).warned == ()
+
+
+def test_too_fast_for_its_chuck_rests_on_no_stock(desk: Make) -> None:
+    machine = replace(load_machine(None), clamping=ClampingModel(max_rpm=1200.0))
+    bench = desk(machine=machine)
+    loaded = bench.load(SHAFT)
+    assert loaded.phase is Phase.REFUSED
+    assert {(d.check, d.assumed) for d in loaded.errors} == {("spindle-overspeed", ())}
+    assert bench.kinds == [LoadJob, GiveProof]
+
+
+@pytest.mark.parametrize("stock", ["rod", "profile:gone.csv", "after:gone.nc"])
+def test_a_stock_that_cannot_be_used_is_told_before_the_start(desk: Make, stock: str) -> None:
+    loaded = desk(KeptPart(stock=stock)).load(SHAFT)
+    (found,) = loaded.diagnostics
+    assert (found.line, found.code, found.severity) == (0, NO_STOCK, Severity.WARNING)
+    assert part_of(loaded).warned == ("THE PART IS NOT PROVED AS IT WAS SAID",)
+    assert loaded.phase is Phase.READY
+
+
+def test_the_stock_is_what_another_program_leaves(desk: Make, tmp_path: Path) -> None:
+    (tmp_path / "before.nc").write_text(SHAFT)
+    loaded = desk(KeptPart(stock=f"after:{tmp_path / 'before.nc'}")).load(SHAFT)
+    report = part_of(loaded).report
+    assert report is not None
+    assert report.removed == pytest.approx(0.0, abs=1.0)  # mm³: it is made already
+    assert desk(KeptPart()).load(SHAFT).part != loaded.part
+
+
+def test_a_proof_of_the_part_that_fails_keeps_nobody_from_his_program(
+    desk: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_given: object) -> None:
+        raise ZeroDivisionError("division by zero")
+
+    monkeypatch.setattr("core.proving.part_proof.PartProof.report", broken)
+    loaded = desk(BAR).load(SHAFT)
+    assert [d.code for d in loaded.diagnostics] == [NOT_MADE]
+    assert loaded.phase is Phase.READY
+    assert part_of(loaded).warned
+
+
+def test_of_a_program_that_is_too_long_it_is_told_why_there_is_no_part(
+    desk: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(part_history, "MOST_MOVES", 5)
+    bench = desk(BAR, {1: TURNING})
+    loaded = bench.load(SLIP)
+    assert part_of(loaded).trouble.startswith("12 blocks: the desk makes the part of up to 5")
+    assert loaded.picture is not None
+    assert loaded.picture.no_part == part_of(loaded).trouble
+    assert loaded.phase is Phase.READY
+    assert bench.kinds == [LoadJob, GiveProof]
+
+
+# --- under a running program --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("kept", "errors"), [(BAR, 1), (KeptPart(), 0)])
+def test_changed_offsets_are_taken_up_with_what_the_part_says(
+    desk: Make, kept: KeptPart, errors: int
+) -> None:
+    bench = desk(kept, {1: TURNING})
+    bench.load(SLIP)
+    bench.posted.clear()
+    renewing = RunningRenewal(bench.session)
+    assert renewing.begin()
+    renewing.worker.settle(LIMIT)
+    (renewed,) = (c for c in bench.posted if isinstance(c, Renew) and c.job is not None)
+    assert renewed.job is not None
+    assert renewed.proof is not None
+    assert len(renewed.proof.errors) == errors
+    assert renewing.taken(Snapshot(state=State.IDLE, job=renewed.job.digest))
+    given = [c.proof.warned for c in bench.posted if isinstance(c, GiveProof)]
+    assert given == [("LINE 11: RAPID-INTO-STOCK",)] * (1 - errors)
+    assert renewing.taken(Snapshot(state=State.IDLE, job=renewed.job.digest))
+    assert len([c for c in bench.posted if isinstance(c, GiveProof)]) == 1 - errors
