@@ -192,6 +192,21 @@ class AxisSample(NamedTuple):
     fault: str
 
 
+class SampleSource(Protocol):
+    """What a driver has sampled at its own rate, for the scope. The executor asks for it once a tick.
+
+    A row is flat: time, demand of each axis, actual of each, load of each (per cent of what its drive can),
+    spindle speed (rpm), spindle turns (counted), spindle load (per cent), and for how long the queue goes on
+    (s). What is not told is nan. Times rise; while nothing at all changes rows may be further apart.
+    """
+
+    rate: float  # samples a second while something moves
+
+    def take(self) -> FloatArray:
+        """What has been sampled since it was last taken, (n, 5 + 3 axes); the oldest may be lost."""
+        ...
+
+
 class AxisSink(Protocol):
     """Where setpoints go. A queue is always a complete trajectory that ends at rest."""
 
@@ -389,6 +404,7 @@ class MachinePorts:
     lock: SpindleHold | None = None  # None: C has a drive of its own, or needs no change-over
     blocks: BlockSink | None = None  # a controller that plans by itself: it takes no setpoints
     trips: Tripping | None = None  # None: nothing switches off by itself when the control is silent
+    samples: SampleSource | None = None  # None: the scope has what the axes say at each tick
     # Stops slides and spindle, outputs safe, by a way of its own: for the watchdog, from any thread and again
     # and again, when the executor is dead or stuck. It never waits for what the executor may hold.
     halt: Callable[[], None] | None = None

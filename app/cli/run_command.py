@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from core.proving.proof_report import Report
 
 
+_AROUND = 30.0  # s of the scope's record besides the program's own
 _OF_ALARMS = ("number", "code", "text", "cause", "remedy", "line")
 
 
@@ -83,6 +84,7 @@ def _run(args: argparse.Namespace, around: Circumstances, job: Job, report: Repo
             log=log,
             say=lambda text: _say(path, text),
             progress=progress.reach,
+            lasts=report.times.cycle + _AROUND,
         ) as play,
     ):
         outcome = play.run(job, proof_of(job, report), optional_stop=args.optional_stop)

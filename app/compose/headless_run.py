@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TextIO
@@ -14,14 +15,17 @@ from app.compose.backends import connect, real_time
 from app.compose.journal import Journal
 from app.compose.shop_floor import open_shop_floor, told_to_agents
 from app.desk.command_errors import CommandError
-from app.desk.data_folder import data_folder
+from app.desk.data_folder import RECORDS, data_folder
 from app.desk.run_without_screen import HeadlessRun
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.interruption_watch import Note
+from core.executor.recorder import Recorder, recorded_of
 from core.executor.snapshot import Event
 from core.machine.machine_model import Machine
 from core.ports import DriverError
+from core.records.record_ring import LASTS
+from core.records.ring_file import RUN
 from drivers.clocks import RealClock, StepClock
 from drivers.simulated.simulated_table import SimulatedTable
 
@@ -51,6 +55,8 @@ class EventLog:
     def add(self, event: Event) -> None:
         """One more line."""
         line = {"t": round(event.t, 4), "kind": event.kind, "text": event.text, "line": event.line}
+        if event.record:
+            line["record"] = event.record
         self._file.write(json.dumps(line) + "\n")
 
 
@@ -64,24 +70,39 @@ def headless(
     log: EventLog,
     say: Callable[[str], None],
     progress: Callable[[float], None],
+    lasts: float = LASTS,
 ) -> Iterator[HeadlessRun]:
     """An executor on the machine with these inputs, and somebody to press its buttons.
 
     A machine that is not simulated runs at its own pace. Raises CommandError for one that does not answer,
     for inputs that it does not have or that are wires and not to be set, and for one on which a job was
-    interrupted, unless the program is to begin ``anew`` all the same.
+    interrupted, unless the program is to begin ``anew`` all the same. The scope's record of the run is in the
+    folder of records, ``lasts`` s at least of what the driver samples.
     """
     with (
         _remembered(machine, anew=anew, say=say) as note,
         _connected(machine, realtime) as (clock, connected),
     ):
         _set_inputs(connected, inputs)
-        executor = Executor(machine, connected.ports, log.add, note=note)
+        recorder = Recorder(
+            replace(recorded_of(machine, connected.ports), lasts=min(lasts, LASTS)),
+            data_folder() / RECORDS,
+            RUN,
+        )
+        if recorder.trouble:
+            say(recorder.trouble)
+
+        def hear(event: Event) -> None:
+            log.add(recorder.note(event))
+
+        executor = Executor(machine, connected.ports, hear, note=note, tell=recorder.tell)
+        recorder.start()
         close_floor = _shop_floor(machine, executor, say, paced=isinstance(clock, RealClock))
         try:
             yield HeadlessRun(executor, clock, say, progress, _palms(machine, connected, say))
         finally:
             executor.shut()  # also on Ctrl-C: the slides brake at once
+            recorder.close()
             close_floor()
 
 

@@ -6,6 +6,7 @@ import gc
 import sys
 from collections.abc import Callable, Sequence
 from functools import partial
+from pathlib import Path
 
 from app.compose.accepted_machine import file_changes, guarded
 from app.compose.backend_entry import Connected, played
@@ -20,7 +21,7 @@ from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_
 from app.compose.workshop import drawer, give_mdi, give_searchto, samples, workshop
 from app.desk.alarm_log import KEPT, KINDS
 from app.desk.command_errors import CommandError
-from app.desk.data_folder import data_folder
+from app.desk.data_folder import RECORDS, data_folder
 from app.desk.desk import Desk
 from app.desk.kept_part import kept_part
 from app.desk.persistence import Persistence
@@ -32,6 +33,7 @@ from app.editor.versions import NoArchive
 from app.offsets.offset_effect import Effect
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
+from core.executor.recorder import Recorder, recorded_of
 from core.executor.snapshot import Event, Snapshot
 from core.executor.watchdog import ExecutorThread, Watchdog
 from core.interpreter.modal_state import Modal
@@ -48,6 +50,7 @@ SUPERVISED = {
     "mtconnect": "MTCONNECT",
     "program-file": "WHAT WATCHES THE PROGRAM'S FILE",
     "inverter": "WHAT TALKS TO THE INVERTER",
+    "recorder": "THE RECORD OF THE SCOPE",
 }
 GIVE_WAY = 0.001  # seconds after which a worker that proves or draws lets the screen and the executor go on
 
@@ -59,8 +62,9 @@ def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] =
     """
     sys.setswitchinterval(GIVE_WAY)
     clock, journal = RealClock(), Journal.at_home()
-    desk, executor = desk_and_executor(machine_file, offsets, clock, journal)
-    thread, log = ExecutorThread(executor, clock), Log()
+    desk, executor = desk_and_executor(machine_file, offsets, clock, journal, data_folder() / RECORDS)
+    thread, log, recorder = ExecutorThread(executor, clock), Log(), desk.recorder
+    assert recorder is not None
     close_floor = _shop_floor(desk, executor, journal)
     file = ProgramFile(lambda: desk.session.now)
 
@@ -71,6 +75,7 @@ def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] =
         watchdog.close()
         file.close()
         thread.close()  # first of what can stop the machine: nothing may keep the machine from being stopped
+        recorder.close()
         close_floor()
         let_go()
         lost = journal.close()
@@ -83,6 +88,7 @@ def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] =
     desk.not_kept, desk.waiting = (lambda: journal.trouble or log.trouble), (lambda: journal.held)
     gc.freeze()  # modules and the like: collections need not look at them again
     thread.start()
+    recorder.start()
     watchdog.start()
     file.start()
     return desk
@@ -127,25 +133,33 @@ def desk_and_executor(
     offsets: Callable[[], Offsets],
     clock: Clock,
     journal: Journal | None = None,
+    records: Path | None = None,
 ) -> tuple[Desk, Executor]:
-    """Both, with nobody ticking the executor yet; what happens goes to the journal, where there is one."""
+    """Both, with nobody ticking the executor yet; what happens goes to the journal, where there is one.
+
+    The scope's record goes to the folder ``records``; None: it is kept in memory alone.
+    """
     machine = read_machine(machine_file)
     connected = _connected(machine, clock)
-    events = _Events(clock, journal)
+    recorder = Recorder(recorded_of(machine, connected.ports), records)
+    events = _Events(clock, journal, recorder)
     executor = Executor(
         machine,
         connected.ports,
         events.hear,
         note=journal.note if journal is not None else _kept_nowhere,
         left=journal.left if journal is not None else None,
+        tell=recorder.tell,
     )
     desk = _desk(machine, executor, connected, events, offsets)
-    events.desk = desk
+    events.desk, desk.recorder = desk, recorder
     if journal is not None:
         desk.log.recall(_stops(journal))
     desk.shut = connected.close
     for warning in (*connected.ports.warnings, *(f"machine file: {each}" for each in desk.changes.changes)):
         events.say("warning", warning)
+    if recorder.trouble:
+        events.say("warning", recorder.trouble)
     if desk.changes.barred:
         desk.say(desk.changes.barred)
     return desk, executor
@@ -154,12 +168,13 @@ def desk_and_executor(
 class _Events:
     """What happens is heard by the desk, once there is one, and by the journal, where there is one."""
 
-    def __init__(self, clock: Clock, journal: Journal | None) -> None:
-        self.journal = journal
+    def __init__(self, clock: Clock, journal: Journal | None, recorder: Recorder) -> None:
+        self.journal, self._recorder = journal, recorder
         self.desk: Desk | None = None
         self._clock = clock
 
     def hear(self, event: Event) -> None:
+        event = self._recorder.note(event)
         if self.desk is not None:
             self.desk.hear(event)
         if self.journal is not None:

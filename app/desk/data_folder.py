@@ -7,6 +7,8 @@ from pathlib import Path
 
 from platformdirs import user_data_path
 
+RECORDS = "records"  # the folder of what the scope has recorded, within it
+
 
 class DataFolderError(Exception):
     """TURNDESK_HOME names no folder; ``str()`` is the sentence for whoever set it."""

@@ -43,6 +43,7 @@ from core.executor.snapshot import Event, Snapshot, Starts, State
 from core.store.store_errors import StoreError
 
 if TYPE_CHECKING:
+    from core.executor.recorder import Recorder
     from core.machine.machine_model import Machine
 
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
@@ -94,6 +95,7 @@ class Desk:
     settings: SettingsBook = field(default_factory=SettingsBook)
     counter: PartCounter = field(default_factory=PartCounter)
     record: RunHistory = field(default_factory=RunHistory)
+    recorder: Recorder | None = None  # of the scope: the last minutes of samples
     restoring: bool = False  # a backup takes the place of what is kept
     book: OffsetBook = field(default_factory=lambda: OffsetBook(locked=NONE_KEPT))
     changes: FileChanges = field(default_factory=FileChanges)  # of the machine file, to be accepted

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import queue
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -18,6 +19,7 @@ from core.executor.machine_context import MachineContext
 from core.executor.machine_control import MachineControl
 from core.executor.raised_alarm import AlarmError, log_alarm, log_line, make_alarm
 from core.executor.read_ahead import ProgramPass
+from core.executor.recorder import Tick
 from core.executor.snapshot import ACTIVE, CYCLE, Event, Snapshot, State
 from core.executor.snapshot_publisher import Publisher
 from core.executor.spindle_control import SpindleControl
@@ -28,6 +30,7 @@ from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionError
 from core.ports import DriverError, MachinePorts, TrippedError
 
+TICK = 0.01  # s from the end of one to the beginning of the next
 _STALL = 0.2  # s between two ticks that tell of a stalled host
 _STALE = 0.5  # s after which nobody expects a press to move the machine any more
 _STARTS = (CycleStart, EnableDrives, Home, Jog, JogStep, Wheel)
@@ -46,6 +49,7 @@ class Executor:
 
     ``passes`` makes a pass through a job with the circumstances of the start; tests give their own.
     ``note`` is told what job a power cut would leave interrupted now, ``left`` is what the last one left.
+    ``tell`` is handed what the scope records of each tick, and must only put it into a queue.
     """
 
     def __init__(
@@ -56,9 +60,12 @@ class Executor:
         passes: Callable[[Job, Setup], ProgramPass] = interpret,
         note: Note = _discard,
         left: InterruptedJob | None = None,
+        tell: Callable[[Tick], None] | None = None,
     ) -> None:
         self._commands: queue.SimpleQueue[tuple[float, Command]] = queue.SimpleQueue()
         self._ports = ports
+        self._tell = tell
+        self._due = ports.clock.now()  # when the next tick is expected
         spindle = SpindleControl(ports.spindle, machine.spindle, ports.lock)
         outputs = CommandedOutputs(ports.io, machine.outputs)
         self._context = MachineContext(
@@ -99,6 +106,7 @@ class Executor:
         for part in (self._mind_watchdog, self._obey, self._supervise, self._go_on, self._turn):
             self._guarded(part)
         self._show()
+        self._hand_over()
         self.patient = False
         self.ticks += 1
 
@@ -140,6 +148,17 @@ class Executor:
             self.snapshot = replace(
                 self.snapshot, t=self._context.now, state=status.state, alarms=status.alarms
             )
+
+    def _hand_over(self) -> None:
+        """What the scope records; that nothing can be recorded stops nothing."""
+        if self._tell is None:
+            return
+        with Attempt():
+            now, source = self._context.now, self._ports.samples
+            late, self._due = max(now - self._due, 0.0), now + TICK
+            samples = source.take() if source is not None else None
+            queued = math.nan if source is not None else max(self._ports.axes.horizon() - now, 0.0)
+            self._tell(Tick(self.snapshot, late, queued, self._context.spindle.angle.turns, samples))
 
     def _blind(self) -> None:
         """Something cannot be read: what was seen before starts nothing, and E-stop is still obeyed."""

@@ -147,6 +147,7 @@ class Event:
     text: str
     line: int = 0
     alarm: Alarm | None = None  # of an alarm, an E-stop and a stop: what the catalogue says of it
+    record: str = ""  # file of the scope's record of the seconds before it, in the folder records
 
 
 # --- which state may follow which -----------------------------------------------------------------------

@@ -52,6 +52,11 @@ class SpindleAngle:
         self._fit = None
 
     @property
+    def turns(self) -> float:
+        """Revolutions by the last reading; no number without one."""
+        return self._reads[-1][1] if self._reads else math.nan
+
+    @property
     def known(self) -> bool:
         """Whether enough was read of late: not right after the control was away, never without encoder."""
         return len(self._reads) >= _LEAST_READINGS

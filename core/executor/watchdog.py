@@ -12,13 +12,12 @@ import threading
 from collections.abc import Callable, Iterable
 
 from core.executor.attempt import Attempt, ReportedAttempt
-from core.executor.executor import Executor
+from core.executor.executor import TICK, Executor
 from core.ports import Clock
 
 # --- the executor's thread ------------------------------------------------------------------------------
 
 
-TICK = 0.01  # s
 _END = 8.0  # s: the longest wait for a drive; one that is stuck longer is left to the watchdog
 
 

@@ -38,6 +38,7 @@ MACHINE_CHANNELS = (
     Channel("lateness", "s"),  # of the control's tick
     Channel("line", ""),  # source line that is executed, 0 none
     Channel("block", ""),  # elementary block that is executed, 0 none
+    Channel("state", ""),  # of the control, counted in ``about["states"]``, which are divided by bars
 )
 
 

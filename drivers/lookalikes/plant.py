@@ -14,8 +14,9 @@ from drivers.lookalikes.plant_terminals import Terminals
 from drivers.lookalikes.servo_axis import Servo
 from drivers.lookalikes.spindle_motor import SpindleMotor
 from drivers.operator_station import Panel
+from drivers.sample_log import SampleLog
 from drivers.setpoint_queue import Tolerance, straight
-from drivers.spindle_gear import GearedQueue, Phase, Slides, State
+from drivers.spindle_gear import GearedQueue, Phase, Slides
 
 # --- The drives' own limits, the last line behind the control's: setpoints beyond them are refused.
 
@@ -59,9 +60,12 @@ def check_cam(cam: Cam, servos: Sequence[Servo], rpm: float) -> None:
 
 
 _NEVER = float("inf")
+_NAN = float("nan")
+Motion = tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]
 _PAST = 0.1  # s of setpoints that may still be asked for
 _HALT = 0.2  # s
 _HOME_SETTLE = 0.2  # s between the end of a homing move and the reference
+_AT_REST = 0.1  # s between two samples of a machine on which nothing changes
 
 
 class Plant:
@@ -89,6 +93,9 @@ class Plant:
         self._off_at = _NEVER
         self._homing: tuple[Servo, float] | None = None
         self.due: Callable[[float], None] | None = None  # what breaks by itself as time passes
+        self.log: SampleLog | None = None  # samples of every grid point, once somebody takes them
+        self._turned = (0.0, 0.0)  # speed and turns of the spindle at the present grid point
+        self._changed = True  # something was sampled that is not at rest
         self._k = int(clock.now() / config.step)
         self.spindle.t = clock.now()
 
@@ -237,8 +244,10 @@ class Plant:
             if self.t >= self._off_at:
                 self._power_off()
             if self._resting():
-                off = int(min(self._off_at / self.config.step + 1, last))
-                self._k = max(self._k + 1, off)
+                until = max(self._k + 1, int(min(self._off_at / self.config.step + 1, last)))
+                if self.log is not None:
+                    self._sample_rest(until)
+                self._k = until
             else:
                 self._step()
             self._reference()
@@ -254,26 +263,65 @@ class Plant:
 
     def _step(self) -> None:
         dt, t = self.config.step, self.t
-        self._k += 1
         if not self.enabled:
+            self._sample(t, None)
+            self._k += 1
             for servo in self.servos:
                 servo.roll(dt)
-            return
-        p, v = self._setpoint(t)
-        for servo, position, speed in zip(self.servos, p, v, strict=True):
-            if servo.follow(position, speed, dt) and not self.fault:
-                self.fault = Fault(f"{servo.axis.name}: following error", "following")
-        if self.fault and self._off_at == _NEVER:
-            self._off_at = self.queue.brake(self.t, [axis.amax for axis in self.config.axes])
+        else:
+            p, v, demand = self._setpoint(t)
+            self._sample(t, demand)
+            self._k += 1
+            for servo, position, speed in zip(self.servos, p, v, strict=True):
+                if servo.follow(position, speed, dt) and not self.fault:
+                    self.fault = Fault(f"{servo.axis.name}: following error", "following")
+            if self.fault and self._off_at == _NEVER:
+                self._off_at = self.queue.brake(self.t, [axis.amax for axis in self.config.axes])
+        self._turn()
 
-    def _setpoint(self, t: float) -> State:
-        """What the drives get: as queued; by the spindle's encoder it makes up for what they trail."""
+    def _setpoint(self, t: float) -> Motion:
+        """What the drives get, its velocity, and what is queued; by the spindle's encoder the first makes up
+        for what they trail."""
         if not self.queue.meshed:
-            return self.queue.demand_at(t)
+            p, v = self.queue.demand_at(t)
+            return p, v, p
         if t > self.spindle.t:
             self.spindle.advance(t)
         p, v, a = self.queue.play(t, self.spindle.t, self.spindle.counted)
-        return tuple(servo.lead(*each) for servo, *each in zip(self.servos, p, v, a, strict=True)), v
+        return tuple(servo.lead(*each) for servo, *each in zip(self.servos, p, v, a, strict=True)), v, p
+
+    # --- samples for the scope ----------------------------------------------------------------------------
+
+    def _sample(self, t: float, demand: tuple[float, ...] | None) -> None:
+        """The present grid point; without power the demand is where the slides are."""
+        if self.log is None:
+            return
+        actual = [servo.reading for servo in self.servos]
+        load = [servo.load for servo in self.servos]
+        left = self.queue.horizon(t) - t
+        self.log.add(t, *(demand or actual), *actual, *load, *self._turned, _NAN, left)
+        self._changed = True
+
+    def _sample_rest(self, until: int) -> None:
+        """Up to grid point ``until`` the slides rest: only a spindle that turns has anything to tell."""
+        assert self.log is not None
+        demand = self.queue.demand_at(self.t)[0] if self.enabled else None
+        while self._k < until:
+            turns = not self.spindle.still or self._turned[0] != 0.0
+            if turns or self._changed or self.t >= self.log.last + _AT_REST:
+                self._sample(self.t, demand)
+                self._changed = turns
+            if not turns:
+                return
+            self._k += 1
+            self._turn()
+
+    def _turn(self) -> None:
+        """The spindle at the present grid point."""
+        if self.log is not None and (self._turned[0] or not self.spindle.still):
+            if self.t > self.spindle.t:
+                self.spindle.advance(self.t)
+            self._turned = self.spindle.speed, self.spindle.counted
 
     def _reference(self) -> None:
         if self._homing is not None and self.t >= self._homing[1]:

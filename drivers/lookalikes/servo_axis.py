@@ -22,6 +22,7 @@ class Servo:
         self.stuck: float | None = None  # reading of an encoder that no longer counts
         self.runaway = 0.0  # speed at which a drive that has gone mad drives it while it has power
         self.over = 0.0  # seconds outside the following window
+        self.load = 0.0  # per cent of what the drive can, signed
         self._wn = 2 * math.pi * axis.bandwidth
 
     @property
@@ -45,15 +46,17 @@ class Servo:
         """
         wn, axis = self._wn, self.axis
         seen = self.p if self.stuck is None else self.stuck
+        limit = axis.amax * axis.reserve
+        force = wn * (wn * (p - seen) + 2 * (axis.feed_forward * v - self.v))
+        force = min(max(force, -limit), limit)
+        self.load = 100.0 * force / limit
         if self.jammed:
             self.v = 0.0
         elif self.runaway:
             self.v = self.runaway
             self.p += self.v * dt
         else:
-            limit = axis.amax * axis.reserve
-            force = wn * (wn * (p - seen) + 2 * (axis.feed_forward * v - self.v))
-            speed = self.v + min(max(force, -limit), limit) * dt
+            speed = self.v + force * dt
             top = axis.vmax * 1.1
             self.v = min(max(speed, -top), top)
             self.p += self.v * dt
@@ -68,14 +71,14 @@ class Servo:
         drop = 0.5 * self.axis.amax * dt
         self.v = 0.0 if self.jammed or abs(self.v) <= drop else self.v - math.copysign(drop, self.v)
         self.p += self.v * dt
-        self.over = 0.0
+        self.over = self.load = 0.0
 
     def settle(self, p: float) -> bool:
         """At a resting setpoint: snap on it when as good as there; False while still moving."""
         if self.jammed or self.stuck is not None or self.runaway:
             return False
         if abs(self.p - p) < _SETTLED and abs(self.v) < _SETTLED * self._wn:
-            self.p, self.v, self.over = p, 0.0, 0.0
+            self.p, self.v, self.over, self.load = p, 0.0, 0.0, 0.0
             return True
         return False
 
@@ -87,5 +90,6 @@ class Servo:
 
     def power_lost(self) -> None:
         """An encoder that only counts does not know where it is after power was off."""
+        self.load = 0.0
         if not self.axis.absolute and self.homed:
             self.homed = False

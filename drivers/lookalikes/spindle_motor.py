@@ -37,8 +37,15 @@ class SpindleMotor:
     def speed(self) -> float:
         """rpm, signed."""
         faults = self.faults
+        if not faults.wander:
+            return self._even
         swing = math.sin(2.0 * math.pi * self.t / faults.wander_period)
         return self._even * (1.0 + faults.wander * swing)
+
+    @property
+    def still(self) -> bool:
+        """It stands, and nothing is ordered."""
+        return not self._even and not self._target and not self._orders
 
     @property
     def counted(self) -> float:
@@ -91,5 +98,7 @@ class SpindleMotor:
     def _swung(self, t: float, dt: float) -> float:
         """What wander makes of ``dt`` seconds from ``t`` on, as seconds at an even speed."""
         faults = self.faults
+        if not faults.wander:
+            return 0.0
         rate = 2.0 * math.pi / faults.wander_period
         return faults.wander * (math.cos(rate * t) - math.cos(rate * (t + dt))) / rate

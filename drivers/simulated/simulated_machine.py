@@ -5,10 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from core.ports import AxisSample, Cam, Clock, DriverError, Geared, MachinePorts, Segments, StationState, Stop
+from core.ports import (
+    AxisSample,
+    Cam,
+    Clock,
+    DriverError,
+    FloatArray,
+    Geared,
+    MachinePorts,
+    Segments,
+    StationState,
+    Stop,
+)
 from drivers.lookalikes.plant import Plant
 from drivers.lookalikes.plant_config import SimConfig
 from drivers.lookalikes.plant_hands import PlantHands, Schedule
+from drivers.sample_log import SampleLog
 
 
 class _OnPlant:
@@ -97,6 +109,22 @@ class SimGear(_OnPlant):
         with self._plant.lock:
             self._plant.advance()
             return self._plant.queue.geared()
+
+
+class SimSamples(_OnPlant):
+    """``core.ports.SampleSource`` on the plant: its model's grid, from the first time on that it is asked."""
+
+    def __init__(self, plant: Plant) -> None:
+        super().__init__(plant)
+        self.rate = 1.0 / plant.config.step
+
+    def take(self) -> FloatArray:
+        """What has been sampled since."""
+        plant = self._plant
+        with plant.lock:
+            if plant.log is None:
+                plant.log = SampleLog(len(plant.names))
+            return plant.log.take()
 
 
 class SimSpindlePort(_OnPlant):
@@ -190,6 +218,7 @@ def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
         station=SimStation(plant),
         gear=SimGear(plant),
         halt=plant.halt,
+        samples=SimSamples(plant),
     )
     machine = PlantHands(plant)
     if config.faults:

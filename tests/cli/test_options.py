@@ -88,6 +88,8 @@ COVERED = {
     ("store verify", "--json"): "tests/cli/test_store.py",
     ("machine check", "--json"): "tests/cli/test_machine.py",
     ("alarms", "--json"): "tests/cli/test_alarms.py",
+    ("scope", "--csv"): "tests/cli/test_scope.py",
+    ("scope", "--json"): "tests/cli/test_scope.py",
     **{(f"serial {way}", option): "tests/drivers/transfer" for way in ("send", "receive")
        for option in ("--machine", "--port", "--baud", "--bits", "--parity", "--stop", "--flow", "--wrap",
                       "--dc-codes")},

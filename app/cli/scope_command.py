@@ -1,0 +1,97 @@
+"""``turndesk scope FILE``: what a record of the scope holds, and its samples as CSV, without a screen."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.desk.command_errors import EXIT_OK, CommandError
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+    from core.records.record import Channel, Record
+
+_STDOUT = "-"
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Declare the command."""
+    parser = subparsers.add_parser("scope", help="what the scope has recorded: a record, or the last minutes")
+    parser.add_argument(
+        "file", metavar="FILE", help="a record (.scope), or now.ring, before.ring or run.ring of records"
+    )
+    parser.add_argument(
+        "--csv", metavar="OUT", nargs="?", const=_STDOUT, help="the samples as CSV (default: to stdout)"
+    )
+    parser.add_argument("--json", action="store_true", help="one object on stdout")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Tell what is in the record; write its samples where ``--csv`` says."""
+    from core.records.record_errors import RecordError
+    from core.records.record_file import open_record, save_csv, write_csv
+
+    if args.json and args.csv == _STDOUT:
+        raise CommandError("--json needs --csv OUT: without it the samples themselves go to stdout")
+    path = Path(args.file)
+    try:
+        record = open_record(path)
+        if args.csv == _STDOUT:
+            write_csv(record, sys.stdout.write)
+            return EXIT_OK
+        if args.csv is not None:
+            save_csv(record, Path(args.csv))
+    except RecordError as error:
+        raise CommandError(str(error)) from error
+    told = json.dumps(_object(path, record, args.csv)) if args.json else _text(path, record, args.csv)
+    sys.stdout.write(told + "\n")
+    return EXIT_OK
+
+
+def _seconds(record: Record) -> float:
+    return float(record.times[-1] - record.times[0]) if len(record.times) else 0.0
+
+
+def _object(path: Path, record: Record, out: str | None) -> dict[str, object]:
+    return {
+        "file": str(path),
+        "csv": out,
+        "started": record.started,
+        "seconds": round(_seconds(record), 6),
+        "samples": len(record.times),
+        "rate": record.rate,
+        "about": dict(record.about),
+        "channels": [_channel(record, each) for each in record.channels],
+    }
+
+
+def _channel(record: Record, channel: Channel) -> dict[str, object]:
+    least, most = _bounds(record, channel)
+    return {**channel._asdict(), "min": least, "max": most}
+
+
+def _bounds(record: Record, channel: Channel) -> tuple[float, float] | tuple[None, None]:
+    """Of what is known; None where nothing is."""
+    column = record.columns[channel.name]
+    known = column[column == column]  # noqa: PLR0124  nan
+    return (float(known.min()), float(known.max())) if len(known) else (None, None)
+
+
+def _text(path: Path, record: Record, out: str | None) -> str:
+    began = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(record.started))
+    lines = [
+        f"{path}: {len(record.times)} samples in {_seconds(record):.3f} s from {began} on,"
+        f" {record.rate:g} a second while something moves"
+    ]
+    lines += [f"  {name}: {words}" for name, words in record.about.items() if name != "states" and words]
+    for channel in record.channels:
+        least, most = _bounds(record, channel)
+        if least is not None:
+            lines.append(f"  {channel.name:24} {least:12.5g} … {most:<12.5g} {channel.unit}".rstrip())
+    if out is not None:
+        lines.append(f"  samples: {out}")
+    return "\n".join(lines)

@@ -1,0 +1,284 @@
+"""The recorder of the scope: takes over what the executor hands out each tick, and keeps the last minutes.
+
+The executor only appends to a queue. A thread of its own empties that ten times a second into the ring, and
+writes what stood before an alarm into a file.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Collection, Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from core.executor.attempt import Attempt
+from core.executor.snapshot import Event, Snapshot, State
+from core.machine.machine_model import Machine
+from core.ports import FloatArray, MachinePorts
+from core.records.record import Record
+from core.records.record_errors import RecordError
+from core.records.record_file import ENDING, save_record
+from core.records.record_ring import TICKS, Recorded, Ring, Rows, bits_of
+from core.records.ring_file import NOW, RingFile, new_ring
+
+_log = logging.getLogger(__name__)
+_NAN = float("nan")
+_LOOK = 0.1  # s between two looks at what was handed over
+_AT_REST = 0.1  # s between two rows of a machine on which nothing changes
+_MOST = 60_000  # ticks that wait for a recorder that does not come: ten minutes
+BEFORE, BEHIND = 10.0, 2.0  # s before an alarm and after it that are kept with it
+_SOON = 0.2  # s; a machine that stands is waited for so long
+KEPT = 50  # records of alarms
+_FROZEN = frozenset({"alarm", "estop"})  # kinds of events
+_STATES = {state: float(i) for i, state in enumerate(State)}
+_STANDS = 0.01  # mm/s
+_TURNS = 1.0  # rpm
+
+
+class Tick(NamedTuple):
+    """What the executor hands out. ``samples`` are the driver's own, None where it has none."""
+
+    snapshot: Snapshot
+    late: float  # s by which the tick came later than planned
+    queue: float  # s of motion queued, nan where the samples say it
+    turns: float  # of the spindle, nan where it has no encoder
+    samples: FloatArray | None
+
+
+class _Frozen(NamedTuple):
+    """An alarm whose record is still to be written."""
+
+    event: Event
+    program: str
+
+
+def recorded_of(machine: Machine, ports: MachinePorts) -> Recorded:
+    """What is recorded of this machine."""
+    return Recorded(
+        {axis.name: axis.rotary for axis in machine.axes},
+        tuple(machine.inputs),
+        tuple(machine.outputs),
+        ports.samples.rate if ports.samples is not None else TICKS,
+        time.time() - ports.clock.now(),
+        machine.name,
+        tuple(state.value for state in State),
+    )
+
+
+class Recorder:
+    """``tell`` and ``note`` are the executor's; ``latest`` and ``between`` may be used from any thread.
+
+    ``folder`` is where the ring's file ``name`` and the records of alarms lie, None: nothing is written.
+    ``trouble`` says why the file is not written; the record is then in memory alone.
+    """
+
+    def __init__(self, recorded: Recorded, folder: Path | None = None, name: str = NOW) -> None:
+        self.ring = Ring.of(recorded)
+        self.folder = folder
+        self.trouble = ""
+        self._told: deque[Tick] = deque(maxlen=_MOST)
+        self._noted: deque[_Frozen] = deque()
+        self._freezing: _Frozen | None = None
+        self._name = ""  # of the record that is being waited for
+        self._program = ""
+        self._skipped: list[float] | None = None  # the last tick, where it said nothing new
+        self._figures: list[float] = []
+        self._late = 0.0
+        self._place: tuple[object, ...] = ()
+        self._resting: list[float] | None = None
+        self._file: RingFile | None = None
+        if folder is not None:
+            self._open(folder, name)
+        self._closing = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
+
+    def _open(self, folder: Path, name: str) -> None:
+        try:
+            self._file = new_ring(folder, name, self.ring)
+        except RecordError as error:
+            self.trouble = f"the record is kept in memory alone: {error}"
+
+    # --- the executor's thread ------------------------------------------------------------------------
+
+    def tell(self, tick: Tick) -> None:
+        """One tick; never waits."""
+        self._program = tick.snapshot.program
+        self._told.append(tick)
+
+    def note(self, event: Event) -> Event:
+        """An alarm or E-stop is given the name of its record, which will be written; never waits."""
+        if self.folder is None or event.kind not in _FROZEN or event.alarm is None:
+            return event
+        if not self._name:
+            began = time.localtime(self.ring.recorded.began + event.t)
+            stamp = time.strftime("%Y%m%dT%H%M%S", began)
+            self._name = f"{stamp}-alarm{event.alarm.number}{ENDING}"
+            named = replace(event, record=self._name)
+            self._noted.append(_Frozen(named, self._program))
+            return named
+        return replace(event, record=self._name)
+
+    # --- the screen -------------------------------------------------------------------------------------
+
+    def latest(self, since: float, names: Collection[str] | None = None) -> Record:
+        """What was sampled after ``since``, seconds of the clock; ``names``: these channels alone."""
+        return self.ring.latest(since, names)
+
+    def between(self, begin: float, end: float, names: Collection[str] | None = None) -> Record:
+        """The samples from ``begin`` up to and with ``end``."""
+        return self.ring.between(begin, end, names)
+
+    # --- the recorder's thread --------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Begin to empty the queue."""
+        self._thread.start()
+
+    def close(self) -> None:
+        """Keep what was handed over, write what was frozen, and end."""
+        self._closing.set()
+        if self._thread.is_alive():
+            self._thread.join()
+        self.drain(last=True)
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def _run(self) -> None:
+        while not self._closing.wait(_LOOK):
+            with Attempt() as trial:
+                self.drain()
+            if trial.error is not None:
+                _log.error("the recorder has failed", exc_info=trial.error)
+                return
+
+    def drain(self, *, last: bool = False) -> None:
+        """Keep what was handed over so far; ``last``: nothing more will come."""
+        ticks = [self._told.popleft() for _ in range(len(self._told))]
+        if ticks:
+            self._keep(self.ring.ticks, self._tick_rows(ticks))
+            self._keep(self.ring.samples, self._sample_rows(ticks))
+        self._freeze(ticks[-1].snapshot if ticks else None, last=last)
+
+    def _keep(self, rows: Rows, new: FloatArray) -> None:
+        if not len(new):
+            return
+        parts = rows.write(new)
+        if self._file is not None:
+            try:
+                self._file.write(rows, parts)
+            except RecordError as error:
+                self.trouble = f"the record is kept in memory alone: {error}"
+                self._file.close()
+                self._file = None
+
+    def _tick_rows(self, ticks: Iterable[Tick]) -> FloatArray:
+        """A row of each tick that says something new, and ten a second of a machine at rest."""
+        recorded, last = self.ring.recorded, self.ring.ticks.last
+        rows: list[list[float]] = []
+        for tick in ticks:
+            s = tick.snapshot
+            if s.t <= last:
+                continue
+            figures = [
+                s.rpm_command,
+                s.rpm_actual,
+                tick.turns,
+                s.feed_override,
+                s.spindle_override,
+                tick.queue,
+                0.0,
+                float(s.line),
+                float(s.block),
+                _STATES[s.state],
+                *bits_of(recorded.inputs, s.inputs),
+                *bits_of(recorded.outputs, s.outputs),
+            ]
+            self._late = max(self._late, tick.late)
+            if figures == self._figures and s.t < last + _AT_REST:
+                continue
+            self._figures, last = figures, s.t
+            rows.append([s.t, *figures[:6], self._late, *figures[7:]])
+            self._late = 0.0
+        return np.array(rows).reshape(-1, recorded.tick_width)
+
+    def _sample_rows(self, ticks: list[Tick]) -> FloatArray:
+        """The driver's, or where it has none what the axes said at each tick."""
+        width, last = self.ring.recorded.sample_width, self.ring.samples.last
+        told = [tick.samples for tick in ticks if tick.samples is not None and len(tick.samples)]
+        rows = np.concatenate(told) if told else self._seen(ticks, last)
+        if rows.shape[1:] != (width,):
+            return np.empty((0, width))
+        return rows[rows[:, 0] > np.maximum.accumulate(np.concatenate(([last], rows[:-1, 0])))]
+
+    def _seen(self, ticks: Iterable[Tick], last: float) -> FloatArray:
+        """Samples by the snapshots: the last row before anything changes is among them."""
+        width, none = self.ring.recorded.sample_width, [_NAN] * len(self.ring.recorded.axes)
+        rows: list[list[float]] = []
+        for tick in ticks:
+            s = tick.snapshot
+            if tick.samples is not None or s.t <= last:
+                continue
+            place = (s.demand, s.actual, s.rpm_actual)
+            row = [s.t, *s.demand, *s.actual, *none, s.rpm_actual, tick.turns, _NAN, tick.queue]
+            if place == self._place and s.t < last + _AT_REST:
+                self._resting = row
+                continue
+            if self._resting is not None and place != self._place:
+                rows.append(self._resting)
+            self._place, self._resting, last = place, None, s.t
+            rows.append(row)
+        return np.array(rows).reshape(-1, width)
+
+    # --- records of alarms --------------------------------------------------------------------------------
+
+    def _freeze(self, now: Snapshot | None, *, last: bool) -> None:
+        """Write the record of an alarm once the machine stands, or two seconds have gone by."""
+        if self._freezing is None and self._noted:
+            self._freezing = self._noted.popleft()
+        if self._freezing is None or (now is None and not last):
+            return
+        event = self._freezing.event
+        if last or now is None or _over(now, event.t):
+            self._name = ""
+            frozen, self._freezing = self._freezing, None
+            self._write(frozen, min(self.ring.samples.last, event.t + BEHIND))
+
+    def _write(self, frozen: _Frozen, end: float) -> None:
+        event, folder = frozen.event, self.folder
+        assert folder is not None
+        assert event.alarm is not None
+        record = self.ring.between(event.t - BEFORE, end)
+        about = {
+            **record.about,
+            "program": frozen.program,
+            "alarm": f"{event.alarm.number} {event.alarm.text}: {event.alarm.cause}",
+            "alarm line": str(event.line),
+            "alarm time": repr(event.t),  # on the clock of the samples
+        }
+        try:
+            save_record(replace(record, about=about), folder / event.record)
+            rotate(folder)
+        except RecordError as error:
+            self.trouble = f"the record of an alarm is lost: {error}"
+            _log.warning("%s", self.trouble)
+
+
+def _over(now: Snapshot, alarm: float) -> bool:
+    stands = now.velocity < _STANDS and abs(now.rpm_actual) < _TURNS
+    return now.t >= alarm + BEHIND or (stands and now.t >= alarm + _SOON)
+
+
+def rotate(folder: Path) -> None:
+    """Take away the oldest records of alarms beyond the number that is kept. Raises RecordError."""
+    try:
+        for old in sorted(folder.glob(f"*-alarm*{ENDING}"))[:-KEPT]:
+            old.unlink()
+    except OSError as error:
+        raise RecordError(f"{folder}: old records cannot be removed: {error.strerror or error}") from error

@@ -1,0 +1,22 @@
+"""Why a record of the scope cannot be kept or read: one sentence, and a full disk is called full."""
+
+from __future__ import annotations
+
+import errno
+from pathlib import Path
+
+
+class RecordError(Exception):
+    """``str()`` is the sentence for whoever asked: what, where, what to do."""
+
+
+_FULL = frozenset({errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC), errno.EFBIG})
+
+
+def why(path: Path, error: OSError) -> RecordError:
+    """The same as a sentence."""
+    if error.errno in _FULL:
+        return RecordError(f"{path}: the disk is full; make room on it")
+    if isinstance(error, FileNotFoundError):
+        return RecordError(f"{path}: there is no such file")
+    return RecordError(f"{path}: {error.strerror or error}")

@@ -1,0 +1,161 @@
+"""Records of the scope as files: saved, opened, and exported as CSV.
+
+A file is an npz archive: one column a channel, the times, and what the record is about as JSON.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import struct
+import zipfile
+import zlib
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+
+from core.records.record import Channel, FloatArray, Record
+from core.records.record_errors import RecordError, why
+from core.records.ring_file import is_ring, read_ring
+
+ENDING = ".scope"
+_VERSION = 1
+_ABOUT = "about"
+_OFF, _ON, _UNKNOWN = 0, 1, 255  # a logic channel in a byte
+# What numpy and zipfile raise for a file that is not as they wrote it.
+_DAMAGE = (
+    ValueError,
+    LookupError,
+    TypeError,
+    AttributeError,
+    ArithmeticError,
+    RuntimeError,
+    MemoryError,
+    EOFError,
+    OSError,
+    struct.error,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+_ROWS = 2000  # of a CSV at a time
+
+
+def save_record(record: Record, path: Path) -> None:
+    """Write it whole or not at all. Raises RecordError."""
+    told = {
+        "version": _VERSION,
+        "started": record.started,
+        "rate": record.rate,
+        "about": dict(record.about),
+        "channels": [list(channel) for channel in record.channels],
+    }
+    columns = {f"column{i}": _packed(record, channel) for i, channel in enumerate(record.channels)}
+    columns |= {"times": record.times, _ABOUT: np.frombuffer(json.dumps(told).encode(), dtype=np.uint8)}
+    unfinished = path.with_name(path.name + ".part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with unfinished.open("wb") as file:
+            np.savez_compressed(file, **columns)  # type: ignore[arg-type]  # its stubs take one for an option
+        unfinished.replace(path)
+    except OSError as error:
+        with suppress(OSError):
+            unfinished.unlink(missing_ok=True)
+        raise why(path, error) from error
+
+
+def _packed(record: Record, channel: Channel) -> np.ndarray[tuple[int, ...], np.dtype[np.generic]]:
+    column = record.columns[channel.name]
+    if not channel.logic:
+        return column
+    return np.where(np.isnan(column), _UNKNOWN, column).astype(np.uint8)
+
+
+def open_record(path: Path) -> Record:
+    """A record, or the last minutes from a ring's file. Raises RecordError with what is wrong with it."""
+    if is_ring(path):
+        return read_ring(path)
+    try:
+        with path.open("rb") as file:
+            return _read(path, io.BytesIO(file.read()))
+    except OSError as error:
+        raise why(path, error) from error
+
+
+def _read(path: Path, data: io.BytesIO) -> Record:
+    if not zipfile.is_zipfile(data):
+        part = data.getvalue()[:2] == b"PK"
+        raise RecordError(
+            f"{path} is cut off; it cannot be read"
+            if part
+            else f"{path} is no record of the scope; name one of the folder records, {ENDING} or .ring"
+        )
+    data.seek(0)
+    try:
+        with np.load(data, allow_pickle=False) as archive:
+            if _ABOUT not in archive.files:
+                raise RecordError(f"{path} is no record of the scope; name a file that ends in {ENDING}")
+            told = json.loads(archive[_ABOUT].tobytes())
+            version = told["version"]
+            if version > _VERSION:
+                raise RecordError(
+                    f"{path} was written by a newer TurnDesk (version {version}); open it with that one"
+                )
+            return _record(told, lambda name: archive[name])
+    except _DAMAGE as error:
+        raise RecordError(f"{path} is damaged and cannot be read ({error})") from error
+
+
+def _record(told: dict[str, object], column: Callable[[str], object]) -> Record:
+    """Raises ValueError, KeyError, TypeError for what does not fit together."""
+    channels, about = told["channels"], told["about"]
+    if not isinstance(channels, list) or not isinstance(about, dict):
+        raise TypeError("its description is of another kind")
+    made = tuple(Channel(str(name), str(unit), bool(logic)) for name, unit, logic in channels)
+    times = np.asarray(column("times"), dtype=np.float64)
+    columns: dict[str, FloatArray] = {}
+    for i, channel in enumerate(made):
+        found = np.asarray(column(f"column{i}"), dtype=np.float64)
+        if found.shape != times.shape or times.ndim != 1:
+            raise ValueError(f"{channel.name} has {found.size} samples of {times.size}")
+        columns[channel.name] = np.where(found == _UNKNOWN, np.nan, found) if channel.logic else found
+    started, rate = told["started"], told["rate"]
+    if not isinstance(started, int | float) or not isinstance(rate, int | float):
+        raise TypeError("it does not say when it began")
+    words = {str(name): str(text) for name, text in about.items()}
+    return Record(made, times, columns, float(started), float(rate), words)
+
+
+def write_csv(record: Record, write: Callable[[str], object]) -> None:
+    """The record as lines: times in s from its beginning, channels with their units; unknown is empty."""
+    names = [f"{each.name} [{each.unit}]" if each.unit else each.name for each in record.channels]
+    write(",".join(["t [s]", *(name.replace(",", " ") for name in names)]) + "\n")
+    columns = [record.columns[each.name] for each in record.channels]
+    logic = [each.logic for each in record.channels]
+    for at in range(0, len(record.times), _ROWS):
+        part = [[f"{t:.6f}" for t in (record.times[at : at + _ROWS] - record.times[0]).tolist()]]
+        part += [
+            _texts(column[at : at + _ROWS], whole=whole) for column, whole in zip(columns, logic, strict=True)
+        ]
+        write("".join(",".join(row) + "\n" for row in zip(*part, strict=True)))
+
+
+def save_csv(record: Record, path: Path) -> None:
+    """The same into a file, whole or not at all. Raises RecordError."""
+    unfinished = path.with_name(path.name + ".part")
+    try:
+        with unfinished.open("w", encoding="utf-8", newline="") as file:
+            write_csv(record, file.write)
+        unfinished.replace(path)
+    except OSError as error:
+        with suppress(OSError):
+            unfinished.unlink(missing_ok=True)
+        raise why(path, error) from error
+
+
+def _texts(column: FloatArray, *, whole: bool) -> list[str]:
+    """Every digit of a figure, so that what is read is what was recorded."""
+    if whole:
+        return ["" if value != value else str(int(value)) for value in column.tolist()]  # noqa: PLR0124  nan
+    return ["" if value != value else repr(value) for value in column.tolist()]  # noqa: PLR0124  nan

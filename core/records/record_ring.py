@@ -1,0 +1,264 @@
+"""The ring of the scope: the last minutes of samples, in memory; one thread writes, any reads without a lock.
+
+There are two of them: samples at the driver's own rate, and the control's figures of each tick. A row is
+written before it is counted, and each ends with its number, so what is half written is never read as a row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.records.record import Channel, FloatArray, Record, channels_of
+
+_BITS = 48  # logic channels in one figure, which a float holds exactly
+_BEFORE = 0.5  # s; the control's figures stand this long at most without a row of their own
+LASTS = 300.0  # s that are kept
+TICKS = 100.0  # of the control, a second
+
+# A row of the control's tick, behind its time; then inputs and outputs as bits.
+TICK_FIGURES = (
+    "spindle command",
+    "spindle speed",
+    "spindle turns",
+    "feed override",
+    "spindle override",
+    "queue",
+    "lateness",
+    "line",
+    "block",
+    "state",
+)
+# What drivers tell of spindle and queue, behind the axes; where they do not, the tick's figure stands.
+SAMPLE_FIGURES = ("spindle speed", "spindle turns", "spindle load", "queue")
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """What is recorded: of which machine, at which rate. ``axes`` by letter: whether it is rotary.
+
+    ``began`` is the time of day (s since 1970) of the clock's zero. ``states`` are the words of the channel
+    ``state``, which counts them.
+    """
+
+    axes: Mapping[str, bool]
+    inputs: tuple[str, ...] = ()
+    outputs: tuple[str, ...] = ()
+    rate: float = TICKS
+    began: float = 0.0
+    machine: str = ""
+    states: tuple[str, ...] = ()
+    lasts: float = LASTS
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """Everything that a record of it has."""
+        return channels_of(self.axes, self.inputs, self.outputs)
+
+    @property
+    def sample_width(self) -> int:
+        """Figures of a driver's sample: time, demand, actual and load of the axes, then SAMPLE_FIGURES."""
+        return 1 + 3 * len(self.axes) + len(SAMPLE_FIGURES)
+
+    @property
+    def tick_width(self) -> int:
+        """Figures of a tick: time, TICK_FIGURES, bits."""
+        return 1 + len(TICK_FIGURES) + _words(self.inputs) + _words(self.outputs)
+
+    @property
+    def about(self) -> dict[str, str]:
+        """In words, for a record."""
+        return {"machine": self.machine, "states": "|".join(self.states)}
+
+
+def _words(names: Collection[str]) -> int:
+    return -(-len(names) // _BITS)
+
+
+def bits_of(names: tuple[str, ...], on: Collection[str]) -> list[float]:
+    """Logic channels as figures of 48 bits."""
+    words = [0] * _words(names)
+    for i, name in enumerate(names):
+        if name in on:
+            words[i // _BITS] |= 1 << (i % _BITS)
+    return [float(word) for word in words]
+
+
+# --- Rows in memory -------------------------------------------------------------------------------------
+
+
+class Rows:
+    """The last rows of one kind; one thread writes, any reads without a lock. Column 0 is the time."""
+
+    def __init__(self, room: int, width: int) -> None:
+        self.room = room
+        self.data: FloatArray = np.zeros((room, width + 1))  # and the row's number
+        self.begun = self.whole = 0
+
+    def write(self, rows: FloatArray) -> list[tuple[int, FloatArray]]:
+        """Append; returns what has become which slots, for the file."""
+        rows = rows[-self.room :]
+        first, end = self.whole, self.whole + len(rows)
+        numbered = np.column_stack((rows, np.arange(first, end, dtype=np.float64)))
+        self.begun = end
+        at = first % self.room
+        parts = [(at, numbered[: self.room - at])]
+        if len(numbered) > self.room - at:
+            parts.append((0, numbered[self.room - at :]))
+        for slot, part in parts:
+            self.data[slot : slot + len(part)] = part
+        self.whole = end
+        return parts
+
+    def between(self, begin: float, end: float) -> FloatArray:
+        """A copy of the rows from ``begin`` up to and with ``end``, without any that is being written."""
+        whole = self.whole
+        low = max(0, self.begun - self.room)
+        first = self._search(low, whole, lambda t: t >= begin)
+        last = self._search(first, whole, lambda t: t > end)
+        at, count = first % self.room, last - first
+        rows = np.concatenate((self.data[at : at + count], self.data[: max(0, at + count - self.room)]))
+        lost = max(0, self.begun - self.room - first)  # written over meanwhile
+        return sound(rows[lost:], first + lost)
+
+    def _search(self, low: int, high: int, reached: Callable[[float], bool]) -> int:
+        while low < high:
+            middle = (low + high) // 2
+            if reached(float(self.data[middle % self.room, 0])):
+                high = middle
+            else:
+                low = middle + 1
+        return low
+
+    @property
+    def last(self) -> float:
+        """Time of the newest row; minus infinity without one."""
+        return float(self.data[(self.whole - 1) % self.room, 0]) if self.whole else -np.inf
+
+    @property
+    def first(self) -> float:
+        """Time of the oldest row that is still there."""
+        return float(self.data[max(0, self.begun - self.room) % self.room, 0]) if self.whole else np.inf
+
+
+def sound(rows: FloatArray, first: int) -> FloatArray:
+    """Rows that are whole: numbered from ``first`` on, each later than the last. The number is taken off."""
+    if not len(rows):
+        return rows[:, :-1]
+    times = rows[:, 0]
+    good = rows[:, -1] == np.arange(first, first + len(rows))
+    good[1:] &= times[1:] > np.maximum.accumulate(np.where(good, times, -np.inf))[:-1]
+    return rows[good, :-1]
+
+
+# --- What both rings say together -----------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Ring:
+    """Samples and ticks of the last minutes. ``latest`` and ``between`` may be used from any thread."""
+
+    recorded: Recorded
+    samples: Rows
+    ticks: Rows
+
+    @classmethod
+    def of(cls, recorded: Recorded) -> Ring:
+        """An empty one."""
+        return cls(
+            recorded,
+            Rows(max(2, round(recorded.lasts * recorded.rate)), recorded.sample_width),
+            Rows(max(2, round(recorded.lasts * TICKS)), recorded.tick_width),
+        )
+
+    def latest(self, since: float, names: Collection[str] | None = None) -> Record:
+        """What was sampled after ``since``, seconds of the clock; ``names``: these channels alone."""
+        return self.between(np.nextafter(since, np.inf), np.inf, names)
+
+    def between(self, begin: float, end: float, names: Collection[str] | None = None) -> Record:
+        """The samples from ``begin`` up to and with ``end``."""
+        return record_of(
+            self.recorded,
+            self.samples.between(begin, end),
+            self.ticks.between(begin - _BEFORE, end),
+            names,
+        )
+
+
+def record_of(
+    recorded: Recorded, samples: FloatArray, ticks: FloatArray, names: Collection[str] | None = None
+) -> Record:
+    """A record of rows of both kinds; the control's figures stand from their tick until the next."""
+    times = samples[:, 0].copy()
+    seen = np.searchsorted(ticks[:, 0], times, side="right") - 1
+    source = _Source(recorded, samples, ticks, seen)
+    wanted = [each for each in recorded.channels if names is None or each.name in names]
+    columns = {each.name: source.column(each.name) for each in wanted}
+    started = recorded.began + (float(times[0]) if len(times) else 0.0)
+    return Record(tuple(wanted), times, columns, started, recorded.rate, recorded.about)
+
+
+class _Source:
+    """Where each channel stands in the rows."""
+
+    def __init__(self, recorded: Recorded, samples: FloatArray, ticks: FloatArray, seen: object) -> None:
+        self._recorded, self._samples, self._ticks, self._seen = recorded, samples, ticks, np.asarray(seen)
+
+    def column(self, name: str) -> FloatArray:
+        """The figures of one channel at the times of the samples."""
+        recorded, axes = self._recorded, list(self._recorded.axes)
+        letter, _, what = name.partition(" ")
+        if letter in axes and what in {"demand", "actual", "following error", "load"}:
+            return self._of_axis(axes.index(letter), len(axes), what)
+        if letter in {"input", "output"}:
+            names = recorded.inputs if letter == "input" else recorded.outputs
+            first = 1 + len(TICK_FIGURES) + (0 if letter == "input" else _words(recorded.inputs))
+            return self._bit(first, names.index(what))
+        return self._of_machine(name, 1 + 3 * len(axes))
+
+    def _of_axis(self, index: int, axes: int, what: str) -> FloatArray:
+        demand, actual = self._samples[:, 1 + index], self._samples[:, 1 + axes + index]
+        if what == "following error":
+            return np.asarray(demand - actual)
+        if what == "load":
+            return self._samples[:, 1 + 2 * axes + index].copy()
+        return (demand if what == "demand" else actual).copy()
+
+    def _of_machine(self, name: str, behind: int) -> FloatArray:
+        if name == "lateness":
+            return self._worst(1 + TICK_FIGURES.index(name))
+        told = np.full(len(self._samples), np.nan)
+        if name in SAMPLE_FIGURES:
+            told = self._samples[:, behind + SAMPLE_FIGURES.index(name)].copy()
+        if name in TICK_FIGURES:
+            missing = np.isnan(told)
+            told[missing] = self._held(1 + TICK_FIGURES.index(name))[missing]
+        return told
+
+    def _bit(self, first: int, index: int) -> FloatArray:
+        word = self._held(first + index // _BITS)
+        known = ~np.isnan(word)
+        bits = np.full(len(word), np.nan)
+        bits[known] = (word[known].astype(np.int64) >> (index % _BITS)) & 1
+        return bits
+
+    def _worst(self, column: int) -> FloatArray:
+        """The greatest figure of the ticks since the sample before: at rest samples are few."""
+        held = self._held(column)
+        known = np.flatnonzero(self._seen >= 0)
+        if not len(known):
+            return held
+        last = self._seen[known]
+        first = np.minimum(np.concatenate((last[:1], last[:-1] + 1)), last[-1])
+        worst = np.maximum.reduceat(self._ticks[: last[-1] + 1, column], first)
+        held[known] = np.where(first <= last, worst, held[known])
+        return held
+
+    def _held(self, column: int) -> FloatArray:
+        """A figure of the ticks, as it stood at each sample; not known before the first tick."""
+        if not len(self._ticks):
+            return np.full(len(self._seen), np.nan)
+        figures = self._ticks[np.maximum(self._seen, 0), column]
+        return np.where(self._seen >= 0, figures, np.nan)

@@ -1,0 +1,38 @@
+"""Samples of the scope between two looks of the control, in memory that was set aside beforehand."""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+
+from core.ports import FloatArray
+
+KEPT = 8192  # rows: eight seconds at 1 ms for a control that is late
+
+
+class SampleLog:
+    """Rows as ``core.ports.SampleSource`` has them, added by a driver and taken by its control."""
+
+    def __init__(self, axes: int, kept: int = KEPT) -> None:
+        self.width = 5 + 3 * axes
+        self._row = struct.Struct(f"={self.width}d")
+        self._kept = kept
+        self._bytes = bytearray(kept * self._row.size)
+        self._added = self._taken = 0
+        self.last = -np.inf  # time of the newest row
+
+    def add(self, t: float, *figures: float) -> None:
+        """One more row; the oldest goes when there is no room."""
+        self._row.pack_into(self._bytes, self._added % self._kept * self._row.size, t, *figures)
+        self._added += 1
+        self.last = t
+
+    def take(self, most: int = KEPT) -> FloatArray:
+        """The oldest rows that have not been taken, ``most`` at a time."""
+        first = max(self._taken, self._added - self._kept)
+        count = min(self._added - first, most)
+        self._taken = first + count
+        at = first % self._kept
+        data = np.frombuffer(self._bytes, dtype=np.float64).reshape(self._kept, self.width)
+        return np.concatenate((data[at : at + count], data[: max(0, at + count - self._kept)]))

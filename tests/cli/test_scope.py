@@ -1,0 +1,68 @@
+"""``turndesk scope``: a run's record told and exported; what is no record is refused."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Turndesk
+
+PROGRAM = "G90G94F300\nM03S600\nT1\nX.5Z.1\nG01X.6Z.2F30\nM30\n"
+
+
+@pytest.fixture
+def ring(turndesk: Turndesk, offsets: Path, home: Path, tmp_path: Path) -> Path:
+    path = tmp_path / "part.nc"
+    path.write_text(PROGRAM)
+    assert turndesk("run", path, "--headless", "--offsets", offsets).status == 0
+    return home / "records" / "run.ring"
+
+
+def test_a_run_without_a_screen_leaves_its_record(turndesk: Turndesk, ring: Path) -> None:
+    (told,) = turndesk("scope", ring, "--json").lines
+    assert (told["file"], told["rate"], told["csv"]) == (str(ring), 1000.0, None)
+    assert told["about"]["machine"] == "GT-75"
+    by_name = {each["name"]: each for each in told["channels"]}
+    assert by_name["spindle speed"]["max"] == pytest.approx(600.0)
+    assert by_name["Z demand"]["max"] == pytest.approx(0.2 * 25.4)
+    assert (by_name["X demand"]["unit"], by_name["output coolant"]["logic"]) == ("mm", True)
+    shown = turndesk("scope", ring)
+    assert shown.status == 0
+    assert "machine: GT-75" in shown.out
+    assert "spindle speed" in shown.out
+
+
+def test_samples_go_to_a_file_or_to_stdout(turndesk: Turndesk, ring: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out.csv"
+    assert turndesk("scope", ring, "--csv", out).status == 0
+    assert turndesk("scope", ring, "--csv").out == out.read_text()
+    assert turndesk("scope", ring, "--csv", "-").out == out.read_text()
+    (told,) = turndesk("scope", ring, "--json", "--csv", out).lines
+    rows = list(csv.DictReader(out.read_text().splitlines()))
+    assert len(rows) == told["samples"]
+    assert float(rows[-1]["t [s]"]) == pytest.approx(told["seconds"], abs=1e-6)
+    assert float(rows[-1]["X demand [mm]"]) == 0.6 * 25.4
+
+
+def test_json_and_samples_do_not_share_stdout(turndesk: Turndesk, ring: Path) -> None:
+    told = turndesk("scope", ring, "--json", "--csv")
+    assert (told.status, told.out) == (2, "")
+    assert "--json needs --csv OUT" in told.err
+
+
+@pytest.mark.parametrize("text", ["", "G01X1\n"])
+def test_what_is_no_record_is_refused(turndesk: Turndesk, tmp_path: Path, text: str) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(text)
+    told = turndesk("scope", path)
+    assert (told.status, told.out) == (2, "")
+    assert told.err.startswith(f"turndesk: {path} is no record of the scope")
+    assert turndesk("scope", tmp_path / "gone.scope").status == 2
+
+
+def test_a_folder_that_is_not_there_is_told(turndesk: Turndesk, ring: Path, tmp_path: Path) -> None:
+    told = turndesk("scope", ring, "--csv", tmp_path / "no" / "out.csv")
+    assert told.status == 2
+    assert "out.csv" in told.err

@@ -1,0 +1,119 @@
+"""What the simulated machine samples: every millisecond of a motion, whoever looks when; little at rest."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from core.ports import FloatArray, Stop
+from drivers.sample_log import SampleLog
+from drivers.simulated.simulated_machine import Simulation
+from tests.drivers.machines import play, ramp, simulation
+
+ZERO = (0.0, 0.0, 0.0)
+T, DEMAND, ACTUAL, LOAD, SPEED, TURNS, SPINDLE_LOAD, QUEUE = 0, 1, 4, 7, 10, 11, 12, 13
+
+
+def taken(sim: Simulation) -> FloatArray:
+    assert sim.ports.samples is not None
+    return sim.ports.samples.take()
+
+
+def test_a_motion_is_sampled_on_the_models_grid_with_the_error_that_the_law_has() -> None:
+    sim, clock = simulation()
+    taken(sim)
+    sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
+    play(sim, clock, 0.4)
+    rows = taken(sim)
+    moving = rows[(rows[:, T] > 0.0305) & (rows[:, T] < 0.25)]
+    assert np.diff(moving[:, T]) == pytest.approx(0.001, abs=1e-9)
+    cruising = moving[(moving[:, T] > 0.15) & (moving[:, T] < 0.22)]
+    assert cruising[:, DEMAND] - cruising[:, ACTUAL] == pytest.approx(0.0955, abs=0.002)  # 2(1 - ff)v/wn
+    for row in rows:
+        assert sim.ports.axes.demand_at(row[T])[0] == tuple(row[DEMAND:ACTUAL])
+    assert rows[0, QUEUE] == pytest.approx(0.0, abs=0.001) or rows[0, QUEUE] > 0.2
+    assert np.isnan(rows[:, SPINDLE_LOAD]).all()
+    assert abs(rows[:, LOAD]).max() <= 100.0
+
+
+@pytest.mark.parametrize("tick", [0.0013, 0.01, 0.2])
+def test_the_samples_are_the_same_whoever_looks_when(tick: float) -> None:
+    def sampled(every: float) -> FloatArray:
+        sim, clock = simulation()
+        taken(sim)
+        sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
+        sim.ports.spindle.run(900.0)
+        rows = []
+        while clock.now() < 0.5:
+            clock.advance(every)
+            sim.ports.axes.sample()
+            rows.append(taken(sim))
+        found = np.concatenate(rows)
+        assert len(found) == pytest.approx(clock.now() / 0.001, abs=1)
+        return found[:489]
+
+    np.testing.assert_allclose(sampled(tick), sampled(0.003), rtol=0.0, atol=1e-9)
+
+
+def test_a_spindle_is_sampled_also_while_the_slides_rest_and_its_ripple_is_the_known_one() -> None:
+    sim, clock = simulation()
+    taken(sim)
+    sim.machine.spindle_wander(0.02, 0.25)
+    sim.ports.spindle.run(1200.0)
+    play(sim, clock, 3.0)
+    taken(sim)
+    play(sim, clock, 1.0)
+    rows = taken(sim)
+    t = rows[:, T]
+    assert len(rows) == pytest.approx(1000, abs=1)
+    assert rows[:, SPEED] == pytest.approx(1200.0 * (1.0 + 0.02 * np.sin(2 * math.pi * t / 0.25)), abs=1e-6)
+    # its integral, in steps of the encoder's 4096 edges
+    swing = 0.02 * 0.25 / (2 * math.pi) * (1.0 - np.cos(2 * math.pi * t / 0.25))
+    turned = 20.0 * (t + swing)
+    assert rows[:, TURNS] - rows[0, TURNS] == pytest.approx(turned - turned[0], abs=1.1 / 4096)
+
+
+def test_a_machine_at_rest_says_so_ten_times_a_second() -> None:
+    sim, clock = simulation()
+    taken(sim)
+    play(sim, clock, 10.0)
+    rows = taken(sim)
+    assert len(rows) == pytest.approx(100, abs=2)
+    assert not rows[:, DEMAND:LOAD].any()
+
+
+def test_without_power_the_demand_is_where_the_slide_is() -> None:
+    sim, clock = simulation()
+    taken(sim)
+    sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
+    play(sim, clock, 0.15)
+    sim.ports.axes.stop(Stop.OFF)
+    taken(sim)
+    play(sim, clock, 0.2)
+    rows = taken(sim)
+    np.testing.assert_array_equal(rows[1:, DEMAND:ACTUAL], rows[1:, ACTUAL:LOAD])
+    assert rows[-1, ACTUAL] > rows[1, ACTUAL]  # it rolls on
+
+
+def test_nobody_who_takes_them_costs_nothing_and_a_late_one_has_the_last_eight_seconds() -> None:
+    sim, clock = simulation()
+    sim.ports.spindle.run(600.0)
+    play(sim, clock, 1.0)
+    assert taken(sim).shape == (0, 14)
+    play(sim, clock, 20.0)
+    rows = taken(sim)
+    assert len(rows) == 8192
+    assert rows[-1, T] == pytest.approx(21.0, abs=0.002)
+    assert np.diff(rows[:, T]) == pytest.approx(0.001, abs=1e-9)
+
+
+def test_a_log_gives_each_row_once_the_oldest_first() -> None:
+    log = SampleLog(0, kept=4)
+    for n in range(6):
+        log.add(float(n), 0.0, 0.0, 0.0, 0.0)
+    assert log.take(3)[:, T].tolist() == [2.0, 3.0, 4.0]
+    log.add(6.0, 0.0, 0.0, 0.0, 0.0)
+    assert log.take()[:, T].tolist() == [5.0, 6.0]
+    assert log.take().shape == (0, 5)

@@ -1,0 +1,240 @@
+"""The recorder of the scope: what the executor hands over is what was done, and it waits for nobody."""
+
+from __future__ import annotations
+
+import dataclasses
+import errno
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from core.executor.commands import CycleStart, EnableDrives
+from core.executor.executor import Executor
+from core.executor.recorder import KEPT, Recorder, Tick, recorded_of, rotate
+from core.executor.snapshot import Event, State
+from core.ports import DriverError, FloatArray
+from core.records.record_file import open_record
+from core.records.ring_file import NOW, read_ring
+from tests.executor.rig import INCH, Rig
+
+PART = "G90G94\nM03S600\nM08\nG01X.2Z-.2F20\nX0Z0\nM30\n"
+
+
+class Recorded(Rig):
+    """A rig that is recorded."""
+
+    folder: Path | None = None
+    own: bool = True  # whether the driver has samples of its own
+    recorder: Recorder
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        ports = self.sim.ports if self.own else dataclasses.replace(self.sim.ports, samples=None)
+        self.recorder = Recorder(recorded_of(self.machine, ports), self.folder)
+
+        def hear(event: Event) -> None:
+            self.events.append(self.recorder.note(event))
+
+        self.executor = Executor(self.machine, ports, hear, self._passes, tell=self.recorder.tell)
+        self.executor.tick()
+
+    def make_part(self) -> None:
+        """One part."""
+        self.post(EnableDrives())
+        self.load(PART)
+        self.post(CycleStart())
+        self.until(State.RUN)
+        self.until(State.IDLE)
+
+
+def rig(folder: Path | None = None, *, own: bool = True) -> Recorded:
+    kind = type("OneRecorded", (Recorded,), {"folder": folder, "own": own})
+    made: Recorded = kind()
+    return made
+
+
+def test_a_part_is_recorded_with_line_block_state_and_outputs() -> None:
+    it = rig()
+    it.make_part()
+    it.recorder.drain()
+    record = it.recorder.between(-np.inf, np.inf)
+    columns = record.columns
+    assert record.rate == 1000.0
+    assert columns["X demand"].max() == pytest.approx(0.2 * INCH, abs=1e-3)
+    assert columns["Z demand"].min() == pytest.approx(-0.2 * INCH, abs=1e-3)
+    feeding = columns["line"] == 4
+    assert feeding.sum() == pytest.approx(1000 * np.hypot(0.2, 0.2) / 20 * 60, rel=0.1)
+    assert set(columns["output coolant"][feeding]) == {1.0}
+    states = record.about["states"].split("|")
+    assert {states[int(each)] for each in columns["state"][feeding]} == {"RUNNING"}
+    assert columns["queue"][feeding].max() > 0.2
+    assert np.diff(record.times[feeding]) == pytest.approx(0.001, abs=1e-9)
+
+
+def test_a_driver_without_samples_is_recorded_as_it_is_seen() -> None:
+    it = rig(own=False)
+    it.make_part()
+    it.recorder.drain()
+    record = it.recorder.between(-np.inf, np.inf)
+    moving = record.columns["line"] == 4
+    assert record.rate == 100.0
+    assert np.diff(record.times[moving]) == pytest.approx(0.01, abs=1e-9)
+    assert record.columns["X demand"].max() == pytest.approx(0.2 * INCH, abs=1e-3)
+    assert np.isnan(record.columns["X load"]).all()
+    assert record.columns["spindle turns"].max() > 5.0
+    assert record.columns["queue"].max() > 0.2
+
+
+@pytest.mark.parametrize("own", [True, False])
+def test_a_machine_at_rest_takes_ten_rows_a_second(own: bool) -> None:
+    it = rig(own=own)
+    it.run(10.0)
+    it.recorder.drain()
+    assert it.recorder.ring.ticks.whole == pytest.approx(100, abs=12)
+    assert it.recorder.ring.samples.whole == pytest.approx(100, abs=12)
+
+
+def test_a_late_tick_is_told_also_by_a_machine_at_rest() -> None:
+    it = rig()
+    it.run(1.0)
+    it.tick(0.08)
+    it.run(0.5)
+    it.recorder.drain()
+    assert it.recorder.between(0.0, 9.0, ("lateness",)).columns["lateness"].max() == pytest.approx(0.07)
+
+
+def test_a_driver_that_cannot_tell_its_samples_stops_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    it = rig()
+
+    def broken() -> FloatArray:
+        raise DriverError("no samples")
+
+    monkeypatch.setattr(it.sim.ports.samples, "take", broken)
+    it.make_part()
+    assert it.shot.alarms == ()
+
+
+def test_a_recorder_that_raises_stops_nothing() -> None:
+    it = Rig()
+
+    def raises(_tick: Tick) -> None:
+        raise ValueError("no room")
+
+    it.executor = Executor(it.machine, it.sim.ports, it.events.append, tell=raises)
+    it.post(EnableDrives())
+    it.run(0.1)
+    assert it.state is State.IDLE
+    assert it.shot.alarms == ()
+
+
+# --- alarms ----------------------------------------------------------------------------------------------
+
+
+def test_an_alarm_keeps_the_ten_seconds_before_it_until_the_machine_stands(tmp_path: Path) -> None:
+    it = rig(tmp_path)
+    it.post(EnableDrives())
+    it.run(11.0)
+    it.load(PART)
+    it.post(CycleStart())
+    it.until(State.RUN)
+    it.run(1.2)
+    it.recorder.drain()
+    it.sim.machine.drive_fault("X", "overcurrent")
+    it.until(State.FAULT)
+    for _ in range(300):
+        it.tick()
+        it.recorder.drain()
+    (alarm,) = [event for event in it.events if event.kind == "alarm"]
+    assert alarm.alarm is not None
+    assert alarm.record.endswith(f"-alarm{alarm.alarm.number}.scope")
+    record = open_record(tmp_path / alarm.record)
+    assert record.times[0] == pytest.approx(alarm.t - 10.0, abs=0.11)
+    assert alarm.t + 0.2 < record.times[-1] < alarm.t + 2.001
+    assert float(record.about["alarm time"]) == alarm.t
+    assert record.about["alarm"].startswith(f"{alarm.alarm.number} ")
+    assert record.about["program"] == "PART"
+    assert abs(record.columns["spindle speed"][-1]) < 1.0 or record.times[-1] > alarm.t + 1.9
+    assert not [each for each in tmp_path.iterdir() if each.name.endswith(".part")]
+
+
+def test_alarms_that_come_together_have_one_record_and_a_closing_desk_writes_it(tmp_path: Path) -> None:
+    it = rig(tmp_path)
+    it.post(EnableDrives())
+    it.run(0.5)
+    it.sim.machine.drive_fault("X", "overcurrent")
+    it.run(0.05)
+    it.sim.machine.press_estop()
+    it.run(0.05)
+    it.recorder.close()
+    names = {event.record for event in it.events if event.kind in {"alarm", "estop"}}
+    assert len(names) == 1
+    assert open_record(tmp_path / names.pop()).times.size > 5
+
+
+def test_a_stop_has_no_record(tmp_path: Path) -> None:
+    it = rig(tmp_path)
+    it.make_part()
+    it.recorder.close()
+    assert {event.record for event in it.events} == {""}
+    assert [each.name for each in tmp_path.iterdir()] == [NOW]
+
+
+def test_the_oldest_records_of_alarms_go(tmp_path: Path) -> None:
+    for n in range(KEPT + 3):
+        (tmp_path / f"20260101T1200{n:02d}-alarm507.scope").write_bytes(b"")
+    (tmp_path / "mine.scope").write_bytes(b"")
+    rotate(tmp_path)
+    left = sorted(each.name for each in tmp_path.iterdir())
+    assert len(left) == KEPT + 1
+    assert left[0] == "20260101T120003-alarm507.scope"
+    assert left[-1] == "mine.scope"
+
+
+# --- the file --------------------------------------------------------------------------------------------
+
+
+def test_the_file_has_what_the_memory_has(tmp_path: Path) -> None:
+    it = rig(tmp_path)
+    it.make_part()
+    it.recorder.close()
+    kept, found = it.recorder.between(-np.inf, np.inf), read_ring(tmp_path / NOW)
+    np.testing.assert_array_equal(found.times, kept.times)
+    for name in ("X demand", "Z actual", "line", "output coolant", "spindle turns"):
+        np.testing.assert_array_equal(found.columns[name], kept.columns[name], name)
+
+
+def test_a_full_disk_is_told_and_the_record_goes_on_in_memory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(_fd: int, _at: int, _size: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "posix_fallocate", full)
+    it = rig(tmp_path)
+    assert it.recorder.trouble.startswith("the record is kept in memory alone: ")
+    assert it.recorder.trouble.endswith("now.ring: the disk is full; make room on it")
+    it.make_part()
+    it.recorder.drain()
+    assert it.recorder.between(-np.inf, np.inf).columns["X demand"].max() > 5.0
+    it.recorder.close()
+
+
+def test_a_disk_that_fails_later_ends_the_file_and_not_the_record(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    it = rig(tmp_path)
+    it.run(1.0)
+    it.recorder.drain()
+
+    def fails(*_: object) -> int:
+        raise OSError(errno.EIO, os.strerror(errno.EIO))
+
+    monkeypatch.setattr(os, "pwrite", fails)
+    it.make_part()
+    it.recorder.drain()
+    monkeypatch.undo()
+    assert "now.ring: Input/output error" in it.recorder.trouble
+    assert it.recorder.between(-np.inf, np.inf).columns["X demand"].max() > 5.0
+    assert read_ring(tmp_path / NOW).times.size >= 10

@@ -1,0 +1,158 @@
+"""Records as files: saved and opened to the bit; damaged, foreign and newer ones are refused."""
+
+from __future__ import annotations
+
+import errno
+import io
+import json
+import os
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from core.records.record import Channel, Record
+from core.records.record_errors import RecordError
+from core.records.record_file import ENDING, open_record, save_csv, save_record, write_csv
+
+NAN = float("nan")
+CHANNELS = (Channel("X demand", "mm"), Channel("spindle load", "%"), Channel("input guard, left", "", True))
+
+
+def record() -> Record:
+    columns = {
+        "X demand": np.array([0.1, 1.0 / 3.0, -2.0]),
+        "spindle load": np.array([NAN, 12.5, NAN]),
+        "input guard, left": np.array([NAN, 0.0, 1.0]),
+    }
+    return Record(
+        CHANNELS, np.array([5.0, 5.001, 5.25]), columns, 1_700_000_000.5, 1000.0, {"program": "PIN"}
+    )
+
+
+def test_what_is_opened_is_what_was_saved_to_the_bit(tmp_path: Path) -> None:
+    save_record(record(), tmp_path / f"one{ENDING}")
+    found, wanted = open_record(tmp_path / f"one{ENDING}"), record()
+    np.testing.assert_array_equal(found.times, wanted.times)
+    for name, column in wanted.columns.items():
+        np.testing.assert_array_equal(found.columns[name], column, name)
+    assert (found.channels, found.about) == (wanted.channels, wanted.about)
+    assert (found.started, found.rate) == (wanted.started, wanted.rate)
+    assert [each.name for each in tmp_path.iterdir()] == ["one.scope"]
+
+
+def test_csv_has_every_digit_and_leaves_out_what_is_not_known() -> None:
+    out = io.StringIO()
+    write_csv(record(), out.write)
+    assert out.getvalue().splitlines() == [
+        "t [s],X demand [mm],spindle load [%],input guard  left",
+        "0.000000,0.1,,",
+        "0.001000,0.3333333333333333,12.5,0",
+        "0.250000,-2.0,,1",
+    ]
+
+
+@pytest.mark.parametrize("cut", [30, 300, -30])
+def test_a_file_that_is_cut_off_is_refused(tmp_path: Path, cut: int) -> None:
+    path = tmp_path / "cut.scope"
+    save_record(record(), path)
+    path.write_bytes(path.read_bytes()[:cut])
+    with pytest.raises(RecordError, match=r"cut\.scope is cut off; it cannot be read"):
+        open_record(path)
+
+
+def test_a_damaged_file_is_refused_wherever_the_damage_is(tmp_path: Path) -> None:
+    path = tmp_path / "bad.scope"
+    save_record(record(), path)
+    whole = path.read_bytes()
+    for at in range(0, len(whole) - 4, 11):
+        path.write_bytes(whole[:at] + bytes(255 - byte for byte in whole[at : at + 4]) + whole[at + 4 :])
+        try:
+            found = open_record(path)
+        except RecordError as error:
+            assert "bad.scope" in str(error)  # noqa: PT017  either it is refused, or nothing is lost
+        else:
+            np.testing.assert_array_equal(found.columns["X demand"], record().columns["X demand"])
+
+
+@pytest.mark.parametrize("text", [b"", b"G01X1\n", b"\x00" * 5000, b"PNG no record"])
+def test_a_foreign_file_is_refused(tmp_path: Path, text: bytes) -> None:
+    path = tmp_path / "part.nc"
+    path.write_bytes(text)
+    with pytest.raises(RecordError, match=r"part\.nc is no record of the scope"):
+        open_record(path)
+
+
+def test_another_archive_is_refused(tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "other.zip", "w") as archive:
+        archive.writestr("readme.txt", "hello")
+    with pytest.raises(RecordError, match=r"other\.zip is no record of the scope"):
+        open_record(tmp_path / "other.zip")
+
+
+def test_objects_in_an_archive_are_never_run(tmp_path: Path) -> None:
+    """An archive of numpy may hold pickled objects, which are programs."""
+    path = tmp_path / "evil.scope"
+    with path.open("wb") as file:
+        np.savez(file, about=np.array([{"version": 1}], dtype=object))
+    with pytest.raises(RecordError, match=r"evil\.scope is damaged"):
+        open_record(path)
+
+
+def changed(path: Path, **changes: object) -> None:
+    """The same record, described in another way."""
+    save_record(record(), path)
+    with np.load(path) as archive:
+        arrays = {name: archive[name] for name in archive.files}
+    told = json.loads(arrays["about"].tobytes()) | changes
+    arrays["about"] = np.frombuffer(json.dumps(told).encode(), dtype=np.uint8)
+    with path.open("wb") as file:
+        np.savez(file, **arrays)
+
+
+def test_a_newer_one_is_refused(tmp_path: Path) -> None:
+    changed(tmp_path / "new.scope", version=9)
+    with pytest.raises(RecordError, match=r"newer TurnDesk \(version 9\)"):
+        open_record(tmp_path / "new.scope")
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"version": "x"},
+        {"channels": 3},
+        {"channels": [["a", "b"]]},
+        {"about": None},
+        {"started": "noon"},
+        {"channels": [["X", "mm", False]] * 9},
+    ],
+)
+def test_a_description_that_does_not_fit_is_refused(tmp_path: Path, changes: dict[str, object]) -> None:
+    changed(tmp_path / "odd.scope", **changes)
+    with pytest.raises(RecordError, match=r"odd\.scope is damaged"):
+        open_record(tmp_path / "odd.scope")
+
+
+def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+    with pytest.raises(RecordError, match=r"gone\.scope: there is no such file"):
+        open_record(tmp_path / "gone.scope")
+
+
+@pytest.mark.parametrize("save", [save_record, save_csv])
+def test_a_full_disk_is_told_and_the_old_file_stays(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, save: object
+) -> None:
+    path = tmp_path / "one.scope"
+    path.write_text("old")
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Path, "open", full)
+    assert callable(save)
+    with pytest.raises(RecordError, match=r"one\.scope: the disk is full; make room on it"):
+        save(record(), path)
+    monkeypatch.undo()
+    assert path.read_text() == "old"
+    assert [each.name for each in tmp_path.iterdir()] == ["one.scope"]
