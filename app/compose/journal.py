@@ -11,6 +11,7 @@ from app.desk.data_folder import data_folder
 from app.desk.persistence import Persistence
 from app.offsets.offset_book import OffsetBook
 from app.programs.run_history import note_cut_off_runs
+from app.quality.cycle_recorder import CycleRecorder
 from core.executor.interrupted_job import InterruptedJob, of_plain, plain
 from core.executor.snapshot import Event
 from core.language.source import Source
@@ -40,6 +41,7 @@ class Journal(Persistence):
         self._store: Store | None = None
         self._program = ""
         self._trouble = ""
+        self._recorder = CycleRecorder()
         self._noted: InterruptedJob | None = None  # what a power cut would leave interrupted
         self._closing = threading.Event()
         self.left: InterruptedJob | None = None  # what the last one has left
@@ -102,6 +104,7 @@ class Journal(Persistence):
         store.log_event(event.kind, event.text, event.line)
         if event.kind == "part" and self._program:
             store.count_part(Path(self._program).name)
+        self._recorder.hear(event, store)
 
     def keep(self, source: Source) -> None:
         """The text that is about to be proved and run becomes a version of its program."""

@@ -39,6 +39,7 @@ class CommandHandler:
             commands.Prepare: self._prepare,
             commands.ConfirmStart: self._confirm,
             commands.PartsMade: self._count,
+            commands.BarNextPart: self._bar,
             commands.Jog: self._jog,
             commands.JogStep: self._step,
             commands.JogStop: lambda _: control.jogger.stop(),
@@ -153,6 +154,12 @@ class CommandHandler:
 
     def _count(self, command: commands.PartsMade) -> None:
         self._control.counters.made = max(0, command.parts)
+
+    def _bar(self, command: commands.BarNextPart) -> None:
+        status = self._control.status
+        if command.why != status.next_barred:
+            status.next_barred, status.start_refused = command.why, ""
+            self._context.log("switch", f"no other part: {command.why}" if command.why else "parts may go on")
 
     # --- jog, homing --------------------------------------------------------------------------------------
 

@@ -182,6 +182,13 @@ class PartsMade(Command):
 
 
 @dataclass(frozen=True, slots=True)
+class BarNextPart(Command):
+    """No other part begins after the one under way, and why; empty: another may. Restarts and MDI may."""
+
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
 class Prepare(Command):
     """What the next Cycle Start begins: the program, a restart in it, or a line of MDI with its proof.
 

@@ -25,6 +25,11 @@ class Counters:
     underruns: int = 0
     cycle: float = 0.0
     last_cycle: float = 0.0
+    cutting: Mapping[int, float] = field(default_factory=dict)  # by tool: at feed, dry runs not counted
+
+    def cut(self, tool: int, seconds: float) -> None:
+        """So long at feed with this tool; whoever has the figures of before keeps them as they were."""
+        self.cutting = {**self.cutting, tool: self.cutting.get(tool, 0.0) + seconds}
 
 
 @dataclass(slots=True)
@@ -40,6 +45,7 @@ class ControlStatus:
     starts: Starts = Starts.PROGRAM
     prepared: Job | None = None  # the restart or the line of MDI that Cycle Start begins
     prepared_proof: Proof | None = None
+    next_barred: str = ""  # why no other part begins, as whoever keeps tool lives has told
     tool_open: bool = False  # MDI has called a tool, and its first move is still to come
     interrupted: InterruptedJob | None = None  # a program that did not come to its end
     modal: Modal = field(default_factory=Modal)  # in force while no program is under way

@@ -180,6 +180,7 @@ class Executor:
         self._log_override()
         if self._control.state in ACTIVE:
             self._control.counters.cycle += context.now - before
+            self._control.program_run.cut(context.now - before)
             if context.now - before > _STALL:
                 context.log("starved", f"the control was away for {context.now - before:.2f} s")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from core.executor.control_status import Counters
 from core.executor.job import Job
 from core.executor.machine_context import MachineContext
+from core.executor.snapshot import Event
 
 
 class Workpiece:
@@ -70,5 +71,6 @@ class PartCount:
         else:
             counters.parts += 1
             counters.made += 1
-            self._context.log("part", f"part {counters.parts}, {seconds:.2f} s")
+            text, line = f"part {counters.parts}, {seconds:.2f} s", self._context.line
+            self._context.log_event(Event(self._context.now, "part", text, line, part=counters.made))
         self.piece.end()

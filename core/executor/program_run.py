@@ -87,6 +87,12 @@ class ProgramRun:
         if not (self._line or self._between):
             self.parts.piece.disturbed = self.parts.piece.disturbed or why
 
+    def cut(self, seconds: float) -> None:
+        """So much time has gone by: at feed it wears the tool. In a dry run nothing is cut."""
+        block = self.cycle.current if self.cycle is not None and not self.cycle.at_rest else None
+        if block is not None and block.moves and not block.rapid and not self._context.switches.no_count:
+            self.counters.cut(block.modal.tool, seconds)
+
     def leave(self) -> bool:
         """A cycle that was reset is over as soon as the slides rest; True once it is."""
         if self.cycle is None or not self.cycle.at_rest:
@@ -170,7 +176,7 @@ class ProgramRun:
     def _go_round(self, cycle: Cycle) -> None:
         """The next part begins once changed offsets are proved; or why it does not is said."""
         repeat = self._context.switches.cycle_repeat
-        if repeat and self.changed_offsets.pending:
+        if repeat and self.changed_offsets.pending and not self.status.next_barred:
             cycle.wait_for("PROOF WITH THE CHANGED OFFSETS")
             return
         why = self._why_not_again(cycle.modal)
@@ -184,8 +190,11 @@ class ProgramRun:
         self.interruption.begin(None)
         self._open(self.status.job)
         self._enter(State.RUN)
+        self._context.log("repeat", self.status.job.source.name)
 
     def _why_not_again(self, left: Modal) -> str:
+        if self.status.next_barred:
+            return self.status.next_barred
         if self.changed_offsets.wanted:
             return self.changed_offsets.refusal(left)
         old = outdated(self.status.job, left) if self.status.job is not None else ""

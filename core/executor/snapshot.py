@@ -6,6 +6,7 @@ control and becomes an alarm.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -109,6 +110,8 @@ class Snapshot:
     last_cycle: float = 0.0
     parts: int = 0  # completed and counted since the executor was started
     made: int = 0  # of the loaded program, as it was told with ``PartsMade`` and counted since
+    cutting: Mapping[int, float] = field(default_factory=dict)  # s at feed by tool since the start
+    next_barred: str = ""  # why no other part begins after the one under way
     ends: int = 0  # programs that came to their end, counted or not
     underruns: int = 0
     max_following_error: float = 0.0
@@ -141,13 +144,14 @@ class Event:
     """Something worth remembering: goes to the log by a queue."""
 
     t: float
-    # state, alarm, disturbed, estop, start, restart, mdi, end, part, uncounted, stop,
+    # state, alarm, disturbed, estop, start, repeat, restart, mdi, end, part, uncounted, stop,
     # interrupted, cleared, refused, override, switch, force, load, offsets
     kind: str
     text: str
     line: int = 0
     alarm: Alarm | None = None  # of an alarm, an E-stop and a stop: what the catalogue says of it
     record: str = ""  # file of the scope's record of the seconds before it, in the folder records
+    part: int = 0  # of a part: its number among those of the program
 
 
 # --- which state may follow which -----------------------------------------------------------------------

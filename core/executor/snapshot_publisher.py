@@ -83,6 +83,8 @@ class Publisher:
             last_cycle=counters.last_cycle,
             parts=counters.parts,
             made=counters.made,
+            cutting=counters.cutting,
+            next_barred=status.next_barred,
             ends=counters.ends,
             underruns=counters.underruns,
             max_following_error=control.supervisor.max_following_error,

@@ -116,7 +116,8 @@ def start_refusal(context: MachineContext, state: State, status: ControlStatus) 
         proof = status.prepared_proof
     if job is None and status.starts in _NOTHING:
         return hindrance(context, state) or _NOTHING[status.starts]
-    return job_refusal(context, state, job, proof) or (_moved(context, job) or _changed(context, status, job))
+    why = job_refusal(context, state, job, proof) or (_moved(context, job) or _changed(context, status, job))
+    return why or (status.next_barred if status.starts is Starts.PROGRAM else "")
 
 
 def _moved(context: MachineContext, job: Job | None) -> str:

@@ -58,11 +58,6 @@ def save_cycle(connection: sqlite3.Connection, row: CycleRow) -> None:
     )
 
 
-def drop_cycle(connection: sqlite3.Connection, key: str) -> None:
-    """What looked like another part was the end of the program."""
-    connection.execute("DELETE FROM part_cycles WHERE key = ?", (key,))
-
-
 def save_stop(connection: sqlite3.Connection, row: StopRow) -> None:
     """A stop that is over; the same one again tells its length anew."""
     marks = ", ".join("?" * len(row))

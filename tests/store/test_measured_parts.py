@@ -130,10 +130,8 @@ def test_corrections_stand_between_the_parts(store: Store) -> None:
 def test_cycles_and_stops(store: Store) -> None:
     cycle(store, "1", 0)
     cycle(store, "1", 1, ended="2026-01-01T00:02:00Z", seconds=58.5, outcome="COMPLETE")
-    cycle(store, "2", 0)
     stop = StopRow("s1", "1", "pin.nc", "2026-01-01T00:01:30Z", 4.5, "FEED HOLD", 7)
     store.write(lambda c: part_cycles.save_stop(c, stop)).result(5)
-    store.write(lambda c: part_cycles.drop_cycle(c, "2")).result(5)
     with store.read() as connection:
         (row,) = part_cycles.cycles(connection, "pin.nc", 10)
         assert (row.part, row.seconds, row.load) == (1, 58.5, None)

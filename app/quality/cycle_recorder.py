@@ -1,0 +1,154 @@
+"""Cycle times and stops of every part, out of the executor's events; a row a part, a row a stop."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from core.executor.snapshot import Event, State
+from core.store import part_cycles
+from core.store.part_cycles import CycleRow, StopRow
+from core.store.store import Store
+from core.store.store_rows import utc_now
+
+COMPLETE, UNCOUNTED, GIVEN_UP, RESTARTED = "COMPLETE", "NOT COUNTED", "GIVEN UP", "RESTARTED"
+BETWEEN = "BETWEEN CYCLES"  # nobody has started the next one
+_STANDS = frozenset({State.HOLD.value, State.BLOCK_END.value, State.PROGRAM_STOP.value})
+_GOES = frozenset({State.RUN.value, State.WAIT.value, State.HOLDING.value})
+_BROKEN = frozenset({State.FAULT.value, State.ESTOP.value})
+
+
+@dataclass(slots=True)
+class _Cycle:
+    """The part under way: its row, when it began, how long it has stood since."""
+
+    row: CycleRow
+    began: float
+    stood: float = 0.0
+    restarted: bool = False
+
+
+@dataclass(slots=True)
+class _Stop:
+    row: StopRow
+    began: float
+    named: bool  # whether its reason is more than the name of the state
+
+
+class CycleRecorder:
+    """``hear`` is called for every event, in their order; it posts to the store and never waits.
+
+    Times of day are those of hearing, lengths those of the events. What broke a cycle off counts as its stop
+    until the next cycle is started.
+    """
+
+    def __init__(self, now: Callable[[], str] = utc_now) -> None:
+        self._now = now
+        self._program = ""
+        self._cycle: _Cycle | None = None
+        self._stop: _Stop | None = None
+        self._reason = ""  # told before the machine stood
+        self._numbered = 0
+
+    def hear(self, event: Event, store: Store) -> None:
+        """One event."""
+        if event.kind == "load":
+            self._program = Path(event.text).name
+        elif event.kind in {"start", "repeat"}:
+            self._end_stop(event, store)
+            self._begin(event, store)
+        elif event.kind == "restart" and self._cycle is not None:
+            self._cycle.restarted = True
+        elif event.kind == "state":
+            self._state(event, store)
+        elif event.kind in {"stop", "alarm", "estop"} and event.alarm is not None:
+            self._name(event.alarm.text)
+        elif event.kind in {"part", "uncounted"}:
+            self._end(event, store, COMPLETE if event.kind == "part" else UNCOUNTED)
+        elif event.kind == "end":
+            self._end(event, store, GIVEN_UP)  # behind a part nothing is left to end
+            if self._stop is None or self._stop.row.cycle:
+                self._end_stop(event, store)
+                self._begin_stop(event, BETWEEN, named=True)
+
+    # --- cycles -------------------------------------------------------------------------------------------
+
+    def _key(self) -> tuple[str, str]:
+        self._numbered += 1
+        now = self._now()
+        return f"{now}#{self._numbered}", now
+
+    def _begin(self, event: Event, store: Store) -> None:
+        key, now = self._key()
+        self._cycle = _Cycle(CycleRow(key, self._program, 0, now), event.t)
+        self._save(store, self._cycle.row)
+
+    def _end(self, event: Event, store: Store, outcome: str) -> None:
+        cycle, self._cycle = self._cycle, None
+        if cycle is None:
+            return
+        if self._stop is not None and self._stop.row.cycle:
+            cycle.stood += event.t - self._stop.began
+        if cycle.restarted and outcome == COMPLETE:
+            outcome = RESTARTED
+        seconds = max(0.0, event.t - cycle.began - cycle.stood)
+        row = cycle.row._replace(part=event.part, ended=self._now(), seconds=seconds, outcome=outcome)
+        self._save(store, row)
+
+    @staticmethod
+    def _save(store: Store, row: CycleRow) -> None:
+        store.keep(
+            lambda unwritten: unwritten.latest(("cycle", row.key), lambda c: part_cycles.save_cycle(c, row))
+        )
+
+    # --- stops --------------------------------------------------------------------------------------------
+
+    def _state(self, event: Event, store: Store) -> None:
+        cycle = self._cycle
+        if event.text in _BROKEN:
+            self._break(event, store)
+        elif cycle is None:
+            return
+        elif event.text in _STANDS and self._stop is None:
+            self._begin_stop(event, self._reason or event.text, named=bool(self._reason))
+        elif event.text in _GOES:
+            self._go(cycle, event, store)
+
+    def _go(self, cycle: _Cycle, event: Event, store: Store) -> None:
+        if event.text != State.HOLDING.value:
+            self._reason = ""
+        if self._stop is not None:
+            cycle.stood += event.t - self._stop.began
+            self._end_stop(event, store)
+
+    def _break(self, event: Event, store: Store) -> None:
+        """An alarm or the E-stop: the cycle is over, and production stands until the next start."""
+        self._end(event, store, event.text)
+        if self._stop is not None and self._stop.row.reason == BETWEEN:
+            self._end_stop(event, store)
+        if self._stop is None:
+            self._begin_stop(event, self._reason or event.text, named=bool(self._reason))
+
+    def _begin_stop(self, event: Event, reason: str, *, named: bool) -> None:
+        key, now = self._key()
+        cycle = self._cycle.row.key if self._cycle is not None else ""
+        self._stop = _Stop(StopRow(key, cycle, self._program, now, 0.0, reason, event.line), event.t, named)
+        self._reason = ""
+
+    def _end_stop(self, event: Event, store: Store) -> None:
+        stop, self._stop, self._reason = self._stop, None, ""
+        if stop is None:
+            return
+        row = stop.row._replace(seconds=max(0.0, event.t - stop.began))
+        store.keep(
+            lambda unwritten: unwritten.latest(("stop", row.key), lambda c: part_cycles.save_stop(c, row))
+        )
+
+    def _name(self, reason: str) -> None:
+        """The reason of the stop that stands, or of the one that is to come."""
+        stop = self._stop
+        if stop is None:
+            self._reason = reason
+        elif not stop.named:
+            self._stop = replace(stop, row=stop.row._replace(reason=reason), named=True)

@@ -1,0 +1,151 @@
+"""Time at feed by tool, and the bar that keeps the next part from beginning."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.executor.commands import (
+    BarNextPart,
+    CycleStart,
+    FeedHold,
+    FeedOverride,
+    Prepare,
+    Reset,
+    SetSwitch,
+)
+from core.executor.snapshot import Starts, State
+from core.interpreter.job_setup import ToolOffset
+from tests.executor.lines import mdi
+from tests.executor.rig import Rig
+
+TOOLS = {1: ToolOffset(-12.7, -50.8), 2: ToolOffset(-12.7, -50.8)}
+# .4 in at 12 in/min is 2 s with T1, .2 in at 6 in/min 2 s with T2; the rest is rapid.
+PART = "G90G94F300G73\nT1\nG00X1Z.1\nG01G94F12Z-.3\nG00X1Z1\nT2\nG00X1Z.1\nG01F6Z-.1\nG00Z1\nM30\n"
+SPENT = "T1: its life is gone, 50 of 50 parts: change the insert"
+
+
+def cut(rig: Rig) -> list[float]:
+    return [rig.shot.cutting.get(number, 0.0) for number in (1, 2)]
+
+
+def test_time_at_feed_is_that_of_the_tool_that_cuts() -> None:
+    rig = Rig()
+    rig.start(PART, TOOLS)
+    rig.until(State.IDLE)
+    assert cut(rig) == pytest.approx([2.0, 2.0], abs=0.06)
+    assert set(rig.shot.cutting) == {1, 2}
+
+
+def test_a_slower_feed_takes_longer_and_a_hold_takes_nothing() -> None:
+    rig = Rig()
+    rig.start(PART, TOOLS)
+    rig.post(FeedOverride(0.5))
+    rig.until_true(lambda shot: shot.line == 4)
+    rig.run(0.5)
+    rig.post(FeedHold())
+    rig.until(State.HOLD)
+    before = cut(rig)
+    rig.run(5.0)
+    assert cut(rig) == before
+    rig.post(CycleStart())
+    rig.until(State.IDLE)
+    assert cut(rig) == pytest.approx([4.0, 4.0], abs=0.2)
+
+
+def test_a_part_that_is_given_up_has_worn_its_tool_all_the_same() -> None:
+    rig = Rig()
+    rig.start(PART, TOOLS)
+    rig.until_true(lambda shot: shot.line == 4)
+    rig.run(1.0)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    assert cut(rig) == pytest.approx([1.0, 0.0], abs=0.1)
+
+
+def test_a_dry_run_cuts_nothing() -> None:
+    rig = Rig()
+    rig.post(SetSwitch("no_count", True))
+    rig.start(PART, TOOLS)
+    rig.until(State.IDLE)
+    assert rig.shot.cutting == {}
+
+
+def test_a_snapshot_keeps_its_figures() -> None:
+    """Whoever looks at an old one finds the old time."""
+    rig = Rig()
+    rig.start(PART, TOOLS)
+    rig.until_true(lambda shot: 1 in shot.cutting)
+    before, figure = rig.shot, rig.shot.cutting[1]
+    rig.run(0.5)
+    assert before.cutting[1] == figure < rig.shot.cutting[1]
+
+
+def test_the_part_under_way_is_finished_and_no_other_begins() -> None:
+    rig = Rig()
+    rig.post(SetSwitch("cycle_repeat", True))
+    rig.start(PART, TOOLS)
+    rig.run(0.5)
+    rig.post(BarNextPart(SPENT))
+    assert rig.state is State.RUN
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+    assert rig.said("refused") == [f"no repeat: {SPENT}"]
+    rig.run(0.4)
+    rig.post(CycleStart())
+    assert rig.state is State.IDLE
+    assert rig.shot.start_refused == SPENT
+
+
+def test_a_new_insert_and_parts_go_on() -> None:
+    rig = Rig()
+    rig.ready()
+    rig.load(PART, TOOLS)
+    rig.post(BarNextPart(SPENT))
+    rig.run(0.4)
+    rig.post(CycleStart())
+    assert rig.shot.start_refused == SPENT
+    rig.post(BarNextPart(""))
+    assert (rig.shot.start_refused, rig.shot.next_barred) == ("", "")
+    rig.run(0.4)
+    rig.post(CycleStart())
+    assert rig.state is State.RUN
+
+
+def test_a_hold_is_gone_on_from() -> None:
+    """The part in the collet is to be finished."""
+    rig = Rig()
+    rig.start(PART, TOOLS)
+    rig.run(0.5)
+    rig.post(BarNextPart(SPENT), FeedHold())
+    rig.until(State.HOLD)
+    rig.run(0.4)
+    rig.post(CycleStart())
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+
+
+def test_a_line_of_mdi_is_no_part() -> None:
+    rig = Rig()
+    rig.ready()
+    rig.post(BarNextPart(SPENT))
+    mdi(rig, "G90")
+    assert rig.shot.lines == 1
+    rig.post(Prepare(Starts.PROGRAM))
+
+
+def test_what_does_not_start_for_another_reason_says_that_one() -> None:
+    """The cause told first is the one to be removed first."""
+    rig = Rig()
+    rig.post(BarNextPart(SPENT))
+    rig.ready()
+    rig.run(0.4)
+    rig.post(CycleStart())
+    assert rig.shot.start_refused == "no program is loaded"
+
+
+def test_the_same_bar_again_is_told_once() -> None:
+    rig = Rig()
+    rig.post(BarNextPart(SPENT))
+    rig.post(BarNextPart(SPENT))
+    rig.post(BarNextPart(""))
+    assert rig.said("switch") == [f"no other part: {SPENT}", "parts may go on"]
