@@ -30,9 +30,15 @@ class GrblOutput:
     safe: bool | None
 
 
+ESTOP, HARDWARE = "estop", "hardware"  # an E-stop that cuts the power by itself, and nobody tells
+
+
 @dataclass(frozen=True, slots=True)
 class GrblInput:
-    """Where an input is: ``pn.E`` is the letter E of the status report's pins."""
+    """Where an input is: ``pn.E`` is the letter E of the status report's pins.
+
+    ``hardware``, of the E-stop alone: the controller has no input for it.
+    """
 
     terminal: str
     active_low: bool

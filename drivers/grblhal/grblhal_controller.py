@@ -269,6 +269,10 @@ class Controller:
         """The controller's axes in the order of its reports and settings."""
         return self.identity.axes if self.identity is not None else "XYZ"
 
+    def has_pin(self, letter: str) -> bool:
+        """Whether its board has an input of this letter, as far as it tells."""
+        return self.identity is None or self.identity.has_pin(letter)
+
     @property
     def wired(self) -> tuple[GrblAxis, ...]:
         """The machine file's axes that the controller moves."""
@@ -396,6 +400,8 @@ class Controller:
         why = self.runner.go_on(self.listened)
         self.expected = self.expected and self.busy
         if why:
+            if self.identity is None:
+                self.fault = ""  # why it is not taken at all comes before its alarms
             self.fail(why, code_of(why, "controller-silent"))
 
     def _interval(self) -> float:

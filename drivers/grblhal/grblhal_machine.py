@@ -8,7 +8,7 @@ from core.ports import Clock, DriverError, MachinePorts, Stop
 from drivers.grblhal import grblhal_scripts
 from drivers.grblhal.grblhal_axes import GrblAxes
 from drivers.grblhal.grblhal_blocks import GrblBlocks
-from drivers.grblhal.grblhal_config import GrblConfig
+from drivers.grblhal.grblhal_config import ESTOP, HARDWARE, GrblConfig
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_spindle import GrblEncoder, GrblSpindle
 from drivers.grblhal.grblhal_terminals import GrblInputs, GrblIO
@@ -129,6 +129,9 @@ class GrblMachine:
         told = _grouped("output", {name: why for name, why in outputs.items() if why})
         told += _grouped("input", self.inputs.lacking())
         told += self._unlike() + self._homes()
+        estop = self.controller.config.inputs.get(ESTOP)
+        if estop is not None and estop.terminal == HARDWARE:
+            told.append("E-stop by hardware alone: the controller is not told, its state is not shown here")
         if "thread" not in self.blocks.caps:
             told.append("the controller reports no spindle encoder: threads are refused")
         return told

@@ -117,6 +117,9 @@ _READERS: dict[str, Callable[[str], Mapping[str, object] | None]] = {
 
 
 _LEAST_BUFFER = 256
+# Control inputs: reset, feed hold, cycle start, door, block delete, optional stop, E-stop, probe lost, motor
+# fault, motor warning. What else stands among the pins (limits by axis, probe) is not in [SIGNALS:…].
+_CONTROL_INPUTS = "RHSDLTEOFMQ"
 
 
 class Identity(NamedTuple):
@@ -130,6 +133,11 @@ class Identity(NamedTuple):
     inputs: int  # auxiliary digital inputs
     outputs: int
     letters: str = ""  # of its build: V variable spindle, M mist
+    signals: str | None = None  # control inputs that its board has, by their letters in a report's pins
+
+    def has_pin(self, letter: str) -> bool:
+        """Whether its board has this input, as far as it tells: firmware from before 2024 does not."""
+        return self.signals is None or letter not in _CONTROL_INPUTS or letter in self.signals
 
     @property
     def lathe(self) -> bool:
@@ -156,4 +164,5 @@ def read_identity(lines: Iterable[str]) -> Identity:
     options = frozenset(told.get("NEWOPT", "").split(",")) - {""}
     ports = [int(port) if port.isdecimal() else 0 for port in told.get("AUX IO", "0,0").split(",")]
     inputs, outputs = (*ports, 0, 0)[:2]
-    return Identity(told["VER"], blocks, buffer, axes, options, inputs, outputs, letters)
+    signals = told.get("SIGNALS")
+    return Identity(told["VER"], blocks, buffer, axes, options, inputs, outputs, letters, signals)

@@ -10,9 +10,10 @@ from collections.abc import Callable, Generator, Mapping
 
 from core.ports import DriverError
 from drivers.grblhal import grblhal_codes
+from drivers.grblhal.grblhal_config import ESTOP, HARDWARE
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_dialogue import Ask, Script, ScriptError, Step
-from drivers.grblhal.grblhal_report import read_identity
+from drivers.grblhal.grblhal_report import Identity, read_identity
 
 # --- The pieces that scripts are made of: one line and its answer, a full report, the modes.
 
@@ -83,11 +84,19 @@ def _words(c: Controller) -> Generator[Step, None, list[str]]:
     return told.removeprefix("[GC:").rstrip("]").split()
 
 
-def demand_axes(c: Controller) -> None:
-    """Raises ScriptError when an axis of the machine file is missing."""
-    missing = [axis.name for axis in c.wired if axis.name not in c.letters]
+def demand(c: Controller, identity: Identity) -> None:
+    """Raises ScriptError when an axis of the machine file is missing, or its E-stop."""
+    missing = [axis.name for axis in c.wired if axis.name not in identity.axes]
     if missing:
-        raise ScriptError(f"the controller has axes {c.letters}, not {', '.join(missing)}")
+        raise ScriptError(f"the controller has axes {identity.axes}, not {', '.join(missing)}")
+    estop = c.config.inputs.get(ESTOP)
+    if estop is not None and not identity.has_pin(estop.terminal.removeprefix("pn.")):
+        raise ScriptError(
+            f"the controller's board has no input {estop.terminal} for the E-stop: it tells"
+            f" [SIGNALS:{identity.signals}]. Use a board or firmware that has one; where the E-stop cuts the"
+            f' power by itself and tells nobody, say io.in.estop = {{ at = "{HARDWARE}" }}',
+            "controller-estop",
+        )
 
 
 # --- To rest without losing the position.
@@ -235,10 +244,11 @@ def connect(c: Controller) -> Script:
         yield from stop(c)
     yield from fresh(c)
     try:
-        c.identity = read_identity((yield from asked(c, "$I")))
+        identity = read_identity((yield from asked(c, "$I")))
     except DriverError as error:
         raise ScriptError(str(error), error.code) from error
-    demand_axes(c)
+    demand(c, identity)
+    c.identity = identity
     c.stream.use(c.identity.buffer)
     number = _alarm_of(c)
     if number not in grblhal_codes.CRITICAL:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from core.ports import DriverError
 from drivers.grblhal.grblhal_blocks import GrblBlocks
+from drivers.grblhal.grblhal_config import ESTOP, HARDWARE
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_dialogue import Ask
 
@@ -46,8 +47,12 @@ class GrblInputs:
         missing: dict[str, str] = {}
         for name, wired in self._c.config.inputs.items():
             port = self._port(name)
+            if name == ESTOP and wired.terminal == HARDWARE:
+                continue
             if port is None and not wired.terminal.startswith(_PIN):
                 missing[name] = f"{wired.terminal} is neither a pin nor an auxiliary input"
+            elif port is None and not self._c.has_pin(wired.terminal.removeprefix(_PIN)):
+                missing[name] = f"{wired.terminal} is not among the inputs that the controller's board has"
             elif port is not None and port >= have:
                 missing[name] = f"{wired.terminal} is not among the controller's {have} auxiliary inputs"
         return missing

@@ -81,6 +81,7 @@ def identity(m: ControllerState) -> list[str]:
         "[AXS:3:XYZ]",
         f"[NEWOPT:ENUMS,RT+,{home}{lathe}EXPR,TC,SED]",
         "[FIRMWARE:grblHAL]",
+        *([f"[SIGNALS:{quirks.signals}]"] if quirks.signals is not None else ()),
         "[NVS STORAGE:EEPROM]",
         "[DRIVER:Simulator]",
         "[DRIVER VERSION:260913]",

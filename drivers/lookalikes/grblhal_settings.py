@@ -16,6 +16,7 @@ class Quirks:
     index_missing: bool = False
     outputs: int = 16
     inputs: int = 8
+    signals: str | None = "RHSDLTEF"  # control inputs of its board; the simulator itself has a door alone, D
     lathe: bool = True
     built_for_lathes: bool = False  # always in lathe mode: there is no $32
     homing: int | bool = 0  # its $22; True: 3, axis by axis, and it does not insist

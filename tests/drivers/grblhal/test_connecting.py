@@ -190,6 +190,38 @@ def test_a_controller_that_is_no_lathe_is_refused() -> None:
         GrblBench(grbl_machine(("{ 13 = 0, 32 = 2 }", "{ 13 = 0 }")), quirky(lathe=False))
 
 
+def test_an_estop_that_the_board_has_not_is_refused() -> None:
+    """The firmware's own simulator tells [SIGNALS:D]: a pin that is never reported is no E-stop."""
+    with pytest.raises(DriverError, match=r"no input pn\.E for the E-stop: it tells \[SIGNALS:D\]"):
+        GrblBench(quirks=quirky(signals="D"))
+
+
+def test_an_estop_that_the_board_has_not_is_refused_in_an_alarm_too() -> None:
+    """Else the Reset of the alarm would go by."""
+    firmware, clock = left_behind(b"")
+    firmware.quirks.signals = "D"
+    firmware.raise_alarm(17)
+    with pytest.raises(DriverError, match="for the E-stop"):
+        connect(firmware, clock)
+
+
+def test_an_estop_by_hardware_alone_is_said_and_runs() -> None:
+    bench = GrblBench(
+        grbl_machine(('estop = { at = "pn.E" }', 'estop = { at = "hardware" }')), quirky(signals="D")
+    )
+    told = "\n".join(bench.machine.ports.warnings)
+    assert "E-stop by hardware alone" in told
+    assert "start (pn.S), hold (pn.H): each is not among the inputs that the controller's board has" in told
+    bench.start("G90G94F100\nX.1\nM30\n")
+    bench.until(State.IDLE)
+    assert bench.shot.parts == 1
+
+
+def test_older_firmware_tells_no_inputs_and_is_believed() -> None:
+    bench = GrblBench(quirks=quirky(signals=None))
+    assert not [told for told in bench.machine.ports.warnings if "pn.E" in told]
+
+
 def test_settings_are_written_once_and_read_back() -> None:
     bench = GrblBench(grbl_machine(("{ 13 = 0, 32 = 2 }", "{ 13 = 0, 32 = 2, 110 = 7620 }")))
     assert bench.peer.registers[110] == 7620.0
