@@ -43,6 +43,8 @@ class DevicePlant(Plant):
                     self.spindle_drive.step(self._at)
                 for drive in self.drives.values():
                     drive.step(step)
+                if self.spindle.faults.belt:
+                    self.spindle.cut_load(self._at, cutting=self.cuts())
             if now > self.spindle.t:
                 self.spindle.advance(now)
         return now

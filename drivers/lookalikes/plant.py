@@ -65,6 +65,7 @@ Motion = tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]
 _PAST = 0.1  # s of setpoints that may still be asked for
 _HALT = 0.2  # s
 _HOME_SETTLE = 0.2  # s between the end of a homing move and the reference
+_FEEDS, _CUTS = 0.05, 0.25  # mm/s, and the fraction of the rapid above which nothing is cut
 _AT_REST = 0.1  # s between two samples of a machine on which nothing changes
 
 
@@ -244,6 +245,8 @@ class Plant:
             if self.t >= self._off_at:
                 self._power_off()
             if self._resting():
+                if self.spindle.slips:
+                    self.spindle.cut_load(self.t, cutting=False)
                 until = max(self._k + 1, int(min(self._off_at / self.config.step + 1, last)))
                 if self.log is not None:
                     self._sample_rest(until)
@@ -277,7 +280,13 @@ class Plant:
                     self.fault = Fault(f"{servo.axis.name}: following error", "following")
             if self.fault and self._off_at == _NEVER:
                 self._off_at = self.queue.brake(self.t, [axis.amax for axis in self.config.axes])
+        if self.spindle.faults.belt:
+            self.spindle.cut_load(self.t, cutting=self.cuts())
         self._turn()
+
+    def cuts(self) -> bool:
+        """Whether a slide feeds: much slower than its rapid, which is as near to a cut as this gets."""
+        return any(_FEEDS < abs(servo.v) < _CUTS * servo.axis.vmax for servo in self.servos)
 
     def _setpoint(self, t: float) -> Motion:
         """What the drives get, its velocity, and what is queued; by the spindle's encoder the first makes up

@@ -60,6 +60,7 @@ class PlannedFault:
     value: float = 0.0
     seconds: float = 0.0
     text: str = ""
+    turn: float = 5.0  # mm or degrees of one turn of an encoder
 
 
 @dataclass(frozen=True, slots=True)

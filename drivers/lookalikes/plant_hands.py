@@ -9,6 +9,7 @@ from core.ports import DriverError
 from drivers.lookalikes.plant import Plant
 from drivers.lookalikes.plant_config import PlannedFault
 from drivers.lookalikes.servo_axis import Servo
+from drivers.lookalikes.worn_axis import TURN
 from drivers.operator_station import StationHands
 
 
@@ -55,11 +56,39 @@ class PlantHands(StationHands):
             self._plant.advance()
             self._servo(axis).runaway = speed
 
+    def loose_gib(self, axis: str, play: float) -> None:
+        """The slide has ``play`` mm against its screw, which each reversal loses; 0 sets the gib again."""
+        with self._plant.lock:
+            self._plant.advance()
+            servo = self._servo(axis)
+            servo.worn.loosen(play, servo.p)
+
+    def encoder_ripple(self, axis: str, size: float, turn: float = TURN) -> None:
+        """Its encoder is wrong by up to ``size`` mm once in each ``turn`` mm; 0 mends it."""
+        with self._plant.lock:
+            self._plant.advance()
+            worn = self._servo(axis).worn
+            worn.ripple, worn.turn = size, turn
+
+    def encoder_missed(self, axis: str, size: float, turn: float = TURN) -> None:
+        """Its encoder does not count ``size`` mm at one spot of each ``turn`` mm; 0 mends it."""
+        with self._plant.lock:
+            self._plant.advance()
+            worn = self._servo(axis).worn
+            worn.missed, worn.turn = size, turn
+
+    def belt_slip(self, fraction: float) -> None:
+        """The spindle loses up to this fraction of its speed in the cut; 0 is a belt that holds."""
+        with self._plant.lock:
+            now = self._plant.advance()
+            self._plant.spindle.faults.belt = fraction
+            self._plant.spindle.cut_load(now, cutting=False)
+
     def push(self, axis: str, way: float) -> None:
         """Somebody moves a slide that has no power, or forces one that has."""
         with self._plant.lock:
             self._plant.advance()
-            self._servo(axis).p += way
+            self._servo(axis).push(way)
 
     def switch_output(self, name: str, on: bool) -> None:
         """Somebody else switches an output: a fuse, a terminal, a hand at the relay."""
@@ -118,7 +147,7 @@ class PlantHands(StationHands):
         """Where the slides really are, encoder or not."""
         with self._plant.lock:
             self._plant.advance()
-            return tuple(servo.p for servo in self._plant.servos)
+            return tuple(servo.where for servo in self._plant.servos)
 
     def outputs(self) -> dict[str, bool]:
         """What hangs on the outputs, whatever anybody has written."""
@@ -172,6 +201,10 @@ def _acts(machine: PlantHands, fault: PlannedFault) -> tuple[Callable[[], None],
         "jam": ((axis,), (axis, False)),
         "encoder_stuck": ((axis,), (axis, False)),
         "runaway": ((axis, value), (axis, 0.0)),
+        "loose_gib": ((axis, value), (axis, 0.0)),
+        "encoder_ripple": ((axis, value, fault.turn), (axis, 0.0)),
+        "encoder_missed": ((axis, value, fault.turn), (axis, 0.0)),
+        "belt_slip": ((value,), (0.0,)),
         "drive_fault": ((axis, text or "drive fault"), None),
         "spindle_bog": ((value,), (1.0,)),
         "spindle_wander": ((value,), (0.0,)),

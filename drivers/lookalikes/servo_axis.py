@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from drivers.lookalikes.plant_config import SimAxis
+from drivers.lookalikes.worn_axis import WornAxis
 
 _SETTLED = 1e-4  # mm or degrees, and per second: below this the slide is put on its setpoint
 
@@ -21,16 +22,29 @@ class Servo:
         self.jammed = False
         self.stuck: float | None = None  # reading of an encoder that no longer counts
         self.runaway = 0.0  # speed at which a drive that has gone mad drives it while it has power
+        self.worn = WornAxis()
         self.over = 0.0  # seconds outside the following window
         self.load = 0.0  # per cent of what the drive can, signed
         self._wn = 2 * math.pi * axis.bandwidth
 
     @property
     def reading(self) -> float:
-        """What the encoder says."""
+        """Where the slide is, as far as it is measured."""
         if self.stuck is not None:
             return self.stuck
-        return round(self.p / self.axis.count) * self.axis.count
+        worn = self.worn
+        p = worn.slide if worn.gib else worn.counted(self.p) if worn.deceives else self.p
+        return round(p / self.axis.count) * self.axis.count
+
+    @property
+    def where(self) -> float:
+        """Where the slide really is."""
+        return self.worn.slide if self.worn.gib else self.p
+
+    def push(self, way: float) -> None:
+        """Somebody moves it."""
+        self.p += way
+        self.worn.slide += way
 
     def lead(self, p: float, v: float, a: float) -> float:
         """The setpoint, told with velocity ``v``, that brings the slide to ``p`` although it trails.
@@ -45,7 +59,7 @@ class Servo:
         Second order, damping 1. Without the whole feed-forward the slide trails by 2(1 - ff)v/wn.
         """
         wn, axis = self._wn, self.axis
-        seen = self.p if self.stuck is None else self.stuck
+        seen = self._seen()
         limit = axis.amax * axis.reserve
         force = wn * (wn * (p - seen) + 2 * (axis.feed_forward * v - self.v))
         force = min(max(force, -limit), limit)
@@ -60,31 +74,42 @@ class Servo:
             top = axis.vmax * 1.1
             self.v = min(max(speed, -top), top)
             self.p += self.v * dt
+        if self.worn.gib:
+            self.worn.carry(self.p, self.v)
         if abs(p - seen) > axis.following_window:
             self.over += dt
             return self.over > axis.following_time
         self.over = 0.0
         return False
 
+    def _seen(self) -> float:
+        """What the drive takes for its place."""
+        if self.stuck is not None:
+            return self.stuck
+        return self.worn.counted(self.p) if self.worn.deceives else self.p
+
     def roll(self, dt: float) -> None:
         """One step without power: friction stops the slide."""
         drop = 0.5 * self.axis.amax * dt
         self.v = 0.0 if self.jammed or abs(self.v) <= drop else self.v - math.copysign(drop, self.v)
         self.p += self.v * dt
+        if self.worn.gib:
+            self.worn.carry(self.p, self.v)
         self.over = self.load = 0.0
 
     def settle(self, p: float) -> bool:
         """At a resting setpoint: snap on it when as good as there; False while still moving."""
         if self.jammed or self.stuck is not None or self.runaway:
             return False
-        if abs(self.p - p) < _SETTLED and abs(self.v) < _SETTLED * self._wn:
-            self.p, self.v, self.over, self.load = p, 0.0, 0.0, 0.0
+        if abs(self._seen() - p) < _SETTLED and abs(self.v) < _SETTLED * self._wn:
+            self.p = self.p if self.worn.deceives else p
+            self.v = self.over = self.load = 0.0
             return True
         return False
 
     def reference(self) -> None:
         """Home is here: count from it."""
-        self.p -= self.switch
+        self.push(-self.switch)
         self.switch = 0.0
         self.homed = True
 

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 from drivers.lookalikes.plant_config import SimSpindle
 
+_GRABS = 5.0  # a second: a belt that slips
+
 
 @dataclass(slots=True)
 class SpindleFaults:
@@ -17,6 +19,7 @@ class SpindleFaults:
     ignores_stop: bool = False
     wander: float = 0.0  # fraction by which the speed swings about what it ought to be
     wander_period: float = 2.0  # s
+    belt: float = 0.0  # fraction of the speed that a slipping belt loses in the cut
     fault: str = ""
 
 
@@ -27,6 +30,7 @@ class SpindleMotor:
         self.config = config
         self.faults = SpindleFaults()
         self._even = 0.0  # rpm, without wander
+        self.slips = 0.0  # fraction that the belt loses now
         self.turns = 0.0
         self.t = 0.0
         self._target = 0.0
@@ -37,10 +41,11 @@ class SpindleMotor:
     def speed(self) -> float:
         """rpm, signed."""
         faults = self.faults
+        even = self._even * (1.0 - self.slips)
         if not faults.wander:
-            return self._even
+            return even
         swing = math.sin(2.0 * math.pi * self.t / faults.wander_period)
-        return self._even * (1.0 + faults.wander * swing)
+        return even * (1.0 + faults.wander * swing)
 
     @property
     def still(self) -> bool:
@@ -75,9 +80,16 @@ class SpindleMotor:
         self._ramp(now - self.t)
         self.t = now
 
+    def cut_load(self, now: float, *, cutting: bool) -> None:
+        """A tool is in the metal or not: under it a belt that slips lets go and grabs again."""
+        now = max(now, self.t)
+        self.advance(now)
+        swing = 0.5 - 0.5 * math.cos(2.0 * math.pi * _GRABS * now)
+        self.slips = self.faults.belt * swing if cutting else 0.0
+
     def _ramp(self, dt: float) -> None:
         """Towards the target for ``dt`` seconds, then on at its speed."""
-        faults, t = self.faults, self.t
+        faults, t, held = self.faults, self.t, 1.0 - self.slips
         target = 0.0 if faults.fault else self._target * faults.bog
         while dt > 0.0:
             braking = self._even * target <= 0.0 < abs(self._even) or abs(target) < abs(self._even)
@@ -89,10 +101,10 @@ class SpindleMotor:
             before = self._even
             reached = used < dt
             self._even = goal if reached else before + (rate if goal > before else -rate) * used
-            self.turns += 0.5 * (before + self._even) / 60.0 * (used + self._swung(t, used))
+            self.turns += held * 0.5 * (before + self._even) / 60.0 * (used + self._swung(t, used))
             dt, t = dt - used, t + used
             if reached and goal == target:
-                self.turns += self._even / 60.0 * (dt + self._swung(t, dt))
+                self.turns += held * self._even / 60.0 * (dt + self._swung(t, dt))
                 return
 
     def _swung(self, t: float, dt: float) -> float:

@@ -26,6 +26,10 @@ FAULTS = (
     "encoder_stuck",
     "runaway",
     "drive_fault",
+    "loose_gib",
+    "encoder_ripple",
+    "encoder_missed",
+    "belt_slip",
     "spindle_bog",
     "spindle_wander",
     "spindle_ignores_stop",
@@ -35,7 +39,9 @@ FAULTS = (
     "pot_noise",
     "estop",
 )
-_OF_AN_AXIS = frozenset(("jam", "encoder_stuck", "runaway", "drive_fault"))
+_OF_AN_AXIS = frozenset(
+    ("jam", "encoder_stuck", "runaway", "drive_fault", "loose_gib", "encoder_ripple", "encoder_missed")
+)
 _FIELDS = (
     Field("seed", Kind.WHOLE, low=0, high=2**31, default=1),
     Field("realtime", Kind.FLAG, default=False),
@@ -47,6 +53,7 @@ _FAULT = (
     Field("value", Kind.NUMBER, Unit.PLAIN, -1e6, 1e6, default=0.0),
     Field("seconds", Kind.NUMBER, Unit.SECONDS, 0.0, 1e6, default=0.0),
     Field("text", Kind.TEXT, default=""),
+    Field("turn", Kind.NUMBER, Unit.PLAIN, 0.1, 1000.0, default=5.0),
 )
 
 

@@ -184,6 +184,13 @@ def test_refused(old: str, new: str, path: str, expected: str) -> None:
             "take it out",
         ),
         ("[sim]\n", '[sim]\nfaults = [{ at = 1, what = "rust" }]\n', "sim.faults.1.what", "encoder_stuck"),
+        ("[sim]\n", '[sim]\nfaults = [{ at = 1, what = "loose_gib" }]\n', "sim.faults.1.axis", "one of X"),
+        (
+            "[sim]\n",
+            '[sim]\nfaults = [{ at = 1, what = "encoder_ripple", axis = "X", turn = 0 }]\n',
+            "sim.faults.1.turn",
+            "0.1",
+        ),
         ("[sim]\n", "[sim]\nfaults = 3\n", "sim.faults", "a list of tables"),
         ("[sim]\n", '[grblhal]\nport = "p"\nsettings = { 13 = 1 }\n[sim]\n', "grblhal.settings.13", "mm"),
         (
