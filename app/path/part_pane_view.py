@@ -9,7 +9,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QPainter, QPolygonF
 
 from app.path.part_player import PartPlayer, Shown
-from app.path.part_section import Line, Metal, hit_areas, metal_of, stock_outline
+from app.path.part_section import Line, Metal, clamping_areas, hit_areas, metal_of, stock_outline
 from app.path.path_aspects import Aspect
 from app.path.path_layers_view import polygon
 from app.path.path_pane_view import Pane, Place
@@ -145,6 +145,10 @@ class PartPane(Pane):
         self._stock = (
             [_polygon(line) for line in stock_outline(stock, projection)] if stock is not None else []
         )
+        held = instant.clamping
+        self._chuck = []
+        if held is not None and held.diameter and stock is not None:
+            self._chuck = [_polygon(area) for area in clamping_areas(held, stock, projection)]
 
     @staticmethod
     def _fill(painter: QPainter, areas: Iterable[QPolygonF], brush: QBrush) -> None:

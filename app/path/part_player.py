@@ -280,6 +280,7 @@ class PartPlayer:
             version=self._draws,
             hits=spans,
             quick=look.quick,
+            around=history.around(instant),
         )
 
     def _history_of(self, picture: Picture) -> PartHistory:

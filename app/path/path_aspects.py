@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 class Aspect(Enum):
     """From above (X+ down, Z+ right), onto the end of the part, onto its side unrolled (Z+ right, C+ up).
 
-    ``SECTION`` is the part itself, cut along its axis, as from above; ``SOLID`` the same in space.
+    ``SECTION`` is the part itself, cut along its axis, as from above; ``SOLID`` the same in space, ``OPEN``
+    with a quarter taken out.
     """
 
     PATH = "PATH"
@@ -24,9 +25,11 @@ class Aspect(Enum):
     SIDE = "SIDE"
     SECTION = "SECTION"
     SOLID = "SOLID"
+    OPEN = "OPEN"
 
 
-OF_PART = frozenset({Aspect.SECTION, Aspect.SOLID})
+IN_SPACE = frozenset({Aspect.SOLID, Aspect.OPEN})
+OF_PART = IN_SPACE | {Aspect.SECTION}
 
 
 class Tip(NamedTuple):
@@ -75,9 +78,11 @@ def views_of(picture: Picture, *, part: bool = False) -> list[View]:
     more = [aspect for aspect in (Aspect.FACE, Aspect.SIDE) if polyline_of(picture, aspect) is not None]
     both = [(Aspect.PATH, aspect) for aspect in more]
     views = [*both, *((aspect,) for aspect in more), (Aspect.PATH,)]
-    if part and picture.part is None and picture.no_part:
-        return [*views, (Aspect.SECTION,)]  # where it is told
-    return [*views, (Aspect.SECTION,), (Aspect.SOLID,)] if part and picture.part is not None else views
+    if not part:
+        return views
+    if picture.part is None:
+        return [*views, (Aspect.SECTION,)] if picture.no_part else views  # where it is told
+    return [*views, (Aspect.SECTION,), (Aspect.SOLID,), (Aspect.OPEN,)]
 
 
 # --- legs of an approach ------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from PySide6.QtGui import QFontMetricsF, QPainter, QPen, QPolygonF
 from app.desk import formats
 from app.desk.translation import tr
 from app.path.measuring import Apart
-from app.path.path_aspects import OF_PART, Aspect, DrawnLeg
+from app.path.path_aspects import IN_SPACE, OF_PART, Aspect, DrawnLeg
 from app.path.path_layers_view import Ink
 from app.path.path_pane_view import Pane
 from app.path.path_projection import Projection, scale_length
@@ -223,7 +223,7 @@ def draw_centre_lines(
 
     The painter's origin is the corner of the pane.
     """
-    if aspect is Aspect.SOLID:
+    if aspect in IN_SPACE:
         return
     if aspect in {Aspect.PATH, Aspect.SECTION}:
         _cross(painter, look, projection)

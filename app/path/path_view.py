@@ -15,7 +15,7 @@ from PySide6.QtGui import QFocusEvent, QKeyEvent, QMouseEvent, QPainter, QResize
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.path.path_aspects import OF_PART, Aspect, DrawnLeg, Tip
+from app.path.path_aspects import IN_SPACE, OF_PART, Aspect, DrawnLeg, Tip
 from app.path.path_pointer_view import Pointer
 from app.screen.look import LEFT, Look, put
 from app.screen.panel import Panel
@@ -300,7 +300,7 @@ class PathView(Panel):
 
         if not isinstance(pane, Pane):
             return
-        if pane.aspect is Aspect.SOLID:
+        if pane.aspect in IN_SPACE:
             return
         if self.ruler is not None:
             ruler = self.ruler if self.ruler.pane is pane else self._measure_in(pane)
@@ -362,7 +362,7 @@ class PathView(Panel):
         for pane in panes:
             self._draw_pane(painter, pane)
         if (
-            self.ruler is not None and self.ruler.pane.aspect is not Aspect.SOLID
+            self.ruler is not None and self.ruler.pane.aspect not in IN_SPACE
         ):  # beside what is measured, where there is another pane
             beside = next((pane for pane in panes if pane is not self.ruler.pane), self.ruler.pane)
             self.ruler.draw_figures(painter, beside.room, self.in_mm)
@@ -400,7 +400,7 @@ class PathView(Panel):
             pane.draw_run(painter)
         if self.legs and pane.aspect is Aspect.PATH:
             marks.draw_approach(painter, look, pane, self.legs)
-        if self.ruler is not None and self.ruler.pane is pane and pane.aspect is not Aspect.SOLID:
+        if self.ruler is not None and self.ruler.pane is pane and pane.aspect not in IN_SPACE:
             self.ruler.draw(painter)
         painter.restore()
         if pane.projection is not None and pane.aspect not in OF_PART:

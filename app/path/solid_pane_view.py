@@ -1,4 +1,4 @@
-"""The pane of the part in space: turned by a finger, by the keys that pan, and by C; drawn by the worker."""
+"""The pane of the part in space, whole or a quarter open: turned by a finger, keys and C."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from core.part.solid_view import SolidView, fitted
 _TURN = 0.4  # degrees a pixel
 _STEP = 10.0  # degrees a key
 _STEEPEST = 85.0  # degrees from the side
+_ROUND = 1.25  # of the radius
 
 
 class SolidPane(PartPane):
@@ -34,7 +35,8 @@ class SolidPane(PartPane):
         if shown is None or (stock := shown.instant.stock) is None:
             return flat
         wide, high = flat.width, max(flat.height - round(3.0 * self.look.u), 1)
-        scale, centre = fitted(stock.back, stock.front, stock.radius, wide, high, self._azimuth)
+        room = _ROUND * stock.radius  # for the tool
+        scale, centre = fitted(stock.back, stock.front, room, wide, high, self._azimuth)
         return Projection(centre, 0.0, scale, flat.width, flat.height)
 
     def look_at(self, projection: Projection) -> None:
@@ -46,7 +48,8 @@ class SolidPane(PartPane):
         projection = self.projection
         if projection is None or projection.width < 1 or projection.height < 1:
             return
-        view = SolidView(self._azimuth, self._tilt, self._roll, projection.scale, projection.z)
+        opening = quarter(self._tilt) if self.aspect is Aspect.OPEN else None
+        view = SolidView(self._azimuth, self._tilt, self._roll, projection.scale, projection.z, opening)
         self.player.look_at(SolidLook(view, projection.width, projection.height))
 
     def place_of(self, tip: Tip) -> Place | None:
@@ -94,4 +97,14 @@ class SolidPane(PartPane):
             )
 
     def draw_run(self, painter: QPainter) -> None:
-        """Nothing: the tool is seen in the section."""
+        """Nothing: the tool is in the picture."""
+
+
+def quarter(tilt: float) -> tuple[float, float]:
+    """What is taken out, from and to which angle from the viewer towards the top, degrees.
+
+    One edge lies in the plane of turning on the operator's side, where the tool is; the other stands upright
+    on it, on the side that is looked at.
+    """
+    first = -tilt if tilt >= 0.0 else -tilt - 90.0
+    return first, first + 90.0

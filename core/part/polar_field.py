@@ -29,12 +29,15 @@ _LEAST = 0.002  # mm: no column is divided nearer to its edge
 
 
 class Taken(NamedTuple):
-    """What was met: volume in mm³, greatest thickness along r, and from ``back`` to ``front`` of Z, mm."""
+    """What was met: volume in mm³, greatest thickness along r, from ``back`` to ``front`` of Z, and from
+    ``low`` to ``high`` of r, mm."""
 
     volume: float = 0.0
     depth: float = 0.0
     back: float = math.inf
     front: float = -math.inf
+    low: float = math.inf
+    high: float = -math.inf
 
     def __bool__(self) -> bool:
         return self.volume > 0.0
@@ -46,6 +49,8 @@ class Taken(NamedTuple):
             max(self.depth, other.depth),
             min(self.back, other.back),
             max(self.front, other.front),
+            min(self.low, other.low),
+            max(self.high, other.high),
         )
 
 
@@ -67,6 +72,11 @@ class PolarField:
         self.angles = np.arange(low.shape[2]) * (2.0 * math.pi / low.shape[2])
         self.changes = 0  # counts on with every cut: what is drawn of the field is stale
         self._most = max(most, len(edges) - 1)
+
+    @property
+    def most(self) -> int:
+        """How many columns it may have."""
+        return self._most
 
     @property
     def middles(self) -> FloatArray:
@@ -141,7 +151,8 @@ class PolarField:
         if cut:
             self._leave(columns, rays, low, high, np.where(met, near, high), np.where(met, far, high))
             self.changes += 1
-        return self._told(columns, touched, np.where(met, thick * (far + near), 0.0), float(thick.max()))
+        told = self._told(columns, touched, np.where(met, thick * (far + near), 0.0), float(thick.max()))
+        return told._replace(low=float(near[met].min()), high=float(far[met].max()))
 
     def _told(self, columns: slice, touched: npt.NDArray[np.bool_], rings: FloatArray, depth: float) -> Taken:
         edges = self.edges[columns.start : columns.stop + 1]

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from core.part.solid_bodies import Depths, Layer, ToolBody, tool_layers
 from core.part.solid_view import SolidView
 from core.part.surface_points import AWAY, Floats, IntArray, Patch, Solid, Surface, Wall
 
@@ -37,13 +38,26 @@ _FACING = 0.02  # radians beyond the horizon that are drawn too
 
 
 class Colours(NamedTuple):
-    """0xRRGGBB of the outside, of bores, of cut faces and of what was hit; the ground is 0xAARRGGBB."""
+    """0xRRGGBB of the outside, of bores, of cut faces and of what was hit; the ground is 0xAARRGGBB.
+
+    Of what stands round the part: chuck, holder and insert.
+    """
 
     outside: int = 0xB9C3CC
     bore: int = 0xC9B48A
     section: int = 0xD98E4A
     hit: int = 0xE5322D
     ground: int = 0x00000000
+    chuck: int = 0x6F6A61
+    holder: int = 0x6C7A89
+    insert: int = 0xE8B923
+
+
+class Scene(NamedTuple):
+    """What stands round the part: chuck or collet, and a tool."""
+
+    chuck: Solid | None = None
+    tool: ToolBody | None = None
 
 
 _OUTSIDE, _BORE, _SECTION, _HIT = range(4)
@@ -71,6 +85,7 @@ class SolidPicture:
         self._table = _shades(self.colours)
         self._surface: Surface | None = None
         self._made_of: tuple[object, ...] = ()
+        self._held: tuple[tuple[object, ...], Layer] | None = None  # chuck or collet, as it was seen last
 
     def draw(
         self,
@@ -82,18 +97,37 @@ class SolidPicture:
         version: int = 0,
         hits: Spans = (),
         quick: bool = False,
+        around: Scene = Scene(),  # noqa: B008 - it is a tuple
     ) -> Image:
         """The picture (height, width); ``version`` changes with the metal, ``hits`` are spans of Z in red.
 
         ``quick``: in points of two by two pixels, a third of the work, for metal that is being cut.
         """
         if quick:
-            half = replace(view, scale=0.5 * view.scale)
-            small = self.draw(solid, half, -(-width // 2), -(-height // 2), version=version, hits=hits)
-            return small.repeat(2, axis=0).repeat(2, axis=1)[:height, :width]
+            half, small = replace(view, scale=0.5 * view.scale), (-(-width // 2), -(-height // 2))
+            image = self.draw(solid, half, *small, version=version, hits=hits, around=around)
+            return image.repeat(2, axis=0).repeat(2, axis=1)[:height, :width]
         surface = self._kept(solid, view, width, version)
-        drawn = _Drawing(surface, view, width, height)
-        return drawn.image(self._table, self.colours.ground, hits)
+        image, depth = _Drawing(surface, view, width, height).image(self._table, self.colours.ground, hits)
+        if around.chuck is not None:
+            self._chuck(around.chuck, view, width, height).over(image, depth)
+        if around.tool is not None:
+            looks = (self.colours.holder, self.colours.insert)
+            for layer in tool_layers(around.tool, view, width, height, looks, _DEPTH, _FAR):
+                layer.over(image, depth)
+        return image
+
+    def _chuck(self, chuck: Solid, view: SolidView, width: int, height: int) -> Layer:
+        """It is drawn anew only when it is looked at from elsewhere."""
+        seen = (id(chuck), replace(view, roll=0.0), width, height)
+        if self._held is None or self._held[0] != seen:
+            painter = SolidPicture(
+                self.colours._replace(outside=self.colours.chuck, section=self.colours.chuck)
+            )
+            surface = painter._kept(chuck, view, width, 0)
+            drawn = _Drawing(surface, view, width, height).image(painter._table, 0, ())
+            self._held = seen, Layer(*drawn)
+        return self._held[1]
 
     def _kept(self, solid: Solid, view: SolidView, width: int, version: int) -> Surface:
         cos, sin = view.along
@@ -225,8 +259,8 @@ class _Drawing:
 
     # --- the nearest ones lit
 
-    def image(self, table: Image, ground: int, hits: Spans) -> Image:
-        """The picture; ``table`` (colours, shades)."""
+    def image(self, table: Image, ground: int, hits: Spans) -> tuple[Image, Depths]:
+        """The picture and how near each of its pixels is; ``table`` (colours, shades)."""
         inside = self.nearest.reshape(self.height + 2, self.width + 2)[1:-1, 1:-1].ravel()
         pixel = np.flatnonzero(inside > _NUMBER)
         point = inside[pixel] & _NUMBER
@@ -244,8 +278,9 @@ class _Drawing:
         level = np.clip(shade * np.float32(_SHADES), 0, _SHADES - 1).astype(np.int16)
         codes[pixel] = np.where(shade < 0.0, _AWAY, level + colour * _SHADES)
         codes = _without_specks(codes.reshape(self.height, self.width))
-        _draw_edges(codes, (inside >> _POINT).astype(np.int32).reshape(codes.shape))
-        return np.append(table.ravel(), np.uint32(ground))[np.maximum(codes, -1)]
+        depth = (inside >> _POINT).astype(np.int32).reshape(codes.shape)
+        _draw_edges(codes, depth)
+        return np.append(table.ravel(), np.uint32(ground))[np.maximum(codes, -1)], depth
 
     def _smooth(self, pixel: IntArray, shade: Floats, rough: Bools) -> None:
         """Give rough points the mean light of the rough ones around them, five by five."""

@@ -45,6 +45,13 @@ def mill_move(block: Block, place: Place, shape: ToolShape) -> MillMove | None:
     return MillMove(block.n, block.line, radial_path(ends, far_side=far_side), False, quick)
 
 
+def between(path: FloatArray, first: float, last: float) -> FloatArray:
+    """The piece of a path from one share of it to another, 0 … 1."""
+    at = np.linspace(0.0, 1.0, len(path))
+    shares = np.concatenate(([first], at[(at > first) & (at < last)], [last]))
+    return np.column_stack([np.interp(shares, at, figures) for figures in path.T])
+
+
 def cone_height(shape: ToolShape) -> float:
     """How high the point of a live drill is, mm; 0 of a mill."""
     if shape.kind not in _CONES or not shape.point:

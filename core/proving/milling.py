@@ -29,6 +29,18 @@ class Milling:
         self._part = MilledPart(turned_field(edges, part.low, part.high))
         self._volume = part.volume  # of the turned part, when its field was last made even with it
 
+    @classmethod
+    def of(cls, part: TurnedPart, field: PolarField, volume: float) -> Milling:
+        """With a field that is known already; ``volume`` is that of the turned part it was made even with."""
+        milling = cls.__new__(cls)
+        milling._turned, milling._part, milling._volume = part, MilledPart(field), volume
+        return milling
+
+    @property
+    def even_with(self) -> float:
+        """mm³ of the turned part that the field is made even with."""
+        return self._volume
+
     @property
     def field(self) -> PolarField:
         """The metal, even with what has been turned."""

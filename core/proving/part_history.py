@@ -15,12 +15,18 @@ import numpy as np
 
 from core.language.diagnostics import Diagnostic, Severity
 from core.part.clamping import Clamping
+from core.part.field_copies import FieldCopy, copied, restored
+from core.part.polar_field import Taken
+from core.part.solid_bodies import Round, ToolBody, chuck_solid
+from core.part.solid_picture import Scene
 from core.part.stock import Stock
 from core.part.stock_spec import StockSpec
 from core.part.surface_points import Solid, solid_of, turned_solid
 from core.part.swept_edge import FloatArray, Point
 from core.part.tool_outline import ToolOutline, outline
+from core.part.tool_shape import ToolShape
 from core.part.turned_part import TurnedPart
+from core.proving.milling import Milling
 from core.proving.part_proof import MOST_MOVES, Making, PartSetting, Tools
 from core.proving.program_timeline import MotionSpan, Part, RestSpan
 from core.proving.tip_moves import LiveStep, Step, Steps, TipMove
@@ -98,7 +104,7 @@ class Hit(NamedTuple):
 class PlacedTool(NamedTuple):
     """A tool where it stands: its control point ``at``, its outlines (k, 2) of Z and r, mm.
 
-    ``assumed``: nobody has described it, its body is what such tools have.
+    ``assumed``: nobody has described it, its body is what such tools have. ``round``: about which axis it is.
     """
 
     number: int
@@ -106,6 +112,7 @@ class PlacedTool(NamedTuple):
     cutting: tuple[FloatArray, ...]
     body: tuple[FloatArray, ...]
     assumed: bool
+    round: Round = Round.NOT
 
 
 class PartInstant(NamedTuple):
@@ -143,7 +150,12 @@ class PartHistory:
         self._hits: dict[tuple[str, int], Hit] = {}
         self._kept = _Copies()
         self._clamping = moves.setting.clamping
+        self._chuck: Solid | None = None
+        if self._clamping is not None and self._clamping.diameter and self.stock is not None:
+            self._chuck = chuck_solid(self._clamping, self.stock)
         self._making = Making(self._tools, self.stock, moves.setting)
+        self._seen = self._making  # as it was given out last
+        self._ahead: tuple[int, float, Making] | None = None  # behind so many steps, so much of the next done
         self._done = 0  # steps
         self._last: PartInstant | None = None
         self._kept.keep(0, self._making)
@@ -163,6 +175,9 @@ class PartHistory:
     def share_at(self, block: int, behind_end: Point) -> float:
         """How much of a block is done when the tool is ``behind_end`` (Z, r; mm) off the place of its end."""
         step = self._step(block)
+        if isinstance(step, LiveStep):
+            ends = _ends(step)
+            return share_along(ends, (ends[1][0] + behind_end[0], ends[1][1] + behind_end[1]))
         if not isinstance(step, TipMove):
             return 0.0
         end = step.points[-1]
@@ -181,10 +196,17 @@ class PartHistory:
         """The solid of the last instant, for this thread alone. None: there is no metal."""
         if instant.near is None:
             return None
-        milling = self._making.milling
+        milling = self._seen.milling
         if milling is not None:
             return solid_of(milling.field)
         return turned_solid(*instant.near)
+
+    def around(self, instant: PartInstant) -> Scene:
+        """What stands round the part at an instant: chuck or collet, and the tool."""
+        tool = instant.tool
+        if tool is None or not (tool.cutting or tool.body):
+            return Scene(self._chuck)
+        return Scene(self._chuck, ToolBody(tool.cutting, tool.body, tool.round, tool.assumed))
 
     def _step(self, block: int) -> Step | None:
         there = int(np.searchsorted(self._numbers, block))
@@ -193,6 +215,8 @@ class PartHistory:
     # --- going through the program
 
     def _go_to(self, done: int, watch: Go | None) -> None:
+        if self._ahead is not None and self._ahead[0] != done:
+            self._ahead = None
         kept = self._kept.before(done)
         if not kept <= self._done <= done:
             self._making, self._done = self._kept.copy(kept), kept
@@ -209,10 +233,15 @@ class PartHistory:
         before = _copy_of(making.part)
         making.see(step)
         for found in making.findings.found[known:]:
-            if found.severity is Severity.ERROR and before is not None and making.part is not None:
+            if found.severity is not Severity.ERROR:
+                continue
+            hit = None
+            if isinstance(step, LiveStep):
+                hit = _milled_hit(found, making.met)
+            elif before is not None and making.part is not None:
                 hit = _hit(found, before, making.part)
-                if hit is not None:
-                    self._hits[found.check, found.line] = hit
+            if hit is not None:
+                self._hits[found.check, found.line] = hit
 
     # --- what is to be seen
 
@@ -225,9 +254,8 @@ class PartHistory:
                 making = making.copy()
                 making.see(cut)
         elif isinstance(under_way, LiveStep):
-            start, end = _ends(under_way)
-            place = start[0] + (end[0] - start[0]) * share, start[1] + (end[1] - start[1]) * share
-        found = making.findings.found
+            making, place = self._milled(under_way, share), _at(under_way, share)
+        self._seen, found = making, making.findings.found
         near, far = _halves(making)
         return PartInstant(
             block=block,
@@ -246,9 +274,15 @@ class PartHistory:
             is_open=making.is_open,
         )
 
-    def _hits_of(self, found: Sequence[Diagnostic]) -> tuple[Hit, ...]:
-        hits = (self._hits.get((each.check, each.line)) for each in found)
-        return tuple(hit for hit in hits if hit is not None)
+    def _milled(self, step: LiveStep, share: float) -> Making:
+        """The part with a block of a live tool begun, gone on with from where it was seen last."""
+        done, gone, ahead = self._ahead or (-1, 0.0, self._making)
+        if done != self._done or gone > share:
+            gone, ahead = 0.0, self._making.copy()
+        if share > gone:
+            ahead.mill(step, gone, share)
+        self._ahead = self._done, share, ahead
+        return ahead
 
     def _place(self) -> Point | None:
         """Where the last block that moves has ended."""
@@ -271,15 +305,26 @@ class PartHistory:
         cutting, body = (
             tuple(each + np.array(place) for each in group) for group in (lines.cutting, lines.body)
         )
-        return PlacedTool(number, place, cutting, body, assumed=not self._tools.described(number))
+        shape = self._tools.shape(number)
+        return PlacedTool(
+            number, place, cutting, body, not self._tools.described(number), _round(shape, lines.axial)
+        )
+
+
+def _round(shape: ToolShape | None, axial: bool) -> Round:
+    if shape is None or not shape.turns_itself:
+        return Round.NOT
+    return Round.ALONG if axial else Round.ACROSS
 
 
 class _Copies:
-    """Copies of a part in the making, by how many steps were done; of too many every other goes."""
+    """Copies of a part in the making, by how many steps were done; of too many every other goes.
+
+    Of a milled part they share the columns that were not touched between two of them.
+    """
 
     def __init__(self) -> None:
-        self._copies: dict[int, Making] = {}
-        self._sizes: dict[int, int] = {}
+        self._copies: dict[int, tuple[Making, FieldCopy | None, float]] = {}
         self._every = _EVERY
 
     def before(self, done: int) -> int:
@@ -288,7 +333,11 @@ class _Copies:
 
     def copy(self, done: int) -> Making:
         """One to go on from."""
-        return self._copies[done].copy()
+        kept, field, even_with = self._copies[done]
+        making = kept.copy()
+        if field is not None and making.part is not None:
+            making.milling = Milling.of(making.part, restored(field), even_with)
+        return making
 
     def perhaps(self, done: int, making: Making) -> None:
         """Keep one when it is time."""
@@ -297,13 +346,30 @@ class _Copies:
 
     def keep(self, done: int, making: Making) -> None:
         """Keep a copy of what there is after so many steps."""
-        self._copies[done], self._sizes[done] = making.copy(), making.nbytes
-        while len(self._copies) > _MOST_COPIES or (
-            sum(self._sizes.values()) > _MOST_BYTES and len(self._copies) > 2
-        ):
+        milling = making.milling
+        field, even_with = None, 0.0
+        if milling is not None:
+            near = self._copies.get(max((each for each in self._copies if each < done), default=-1))
+            field = copied(milling.field, near[1] if near is not None else None)
+            even_with = milling.even_with
+        making.milling = None
+        self._copies[done] = making.copy(), field, even_with
+        making.milling = milling
+        while len(self._copies) > _MOST_COPIES or (self._size > _MOST_BYTES and len(self._copies) > 2):
             self._every *= 2
             for each in [each for each in self._copies if each % self._every]:
-                del self._copies[each], self._sizes[each]
+                del self._copies[each]
+
+    @property
+    def _size(self) -> int:
+        """Bytes of all of them; what is shared counts once."""
+        columns = {
+            id(column): column.nbytes
+            for _, field, _ in self._copies.values()
+            if field is not None
+            for column in field.columns.values()
+        }
+        return sum(columns.values()) + sum(making.nbytes for making, _, _ in self._copies.values())
 
 
 def share_along(points: Sequence[Point], at: Point) -> float:
@@ -346,6 +412,16 @@ def _line(step: Step | None) -> int:
     return step.block.line if isinstance(step, LiveStep) else step.line
 
 
+def _at(step: LiveStep, share: float) -> Point:
+    """Where the slides are on the way of a live tool's block."""
+    plane = step.block.plane
+    if plane is not None:
+        x, z, _ = plane.machine(np.array([share]))[0].tolist()
+        return z + step.place[1] + step.block.modal.secondary_z, x
+    start, end = _ends(step)
+    return start[0] + (end[0] - start[0]) * share, start[1] + (end[1] - start[1]) * share
+
+
 def _ends(step: LiveStep) -> tuple[Point, Point]:
     """Where the slides begin and end a block of a live tool."""
     (dx, dz), block = step.place, step.block
@@ -376,6 +452,14 @@ def _hit(found: Diagnostic, before: tuple[FloatArray, FloatArray], part: TurnedP
     )
     z = part.columns.middles[touched]
     return Hit(found, z, least[touched], most[touched], part.columns.step)
+
+
+def _milled_hit(found: Diagnostic, met: Taken) -> Hit | None:
+    """What a live tool has met."""
+    if not met:
+        return None
+    middle, low, high = (np.array([each]) for each in (0.5 * (met.back + met.front), met.low, met.high))
+    return Hit(found, middle, low, high, met.front - met.back)
 
 
 def _halves(making: Making) -> tuple[Half | None, Half | None]:

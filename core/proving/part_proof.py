@@ -18,6 +18,7 @@ from core.machine.machine_model import Machine
 from core.part.clamping import Clamping
 from core.part.cutter import Cutter, Side
 from core.part.neighbours import Neighbours
+from core.part.polar_field import NOTHING
 from core.part.stock import Point, Stock
 from core.part.stock_spec import StockSpec
 from core.part.tool_outline import outline
@@ -25,7 +26,7 @@ from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import STEP, Piece, TurnedPart
 from core.proving.assumed_stock import assumed_stock
 from core.proving.assumed_tools import Assumed, ToolUse, assumed_tool, releases
-from core.proving.mill_moves import mill_move
+from core.proving.mill_moves import MillMove, between, mill_move
 from core.proving.milling import Milling
 from core.proving.part_checks import STOCK, TOOL, Check
 from core.proving.part_findings import PartFindings
@@ -296,6 +297,7 @@ class Making:
         )
         self._unchecked = unchecked(tools.uses, setting.shapes, setting.clamping, setting.gang)
         self.milling: Milling | None = None  # from the first cut of a live tool on
+        self.met = NOTHING  # by the last block of a live tool
         self.part = TurnedPart(stock, self._step) if stock is not None and not tools.feeds_first else None
 
     @property
@@ -342,7 +344,7 @@ class Making:
                 self._move(step, self.part)
             return
         if isinstance(step, LiveStep):
-            self._live(step)
+            self.mill(step)
             return
         match step.action:
             case ToolChange(tool=tool):
@@ -362,17 +364,25 @@ class Making:
             self.part = TurnedPart(self._stock, self._step)
         self._is_open = False
 
-    def _live(self, step: LiveStep) -> None:
-        shape = self._tools.shape(self._tool)
-        if self.part is None or self._is_open or shape is None or not shape.diameter:
+    def mill(self, step: LiveStep, first: float = 0.0, last: float = 1.0) -> None:
+        """A block of a live tool, or the piece of it from one share to another."""
+        move, shape = self.mill_move(step), self._tools.shape(self._tool)
+        if move is None or shape is None or self.part is None or self._is_open:
             return
-        move = mill_move(step.block, step.place, shape)
-        if move is None:
-            return
+        if last - first < 1.0:
+            move = move._replace(path=between(move.path, first, last))
         if self.milling is None:
             self.milling = Milling(self.part)
         self._milled = True
-        self.findings.milled(move, self.milling.cut(move, shape), shape, step.block.modal)
+        self.met = self.milling.cut(move, shape)
+        self.findings.milled(move, self.met, shape, step.block.modal)
+
+    def mill_move(self, step: LiveStep) -> MillMove | None:
+        """The way of a live tool in the part's frame; None where nothing is known that would cut."""
+        shape = self._tools.shape(self._tool)
+        if shape is None or not shape.diameter:
+            return None
+        return mill_move(step.block, step.place, shape)
 
     def _cutter(self) -> Cutter | None:
         if self._tool not in self._cutters:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,10 +12,12 @@ from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
+from core.part.clamping import Clamping
+from core.part.solid_bodies import Round
 from core.part.stock import bar
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving import part_history
-from core.proving.part_history import PartGathering, PartHistory, PartMoves, share_along
+from core.proving.part_history import PartGathering, PartHistory, PartInstant, PartMoves, share_along
 from core.proving.part_proof import Making, PartSetting, Tools
 from core.proving.prove_program import prove
 
@@ -232,3 +235,72 @@ def test_half_of_a_milling_move_stands_half_way() -> None:
     instant = seen.at(along, 0.5)
     assert instant.tool is not None
     assert instant.tool.at == pytest.approx((-0.6 * INCH, 0.4 * INCH))
+
+
+def depth_at(seen: PartHistory, instant: PartInstant, z: float) -> float:
+    """The greatest radius on the side of the mill, inches."""
+    assert instant.near is not None
+    assert instant.far is not None
+    heights = []
+    for half in (instant.near, instant.far):
+        there = int(np.searchsorted(half.edges, z * INCH)) - 1
+        heights.append(half.high[:, there].max() / INCH)
+    return float(min(heights))
+
+
+def test_milled_metal_goes_along_the_block() -> None:
+    """The slot goes from Z-.4 to Z-.8 with a mill of .118 in radius: half way it ends at Z-.718."""
+    seen = history(MILLED, MILL)
+    along = next(k for k, step in enumerate(seen.steps) if part_history._line(step) == 16)
+    for share, cut, left in (
+        (0.25, -0.59, -0.66),
+        (0.5, -0.69, -0.74),
+        (0.75, -0.79, -0.84),
+        (0.5, -0.69, -0.74),
+    ):
+        instant = seen.at(along, share)
+        assert depth_at(seen, instant, cut) == pytest.approx(0.4, abs=0.001)
+        assert depth_at(seen, instant, left) == pytest.approx(0.5, abs=0.001)
+        found = seen.solid(instant)
+        assert found is not None
+        assert found.high.shape[2] > 1
+    whole, again = seen.at(along + 1), history(MILLED, MILL).at(along + 1)
+    assert whole.near is not None
+    assert again.near is not None
+    np.testing.assert_array_equal(whole.near.high, again.near.high)  # what was shown ahead leaves no trace
+
+
+def test_what_a_live_tool_hits_at_a_rapid_has_its_place() -> None:
+    seen = history(MILLED.replace("G94F4X.4", "G94F300X.4"), MILL)
+    instant = seen.at(len(seen.steps))
+    hit, along = instant.hits
+    assert (hit.finding.code, hit.finding.line, along.finding.line) == ("rapid-into-stock", 15, 16)
+    radius = 3.0 / INCH  # of the mill
+    back, front = hit.z[0] - hit.wide / 2, hit.z[0] + hit.wide / 2
+    assert (back / INCH, front / INCH) == pytest.approx((-0.4 - radius, -0.4 + radius), abs=0.01)
+    assert (hit.low[0] / INCH, hit.high[0] / INCH) == pytest.approx((0.4, 0.5), abs=0.01)
+    assert history(MILLED, MILL).at(len(seen.steps)).hits == ()
+
+
+def test_copies_of_a_milled_part_share_what_nothing_has_touched(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(part_history, "_EVERY", 1)
+    seen = history(MILLED, MILL)
+    seen.at(len(seen.steps))
+    kept = [field for _, field, _ in seen._kept._copies.values() if field is not None]
+    assert len(kept) > 3
+    one, other = kept[-2:]  # between them the tool goes away
+    assert all(a is b for a, b in zip(one.columns.values(), other.columns.values(), strict=True))
+    alone = sum(column.nbytes for column in kept[-1].columns.values())
+    assert seen._kept._size < 2.0 * alone + sum(m.nbytes for m, _, _ in seen._kept._copies.values())
+
+
+def test_what_stands_round_the_part() -> None:
+    seen = history(MILLED, replace(MILL, clamping=Clamping(40.0, 30.0, 5.0, 30.0)))
+    instant = seen.at(len(seen.steps))
+    around = seen.around(instant)
+    assert around.chuck is not None
+    assert around.chuck.radius == 20.0
+    assert float(around.chuck.edges[-1]) == -30.0
+    assert around.tool is not None
+    assert around.tool.round is Round.ACROSS
+    assert history(MILLED, MILL).around(instant).chuck is None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pytest
 from PySide6.QtCore import QPoint, Qt
@@ -14,8 +15,10 @@ from app.path.part_player import PartPlayer
 from app.path.path_aspects import Aspect, Tip
 from app.path.path_marks_view import part_words
 from app.path.path_view import PathView
+from app.path.solid_pane_view import quarter
 from app.screen.look import Look
 from app.screen.theme import DARK, LIGHT
+from core.part.clamping import Clamping
 from tests.path.test_part_player import RAPID, SHAFT, Clock, picture
 
 INCH = 25.4
@@ -269,7 +272,37 @@ def test_without_metal_there_is_no_solid(view: PathView) -> None:
     assert now.image is None
 
 
-def test_after_the_solid_the_path_comes_again(view: PathView) -> None:
-    solid(view, SHAFT)
+def test_after_the_solid_it_is_seen_open_and_then_the_path_comes_again(view: PathView) -> None:
+    whole = solid(view, SHAFT)
+    view.next_view()
+    assert [pane.aspect for pane in view.panes] == [Aspect.OPEN]
+    assert settled(view) != whole
     view.next_view()
     assert [pane.aspect for pane in view.panes] == [Aspect.PATH]
+
+
+@pytest.mark.parametrize("tilt", range(-180, 180, 15))
+def test_the_quarter_that_is_taken_out_is_on_the_side_that_is_looked_at(tilt: int) -> None:
+    first, last = quarter(float(tilt))
+    assert last - first == 90.0
+    assert -180.0 <= first < last <= 180.0
+    if abs(tilt) <= 90:
+        assert -90.0 <= 0.5 * (first + last) <= 90.0
+    assert -tilt in {first, last}  # the plane of turning, on the operator's side
+
+
+def test_the_chuck_is_drawn_where_it_stands(view: PathView) -> None:
+    bare = picture(SHAFT)
+    assert bare.part is not None
+    held = replace(bare.part, setting=replace(bare.part.setting, clamping=Clamping(60.0, 8.0)))
+    view.show_picture(replace(bare, part=held))
+    while not view.shows_part:
+        view.next_view()
+    image = settled(view)
+    assert view.player is not None
+    assert view.player.shown is not None
+    stock = view.player.shown.instant.stock
+    assert stock is not None
+    edge = -8.0 / INCH, (stock.radius + 0.7) / INCH
+    assert len(colour(view, image, *edge)) > 2  # a line, and hatching behind it
+    assert colour(view, shown(view, SHAFT), *edge) == {DARK.panel}

@@ -1,0 +1,269 @@
+"""Tool, holder and chuck in the solid picture: layers of their own, laid over the part by their depth.
+
+A tool's outlines become prisms below its rake face, which lies in the plane of turning; a tool that is round
+about its own axis becomes round. Points stand a pixel apart, and nothing is kept of them: there are few.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from core.part.clamping import Clamping
+from core.part.ray_cuts import FloatArray
+from core.part.solid_view import SolidView
+from core.part.stock import Stock
+from core.part.surface_points import Solid, turned_solid
+
+Image = npt.NDArray[np.uint32]
+Depths = npt.NDArray[np.int32]
+
+_FRONT = 15.0  # mm of the body of a chuck that are drawn behind its front
+_STEP = 0.01  # mm: a shoulder of the chuck is no wider
+_PROUD = 0.1  # mm: by how much an insert is drawn above its holder
+_INSERT, _HOLDER = 4.8, 16.0  # mm below the rake face; a holder's is its width where that is less
+_LIGHT = np.array([-0.38, 0.62, 0.69])  # to the right, up, towards the viewer
+_GHOST = 0.3
+
+
+class Round(StrEnum):
+    """About which axis a tool is round, if it is."""
+
+    NOT = ""
+    ALONG = "z"
+    ACROSS = "x"
+
+
+class ToolBody(NamedTuple):
+    """A tool where it stands: outlines (k, 2) of Z and X, mm; ``ghost``: nobody has described its body."""
+
+    cutting: tuple[FloatArray, ...]
+    body: tuple[FloatArray, ...]
+    round: Round = Round.NOT
+    ghost: bool = False
+
+
+class Layer(NamedTuple):
+    """A picture of 0xAARRGGBB and how near each pixel of it is; 0: nothing is there. ``share``: how much of
+    it covers what is behind."""
+
+    image: Image
+    depth: Depths
+    share: float = 1.0
+
+    def over(self, image: Image, depth: Depths) -> None:
+        """Lay it over a picture, whose depth becomes that of both."""
+        nearer = self.depth > depth
+        if not nearer.any():
+            return
+        if self.share < 1.0:
+            image[nearer] = _mixed(self.image[nearer], image[nearer], self.share)
+        else:
+            np.copyto(image, self.image, where=nearer)
+            np.copyto(depth, self.depth, where=nearer)
+
+
+class _Face(NamedTuple):
+    """Points (n, 3) of Z, X and height, mm, and how light they are, 0 … 1 (n,) or one for all."""
+
+    points: FloatArray
+    shade: FloatArray | float
+
+
+class _Eye(NamedTuple):
+    """What looks on: ``turn`` leads to the right, up and towards the viewer; Z and X that are seen, mm."""
+
+    turn: FloatArray
+    scale: float
+    z: tuple[float, float]
+    x: tuple[float, float]
+
+
+def chuck_solid(clamping: Clamping, stock: Stock) -> Solid:
+    """The front of a chuck with its jaws, or of a collet, as a solid of revolution."""
+    bore = clamping.around(stock).bore[0][1]
+    face, body = -clamping.stick_out, -clamping.stick_out - clamping.jaws
+    radius, jaws = clamping.diameter / 2.0, (clamping.jaw_diameter or clamping.diameter) / 2.0
+    edges, radii = [body - _FRONT, body - _STEP, body], [radius, radius]
+    if clamping.jaws:
+        edges += [body + _STEP, face]
+        radii += [jaws, jaws]
+    high = np.array([radii])
+    return turned_solid(np.array(edges), np.full(high.shape, min(bore, *radii)), high)
+
+
+def tool_layers(
+    tool: ToolBody,
+    view: SolidView,
+    width: int,
+    height: int,
+    colours: tuple[int, int],
+    deep: float,
+    far: float,
+) -> Iterator[Layer]:
+    """Body and edges of a tool; ``deep`` steps of depth a pixel, counted from ``far`` pixels behind."""
+    eye = _eye(view, width, height)
+    for polygons, lift, thick, colour, ghost in (
+        (tool.body, 0.0, _HOLDER, colours[0], tool.ghost),
+        (tool.cutting, _PROUD, _INSERT, colours[1], False),
+    ):
+        faces = [face for polygon in polygons for face in _faces(polygon, (lift, thick), tool.round, eye)]
+        if faces:
+            yield _layer(faces, view, (width, height), colour, (deep, far))._replace(
+                share=_GHOST if ghost else 1.0
+            )
+
+
+def _eye(view: SolidView, width: int, height: int) -> _Eye:
+    """With some more than is seen, as long as little is seen askew."""
+    cos, _ = view.along
+    across = (0.5 * height / view.scale + _HOLDER) / max(abs(math.sin(math.radians(view.tilt))), 0.25)
+    along = (0.5 * width / view.scale + across) / max(cos, 0.25)
+    return _Eye(_turned(view), view.scale, (view.centre - along, view.centre + along), (-across, across))
+
+
+def _faces(polygon: FloatArray, heights: tuple[float, float], round_: Round, eye: _Eye) -> Iterable[_Face]:
+    if round_ is not Round.NOT:
+        return [_revolved(polygon, round_, eye)]
+    lift, thick = heights
+    size = np.ptp(polygon, axis=0)
+    return _prism(polygon, lift, min(thick, max(float(size.min()), 1.0)), eye)
+
+
+def _prism(polygon: FloatArray, lift: float, thick: float, eye: _Eye) -> Iterator[_Face]:
+    """The faces of a convex outline that look at the viewer, its upper one at the height ``lift``."""
+    for height, normal in ((lift, (0.0, 0.0, 1.0)), (-thick, (0.0, 0.0, -1.0))):
+        if (shade := _lit(eye, np.array(normal))) > 0.0:
+            inside = _inside(polygon, eye)
+            yield _Face(np.column_stack([inside, np.full(len(inside), height)]), float(shade))
+    turned = float(np.sign(_area(polygon)) or 1.0)
+    down = np.linspace(lift, -thick, max(math.ceil((thick + lift) * eye.scale), 2))
+    for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
+        way = b - a
+        length = math.hypot(*way)
+        shade = _lit(eye, np.array([way[1], -way[0], 0.0]) * (turned / max(length, 1e-9)))
+        if length < 1e-9 or shade <= 0.0:
+            continue
+        share = np.linspace(0.0, 1.0, max(math.ceil(length * eye.scale), 1), endpoint=False)
+        edge = a + share[:, None] * way
+        edge = edge[_seen(edge[:, 0], eye.z) & _seen(edge[:, 1], eye.x)]
+        points = np.column_stack([np.repeat(edge, len(down), axis=0), np.tile(down, len(edge))])
+        yield _Face(points, float(shade))
+
+
+def _seen(values: FloatArray, span: tuple[float, float]) -> npt.NDArray[np.bool_]:
+    return (values >= span[0]) & (values <= span[1])
+
+
+def _lit(eye: _Eye, normals: FloatArray) -> FloatArray:
+    """How light faces with these normals (…, 3) are; 0: they look away."""
+    turned = normals @ eye.turn.T
+    light = 0.35 + 0.65 * np.clip(turned @ _LIGHT, 0.0, 1.0)
+    return np.where(turned[..., 2] > 0.0, light, 0.0)
+
+
+def _revolved(polygon: FloatArray, round_: Round, eye: _Eye) -> _Face:
+    """A tool that is round about the line through its control point: its outline is as wide on both sides."""
+    axis, across = (0, 1) if round_ is Round.ALONG else (1, 0)
+    span = eye.z if axis == 0 else eye.x
+    low, high = max(polygon[:, axis].min(), span[0]), min(polygon[:, axis].max(), span[1])
+    middle = 0.5 * (polygon[:, across].min() + polygon[:, across].max())
+    at = np.linspace(low, high, max(math.ceil((high - low) * eye.scale), 2))
+    first, last = _crossed(polygon, axis, at)
+    radius = np.nan_to_num(np.maximum(last - middle, middle - first))
+    angles = np.linspace(0.0, 2.0 * math.pi, max(math.ceil(2.0 * math.pi * radius.max() * eye.scale), 12))
+    lean = np.gradient(radius, at) if high > low else np.zeros(len(at))
+    cos, sin = np.cos(angles), np.sin(angles)
+    points, normals = np.empty((len(at), len(angles), 3)), np.empty((len(at), len(angles), 3))
+    points[..., axis], points[..., across] = at[:, None], middle + radius[:, None] * cos
+    points[..., 2] = radius[:, None] * sin
+    normals[..., axis], normals[..., across], normals[..., 2] = -lean[:, None], cos, sin
+    normals /= np.linalg.norm(normals, axis=2, keepdims=True)
+    shade = _lit(eye, normals).ravel()
+    return _Face(points.reshape(-1, 3)[shade > 0.0], shade[shade > 0.0])
+
+
+def _crossed(polygon: FloatArray, axis: int, at: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """From where to where a convex outline is met at these places of an axis; NaN: not at all."""
+    a, b = polygon[None], np.roll(polygon, -1, axis=0)[None]
+    place = at[:, None]
+    way = b[..., axis] - a[..., axis]
+    share = (place - a[..., axis]) / np.where(way == 0.0, np.inf, way)
+    met = (share >= -1e-9) & (share <= 1.0 + 1e-9) & (way != 0.0)
+    found = a[..., 1 - axis] + share * (b[..., 1 - axis] - a[..., 1 - axis])
+    low = np.where(met, found, np.inf).min(axis=1)
+    high = np.where(met, found, -np.inf).max(axis=1)
+    none = low > high
+    return np.where(none, np.nan, low), np.where(none, np.nan, high)
+
+
+def _inside(polygon: FloatArray, eye: _Eye) -> FloatArray:
+    """Points of a convex outline (n, 2), a pixel apart, as far as they are seen."""
+    low, high = max(polygon[:, 0].min(), eye.z[0]), min(polygon[:, 0].max(), eye.z[1])
+    if high < low:
+        return np.zeros((0, 2))
+    at = np.linspace(low, high, max(math.ceil((high - low) * eye.scale), 2))
+    first, last = (np.clip(each, *eye.x) for each in _crossed(polygon, 0, at))
+    there = last >= first
+    at, first, last = at[there], first[there], last[there]
+    count = np.maximum(np.ceil((last - first) * eye.scale), 1.0).astype(np.intp)
+    index = np.repeat(np.arange(len(at)), count)
+    nth = np.arange(len(index)) - (np.cumsum(count) - count)[index]
+    share = (nth + 0.5) / count[index]
+    return np.column_stack([at[index], first[index] + share * (last - first)[index]])
+
+
+def _area(polygon: FloatArray) -> float:
+    z, x = polygon.T
+    return float(0.5 * np.sum(z * np.roll(x, -1) - x * np.roll(z, -1)))
+
+
+def _layer(
+    faces: Sequence[_Face], view: SolidView, size: tuple[int, int], colour: int, depths: tuple[float, float]
+) -> Layer:
+    """Points into pixels, the nearest one seen."""
+    width, height = size
+    points = np.concatenate([face.points for face in faces])
+    light = np.concatenate([np.broadcast_to(face.shade, len(face.points)) for face in faces])
+    place = (points - np.array([view.centre, 0.0, 0.0])) @ _turned(view).T * view.scale
+    column = np.floor(place[:, 0] + 0.5 * width).astype(np.int64)
+    row = np.floor(0.5 * height - place[:, 1]).astype(np.int64)
+    there = (column >= 0) & (column < width) & (row >= 0) & (row < height)
+    shade = (255.0 * light[there]).astype(np.int64)
+    deep = ((place[there, 2] + depths[1]) * depths[0]).astype(np.int64)
+    keys = np.zeros(width * height, np.int64)
+    np.maximum.at(keys, row[there] * width + column[there], (deep << 8) + shade)
+    return Layer(
+        _coloured(keys & 255, colour, keys > 0).reshape(height, width),
+        (keys >> 8).astype(np.int32).reshape(height, width),
+    )
+
+
+def _turned(view: SolidView) -> FloatArray:
+    """From Z, X (towards the operator) and height to the right, up and towards the viewer."""
+    cos, sin = view.along
+    tilt = math.radians(view.tilt)
+    near = np.array([0.0, math.cos(tilt), math.sin(tilt)])
+    up = np.array([0.0, -math.sin(tilt), math.cos(tilt)])
+    z = np.array([1.0, 0.0, 0.0])
+    return np.array([cos * z - sin * near, up, sin * z + cos * near])
+
+
+def _coloured(shade: npt.NDArray[np.int64], colour: int, there: npt.NDArray[np.bool_]) -> Image:
+    parts = [((colour >> off) & 255) * shade // 255 << off for off in (16, 8, 0)]
+    whole = (0xFF << 24) | parts[0] | parts[1] | parts[2]
+    return np.where(there, whole, 0).astype(np.uint32)
+
+
+def _mixed(over: Image, under: Image, share: float) -> Image:
+    """Both, channel by channel; where nothing is under it, it is as thin as it is."""
+    mixed = np.zeros(over.shape, np.uint32)
+    for off in (0, 8, 16, 24):
+        a, b = (((each >> np.uint32(off)) & np.uint32(255)).astype(np.float64) for each in (over, under))
+        mixed |= np.round(share * a + (1.0 - share) * b).astype(np.uint32) << np.uint32(off)
+    return mixed

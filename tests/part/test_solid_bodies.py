@@ -1,0 +1,96 @@
+"""Tool and chuck in the solid picture: where they are seen, and what hides them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from core.part.clamping import Clamping
+from core.part.solid_bodies import Round, ToolBody, chuck_solid
+from core.part.solid_picture import Colours, Image, Scene, SolidPicture
+from core.part.solid_view import SolidView
+from core.part.stock import bar
+from core.part.surface_points import Solid, turned_solid
+
+WIDTH, HEIGHT = 400, 300
+GOLD, GREY, BROWN = Colours().insert, Colours().holder, Colours().chuck
+SIDE = SolidView(azimuth=0.0, tilt=0.0, scale=8.0, centre=-10.0)
+ABOVE = SolidView(azimuth=0.0, tilt=90.0, scale=8.0, centre=-10.0)
+SQUARE = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 6.0], [0.0, 6.0]])
+
+
+def shaft(radius: float = 5.0) -> Solid:
+    count = 2000
+    return turned_solid(np.linspace(-20.0, 0.0, count + 1), np.zeros((1, count)), np.full((1, count), radius))
+
+
+def at(z: float, x: float) -> np.ndarray:
+    return SQUARE + np.array([z, x])
+
+
+def drawn(view: SolidView, tool: ToolBody | None = None, chuck: Solid | None = None) -> Image:
+    return SolidPicture().draw(shaft(), view, WIDTH, HEIGHT, around=Scene(chuck, tool))
+
+
+def like(image: Image, colour: int) -> np.ndarray:
+    """Which pixels are of this colour, whatever its light: red and blue stand to green as they do."""
+    r, g, b = (((image >> off) & 255).astype(float) + 1e-9 for off in (16, 8, 0))
+    red, green, blue = ((colour >> 16) & 255, (colour >> 8) & 255, colour & 255)
+    near = (abs(r / g - red / green) < 0.03) & (abs(b / g - blue / green) < 0.06)
+    return near & (image >> 24 > 0) & (g > 20)
+
+
+def test_a_tool_is_seen_from_above_as_it_is_drawn() -> None:
+    """Four by six mm before the shaft: X+ is down."""
+    found = like(drawn(ABOVE, ToolBody((at(-12.0, 5.0),), ())), GOLD)
+    rows, columns = np.nonzero(found)
+    assert len(rows) == pytest.approx(24.0 * 64.0, rel=0.03)
+    assert (columns.min(), columns.max()) == pytest.approx((200 - 16, 200 + 15), abs=1)
+    assert (rows.min(), rows.max()) == pytest.approx((150 + 40, 150 + 88), abs=1)
+
+
+def test_from_the_side_it_hides_the_shaft_and_from_behind_the_shaft_hides_it() -> None:
+    tool = ToolBody((at(-12.0, 5.0),), ())
+    before = np.count_nonzero(like(drawn(SIDE, tool), GOLD))
+    assert before == pytest.approx(4.0 * 4.0 * 64.0, rel=0.1)  # as thick as it is wide, below the rake face
+    behind = SolidView(azimuth=0.0, tilt=180.0, scale=8.0, centre=-10.0)
+    assert np.count_nonzero(like(drawn(behind, tool), GOLD)) == 0
+
+
+def test_a_drill_is_round() -> None:
+    """Seen from the side it is as high as it is wide; 6 mm thick, it stands 10 mm out of the face."""
+    outline = np.array([[-5.0, -3.0], [10.0, -3.0], [10.0, 3.0], [-5.0, 3.0]])
+    for view in (SIDE, ABOVE):
+        rows, columns = np.nonzero(like(drawn(view, ToolBody((outline,), (), Round.ALONG)), GOLD))
+        assert np.ptp(rows) + 1 == pytest.approx(48, abs=2)
+        assert (columns.min(), columns.max()) == pytest.approx((200 + 80, 200 + 159), abs=2)
+
+
+def test_a_holder_that_nobody_has_described_lets_the_part_shine_through() -> None:
+    solid, ghost = (drawn(ABOVE, ToolBody((), (at(-12.0, 0.0),), ghost=ghost)) for ghost in (False, True))
+    bare = drawn(ABOVE)
+    there = like(solid, GREY)
+    assert there.any()
+    assert (solid[there] != bare[there]).all()
+    far = np.abs((ghost[there] & 255).astype(int) - (bare[there] & 255).astype(int)).max()
+    assert 0 < far < np.abs((solid[there] & 255).astype(int) - (bare[there] & 255).astype(int)).max()
+
+
+def test_the_chuck_stands_behind_its_face_and_hides_the_bar() -> None:
+    chuck = chuck_solid(Clamping(24.0, 15.0, 3.0, 16.0), bar(10.0, 0.0, -20.0))
+    found = like(drawn(SIDE, chuck=chuck), BROWN)
+    _, columns = np.nonzero(found)
+    assert columns.max() == pytest.approx(200 - 5 * 8, abs=1)  # its face at Z-15
+    high = {at: np.ptp(np.flatnonzero(found[:, at])) + 1 for at in (150, 100)}
+    assert high == {150: pytest.approx(128, abs=3), 100: pytest.approx(192, abs=3)}  # jaws, body
+    assert math.isclose(float(chuck.low.max()), 5.0)
+
+
+def test_a_tool_far_off_is_no_matter() -> None:
+    bare = drawn(SIDE)
+    for z in (-500.0, 500.0):
+        tool = ToolBody((at(z, 5.0),), (at(z, 11.0),))
+        np.testing.assert_array_equal(drawn(SIDE, tool), bare)
+    np.testing.assert_array_equal(drawn(SIDE, ToolBody((at(-12.0, 900.0),), ())), bare)
