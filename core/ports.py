@@ -202,8 +202,10 @@ class SampleSource(Protocol):
 
     rate: float  # samples a second while something moves
 
-    def take(self) -> FloatArray:
-        """What has been sampled since it was last taken, (n, 5 + 3 axes); the oldest may be lost."""
+    def take(self, most: int = 8192) -> FloatArray:
+        """What has been sampled since it was last taken, (n, 5 + 3 axes), the oldest first and ``most`` at a
+        time; where nobody takes them the oldest are lost.
+        """
         ...
 
 

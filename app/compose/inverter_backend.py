@@ -8,7 +8,7 @@ from functools import partial
 
 from app.compose.serial_ports import open_wire
 from core.machine.machine_model import Machine
-from core.ports import AxisSink, Clock, DriverError, MachinePorts
+from core.ports import AxisSink, Clock, DriverError, FloatArray, MachinePorts, SampleSource
 from drivers.clocks import StepClock
 from drivers.inverter.inverter_attendant import Keeper
 from drivers.inverter.inverter_spindle import Encoder, InverterSpindle, attendant
@@ -85,6 +85,7 @@ def _attended(
         axes=ClearingAxes(ports.axes, spindle.clear_fault),
         spindle=spindle,
         gear=ports.gear if encoder else None,
+        samples=SlidesAlone(ports.samples, len(ports.axes.axes)) if ports.samples is not None else None,
         warnings=(*ports.warnings, *said),
         halt=partial(halt_with, ports, spindle),
     )
@@ -96,6 +97,23 @@ def halt_with(ports: MachinePorts, spindle: InverterSpindle) -> None:
     spindle.coast()
     if ports.halt is not None:
         ports.halt()
+
+
+class SlidesAlone:
+    """``SampleSource``: the same samples without what they say of a spindle, which is not the one that turns.
+
+    Of that one the record has what is measured at each tick.
+    """
+
+    def __init__(self, inner: SampleSource, axes: int) -> None:
+        self.rate, self._inner = inner.rate, inner
+        self._spindle = slice(1 + 3 * axes, 4 + 3 * axes)
+
+    def take(self, most: int = 8192) -> FloatArray:
+        """Speed, turns and load of the spindle are not known."""
+        rows = self._inner.take(most)
+        rows[:, self._spindle] = float("nan")
+        return rows
 
 
 class ClearingAxes:

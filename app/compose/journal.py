@@ -101,7 +101,7 @@ class Journal(Persistence):
                 self._write(self._store, event)
 
     def _write(self, store: Store, event: Event) -> None:
-        store.log_event(event.kind, event.text, event.line)
+        store.log_event(event.kind, event.text, event.line, event.record)
         if event.kind == "part" and self._program:
             store.count_part(Path(self._program).name)
         self._recorder.hear(event, store)

@@ -28,6 +28,7 @@ class LoggedStop:
 
     at: str
     alarm: Alarm
+    record: str = ""  # of the seconds before it, for ``Recorder.alarm_record``; empty: there is none
 
 
 class AlarmLog:
@@ -41,12 +42,12 @@ class AlarmLog:
     def hear(self, event: Event) -> None:
         """Remember what stopped the machine; other events are none of this log."""
         if event.alarm is not None:
-            self._heard.append(LoggedStop(self._clock(), event.alarm))
+            self._heard.append(LoggedStop(self._clock(), event.alarm, event.record))
 
     def recall(self, rows: Iterable[EventRow]) -> None:
         """What the store has kept, newest first: it comes behind what was heard since."""
         kept = tuple(
-            LoggedStop(wall_time(row.at, "%H:%M:%S"), alarm)
+            LoggedStop(wall_time(row.at, "%H:%M:%S"), alarm, row.record)
             for row in rows
             if (alarm := read_back(row)) is not None
         )

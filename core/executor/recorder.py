@@ -23,7 +23,7 @@ from core.machine.machine_model import Machine
 from core.ports import FloatArray, MachinePorts
 from core.records.record import Record
 from core.records.record_errors import RecordError
-from core.records.record_file import ENDING, save_record
+from core.records.record_file import ENDING, open_record, save_record
 from core.records.record_ring import TICKS, Recorded, Ring, Rows, bits_of
 from core.records.ring_file import NOW, RingFile, new_ring
 
@@ -85,7 +85,7 @@ class Recorder:
         self._told: deque[Tick] = deque(maxlen=_MOST)
         self._noted: deque[_Frozen] = deque()
         self._freezing: _Frozen | None = None
-        self._name = ""  # of the record that is being waited for
+        self._name = self._writing = ""  # of the record that is being waited for, that is being written
         self._program = ""
         self._skipped: list[float] | None = None  # the last tick, where it said nothing new
         self._figures: list[float] = []
@@ -133,6 +133,17 @@ class Recorder:
     def between(self, begin: float, end: float, names: Collection[str] | None = None) -> Record:
         """The samples from ``begin`` up to and with ``end``."""
         return self.ring.between(begin, end, names)
+
+    def alarm_record(self, name: str) -> Record:
+        """The record of an alarm, by the name that its entry in the log has; not for the screen's thread.
+
+        Raises RecordError while it is still being written, and for one that is no longer kept.
+        """
+        if name in {self._name, self._writing} - {""}:
+            raise RecordError("the record of this alarm is being written: look again in two seconds")
+        if self.folder is None or Path(name).name != name or not (self.folder / name).exists():
+            raise RecordError(f"the record of this alarm is no longer kept; the newest {KEPT} are")
+        return open_record(self.folder / name)
 
     # --- the recorder's thread --------------------------------------------------------------------------
 
@@ -246,9 +257,10 @@ class Recorder:
             return
         event = self._freezing.event
         if last or now is None or _over(now, event.t):
-            self._name = ""
+            self._name, self._writing = "", self._name  # what comes now has a record of its own
             frozen, self._freezing = self._freezing, None
             self._write(frozen, min(self.ring.samples.last, event.t + BEHIND))
+            self._writing = ""
 
     def _write(self, frozen: _Frozen, end: float) -> None:
         event, folder = frozen.event, self.folder

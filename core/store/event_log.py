@@ -12,7 +12,7 @@ from core.store.store_rows import EventRow
 
 def log(connection: sqlite3.Connection, events: Iterable[EventRow]) -> None:
     """Adds to the log."""
-    connection.executemany("INSERT INTO events (at, kind, text, line) VALUES (?, ?, ?, ?)", events)
+    connection.executemany("INSERT INTO events (at, kind, text, line, record) VALUES (?, ?, ?, ?, ?)", events)
 
 
 def events(
@@ -20,7 +20,7 @@ def events(
 ) -> tuple[EventRow, ...]:
     """The last events whose kind or text holds ``search``, newest first; no ``kinds``: of every kind."""
     rows = connection.execute(
-        "SELECT at, kind, text, line FROM events"
+        "SELECT at, kind, text, line, record FROM events"
         " WHERE (?1 = '' OR instr(lower(text), lower(?1)) OR instr(lower(kind), lower(?1)))"
         " AND (?2 = '[]' OR kind IN (SELECT value FROM json_each(?2)))"
         " ORDER BY id DESC LIMIT ?3",

@@ -246,9 +246,9 @@ class Store:
         """A version that nobody waits for."""
         return self._keep_latest("text", name, lambda c: program_records.save(c, name, text, why))
 
-    def log_event(self, kind: str, text: str, line: int = 0) -> Future[None]:
+    def log_event(self, kind: str, text: str, line: int = 0, record: str = "") -> Future[None]:
         """One line of the log, at this moment."""
-        return self.log_events([EventRow(utc_now(), kind, text, line)])
+        return self.log_events([EventRow(utc_now(), kind, text, line, record)])
 
     def log_events(self, events: Iterable[EventRow]) -> Future[None]:
         """Several lines of the log."""

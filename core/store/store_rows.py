@@ -128,12 +128,13 @@ class VersionRow(NamedTuple):
 
 
 class EventRow(NamedTuple):
-    """One line of the log; ``line`` is the program's, 0 none."""
+    """One line of the log; ``line`` is the program's, 0 none; ``record`` is a file of the folder records."""
 
     at: str
     kind: str
     text: str
     line: int = 0
+    record: str = ""
 
 
 class RunRow(NamedTuple):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from core.ports import Clock, DriverError, MachinePorts, Spindle, Stop
+from core.ports import Clock, DriverError, FloatArray, MachinePorts, Spindle, Stop
 from drivers.canopen.canopen_axes import CanopenAxes
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig
@@ -14,8 +14,35 @@ from drivers.canopen.canopen_spindle import CanopenSpindle
 from drivers.canopen.canopen_terminals import CanopenIO
 from drivers.canopen.cia402_drives import Drive402
 from drivers.canopen.spindle_as_c import SpindleC
+from drivers.sample_log import KEPT, SampleLog
 
+_NAN = float("nan")
 _FIRST = 0.5  # s in which everything must have answered a first SYNC
+
+
+class CanopenSamples:
+    """``core.ports.SampleSource``: what the drives have answered to each SYNC."""
+
+    def __init__(self, axes: CanopenAxes, spindle: Spindle, sync: float) -> None:
+        self.rate = 1.0 / sync
+        self._axes, self._spindle = axes, spindle
+        self._log = SampleLog(len(axes.axes))
+
+    def note(self, now: float) -> None:
+        """Keep the answers of a SYNC that is newer than the last."""
+        if self._axes.drives.seen <= self._log.last:
+            return
+        sample, angle = self._axes.sample(), self._spindle.angle()
+        turns = angle[1] if angle is not None else _NAN
+        load = (_NAN,) * len(sample.actual)
+        left = self._axes.queue.horizon(now) - now
+        self._log.add(
+            sample.t, *sample.demand, *sample.actual, *load, self._spindle.speed(), turns, _NAN, left
+        )
+
+    def take(self, most: int = KEPT) -> FloatArray:
+        """What has been kept since."""
+        return self._log.take(most)
 
 
 class CanopenMachine:
@@ -36,6 +63,7 @@ class CanopenMachine:
                 self.axes.clearing.append(self.spindle.clear_fault)
             self.encoder = self._encoder(drives)
             self.c = self._spindle_c()
+            self.samples = CanopenSamples(self.axes, self._turning, config.bus.sync)
             self._connect()
         except DriverError:
             self.bus.close()
@@ -70,6 +98,7 @@ class CanopenMachine:
             io=self.io,
             station=self.io,
             lock=self.c,
+            samples=self.samples,
             warnings=tuple(each for axis in self.axes.drives.axes for each in axis.drive.setup.warnings),
         )
 
@@ -78,6 +107,7 @@ class CanopenMachine:
         self.bus.pump()
         now = self.clock.now()
         self.axes.tick(now)
+        self.samples.note(now)
         if self.bus.trouble:
             return
         try:

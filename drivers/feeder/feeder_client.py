@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import logging
 import queue
+from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Protocol
+
+import numpy as np
 
 from core.ports import (
     AxisSample,
@@ -13,6 +16,7 @@ from core.ports import (
     Clock,
     DriverError,
     Fault,
+    FloatArray,
     Geared,
     MachinePorts,
     Segments,
@@ -37,6 +41,7 @@ from drivers.feeder.feeder_messages import (
 
 _log = logging.getLogger(__name__)
 _FRESH = 0.002  # s for which one look serves all ports
+_BATCHES = 200  # of samples that wait for whoever records them
 
 
 class Link(Protocol):
@@ -63,6 +68,7 @@ class Line:
         self._state: Mapping[str, object] = {}
         self._at = -1.0
         self._posted: queue.SimpleQueue[Message] = queue.SimpleQueue()
+        self.sampled: deque[FloatArray] = deque(maxlen=_BATCHES)  # since they were last taken
 
     def ask(self, message: Message) -> Message:
         """The answer. Raises DriverError with what the drivers refuse, or that the feeder is gone."""
@@ -95,7 +101,10 @@ class Line:
             try:
                 while not self._posted.empty():
                     self.ask(self._posted.get())
-                self._state = self.ask(Message({"do": "look"}, NOTHING)).head
+                answer = self.ask(Message({"do": "look"}, NOTHING))
+                self._state = answer.head
+                if len(answer.numbers):
+                    self.sampled.append(answer.numbers)
             except DriverError as error:
                 self.lost = self.lost or error.fault
             self._at = now
@@ -223,6 +232,22 @@ class FeederSpindle(_OnLine):
         return self._line.lost or fault_of(self._line.look(), "spindle", "spindle")
 
 
+class FeederSamples(_OnLine):
+    """``core.ports.SampleSource``: they have come with the looks."""
+
+    def __init__(self, line: Line, hello: Mapping[str, object]) -> None:
+        super().__init__(line)
+        self.rate = number(hello, "samples")
+        self._width = 5 + 3 * len(texts(hello.get("axes")))
+
+    def take(self, most: int = 8192) -> FloatArray:  # noqa: ARG002  an answer has few enough
+        """What has come since; what does not fit is none."""
+        waiting = self._line.sampled
+        told = [waiting.popleft() for _ in range(len(waiting))]
+        whole = [rows.reshape(-1, self._width) for rows in told if not len(rows) % self._width]
+        return np.concatenate(whole) if whole else np.empty((0, self._width))
+
+
 class FeederLock(_OnLine):
     """``core.ports.SpindleHold``."""
 
@@ -303,6 +328,7 @@ def feeder_ports(line: Line) -> MachinePorts:
         lock=FeederLock(line) if hello.get("lock") is True else None,
         trips=FeederTrips(line),
         halt=line.hang_up,
+        samples=FeederSamples(line, hello) if hello.get("samples") else None,
     )
 
 

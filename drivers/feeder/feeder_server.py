@@ -126,6 +126,7 @@ AWAY = 0.25  # s without a round of its own: modules take their error values aft
 LATE = 0.05  # s; the drives' queues hold twice this, and a splice of 6000 pieces takes 0.03
 SILENT = 0.2  # s without a word after which the control counts as stalled
 _NOTES = 50
+_ROWS = 400  # samples in one answer: what a late control has missed comes with its next looks
 _STANDS = 5.0  # rpm
 _RUNS_DOWN = 8.0  # s for a spindle to brake; one that has not by then is let go
 
@@ -287,6 +288,7 @@ class Feeder:
             "commit": axes.commit,
             "gear": self._ports.gear is not None,
             "lock": self._ports.lock is not None,
+            "samples": self._ports.samples.rate if self._ports.samples is not None else 0.0,
             "warnings": [*self._warnings, *self._ports.warnings],
         }
         return Message(head, NOTHING)
@@ -308,7 +310,8 @@ class Feeder:
             "notes": self._notes,
         }
         self._notes = []
-        return Message(head, NOTHING)
+        sampled = ports.samples.take(_ROWS).ravel() if ports.samples is not None else NOTHING
+        return Message(head, sampled)
 
     def _splice(self, message: Message) -> Message:
         self._driven.tick()  # a long one takes a while: the drives' queues are filled before

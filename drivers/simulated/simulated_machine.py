@@ -20,7 +20,7 @@ from core.ports import (
 from drivers.lookalikes.plant import Plant
 from drivers.lookalikes.plant_config import SimConfig
 from drivers.lookalikes.plant_hands import PlantHands, Schedule
-from drivers.sample_log import SampleLog
+from drivers.sample_log import KEPT, SampleLog
 
 
 class _OnPlant:
@@ -118,13 +118,13 @@ class SimSamples(_OnPlant):
         super().__init__(plant)
         self.rate = 1.0 / plant.config.step
 
-    def take(self) -> FloatArray:
+    def take(self, most: int = KEPT) -> FloatArray:
         """What has been sampled since."""
         plant = self._plant
         with plant.lock:
             if plant.log is None:
                 plant.log = SampleLog(len(plant.names))
-            return plant.log.take()
+            return plant.log.take(most)
 
 
 class SimSpindlePort(_OnPlant):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from app.desk.alarm_log import KEPT, AlarmLog, read_back
@@ -31,6 +33,13 @@ def test_the_newest_stands_on_top_with_its_time(log: AlarmLog) -> None:
     log.hear(event("estop"))
     assert [(entry.at, entry.alarm.number) for entry in log.entries] == [("09:41:07", 701), ("09:41:07", 102)]
     assert log.entries[1].alarm.cause == "X is 2.345 off its setpoint"
+
+
+def test_an_entry_leads_to_the_record_of_the_seconds_before_it(log: AlarmLog) -> None:
+    log.hear(replace(event("following"), record="today-alarm102.scope"))
+    log.recall([row(event("following"))._replace(record="before-alarm102.scope"), row(event("estop"))])
+    records = [entry.record for entry in log.entries]
+    assert records == ["today-alarm102.scope", "before-alarm102.scope", ""]
 
 
 def test_what_is_no_stop_is_none_of_it(log: AlarmLog) -> None:

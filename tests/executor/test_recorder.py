@@ -15,6 +15,7 @@ from core.executor.executor import Executor
 from core.executor.recorder import KEPT, Recorder, Tick, recorded_of, rotate
 from core.executor.snapshot import Event, State
 from core.ports import DriverError, FloatArray
+from core.records.record_errors import RecordError
 from core.records.record_file import open_record
 from core.records.ring_file import NOW, read_ring
 from tests.executor.rig import INCH, Rig
@@ -156,6 +157,7 @@ def test_an_alarm_keeps_the_ten_seconds_before_it_until_the_machine_stands(tmp_p
     assert record.about["alarm"].startswith(f"{alarm.alarm.number} ")
     assert record.about["program"] == "PART"
     assert abs(record.columns["spindle speed"][-1]) < 1.0 or record.times[-1] > alarm.t + 1.9
+    np.testing.assert_array_equal(it.recorder.alarm_record(alarm.record).times, record.times)
     assert not [each for each in tmp_path.iterdir() if each.name.endswith(".part")]
 
 
@@ -171,6 +173,24 @@ def test_alarms_that_come_together_have_one_record_and_a_closing_desk_writes_it(
     names = {event.record for event in it.events if event.kind in {"alarm", "estop"}}
     assert len(names) == 1
     assert open_record(tmp_path / names.pop()).times.size > 5
+
+
+def test_a_record_that_is_not_there_is_told(tmp_path: Path) -> None:
+    it = rig(tmp_path)
+    it.post(EnableDrives())
+    it.sim.machine.drive_fault("X", "overcurrent")
+    it.run(0.05)
+    it.recorder.drain()
+    (name,) = {event.record for event in it.events if event.kind == "alarm"}
+    with pytest.raises(RecordError, match="is being written: look again in two seconds"):
+        it.recorder.alarm_record(name)
+    it.recorder.close()
+    assert it.recorder.alarm_record(name).times.size
+    for gone in ("20250101T000000-alarm507.scope", f"../{tmp_path.name}/{name}", "now.ring/"):
+        with pytest.raises(RecordError, match="no longer kept; the newest 50 are"):
+            it.recorder.alarm_record(gone)
+    with pytest.raises(RecordError, match="no longer kept"):
+        rig().recorder.alarm_record(name)
 
 
 def test_a_stop_has_no_record(tmp_path: Path) -> None:

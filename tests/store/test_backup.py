@@ -153,8 +153,8 @@ def test_export_is_plain_files(store: Store, tmp_path: Path) -> None:
     assert offsets["secondary"]["4"] == {"x": -0.0005, "z": 0.0, "r": 0.0}
     with (tmp_path / "out/events.csv").open(newline="") as file:
         rows = list(csv.reader(file))
-    assert rows[0] == ["at", "kind", "text", "line"]
-    assert rows[1][1:] == ["start", 'PIN.nc, "first" part', "0"]
+    assert rows[0] == ["at", "kind", "text", "line", "record"]
+    assert rows[1][1:] == ["start", 'PIN.nc, "first" part', "0", ""]
 
 
 def test_exported_programs_come_back(store: Store, tmp_path: Path) -> None:

@@ -69,7 +69,7 @@ def test_parts_are_counted_by_program(store: Store) -> None:
 
 
 def test_events_newest_first_and_searched(store: Store) -> None:
-    rows = [EventRow("2026-01-01T00:00:00.000Z", "alarm", "X following error", 12)]
+    rows = [EventRow("2026-01-01T00:00:00.000Z", "alarm", "X following error", 12, "one-alarm102.scope")]
     rows.append(EventRow("2026-01-01T00:00:01.000Z", "start", "PIN.nc"))
     store.log_events(rows)
     store.log_event("stop", "feed hold").result()

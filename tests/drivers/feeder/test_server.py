@@ -68,6 +68,44 @@ def test_a_silent_control_is_played_to_the_end_of_its_queue_and_then_all_stops(b
     assert bench.sim.machine.spindle_rpm() == 0.0
 
 
+def test_what_happened_while_the_control_was_late_comes_with_its_next_looks(bench: Bench) -> None:
+    source = bench.ports.samples
+    assert source is not None
+    assert source.rate == 1000.0
+    working(bench)
+    bench.ports.axes.sample()
+    bench.alone(0.95)  # the feeder alone: the spindle was ordered to 600, and the slides go on
+    rows = []
+    for _ in range(5):
+        bench.clock.advance(0.01)
+        bench.ports.axes.sample()
+        rows.append(source.take())
+    assert [len(each) for each in rows[:2]] == [400, 400]  # no answer is longer than a late control can bear
+    found = np.concatenate(rows)
+    assert np.diff(found[:, 0]) == pytest.approx(0.001, abs=1e-9)
+    assert found[0, 0] <= 0.011
+    assert found[-1, 0] == pytest.approx(bench.clock.now(), abs=0.002)
+    for row in found[::50]:
+        assert tuple(row[1:4]) == bench.sim.ports.axes.demand_at(row[0])[0]
+    assert source.take().shape == (0, 14)
+
+
+def test_samples_that_were_damaged_on_their_way_are_none(bench: Bench) -> None:
+    assert bench.ports.samples is not None
+    bench.line.sampled.append(np.zeros(15))
+    bench.line.sampled.append(np.zeros(28))
+    assert bench.ports.samples.take().shape == (2, 14)
+
+
+def test_a_driver_without_samples_has_none_through_the_feeder_either() -> None:
+    clock = StepClock()
+    sim = build_simulation(CONFIG, clock)
+    plain = dataclasses.replace(sim.ports, samples=None)
+    ports = feeder_ports(Line(LoopLink(Feeder(SimDriven(plain, sim.machine))), clock))
+    ports.axes.sample()
+    assert ports.samples is None
+
+
 def test_a_control_that_comes_back_in_time_goes_on(bench: Bench) -> None:
     working(bench)
     bench.alone(0.5)
