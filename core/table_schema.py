@@ -113,6 +113,7 @@ class Kind(Enum):
     PAIR = "two numbers, [low, high]"
     TRIPLE = "three numbers, [x, y, z]"
     CHOICE = "one of"
+    WORDS = 'a list of words, ["one", "another"]'  # kept as one text, with blanks between them
 
 
 _HUGE = 10**300
@@ -267,13 +268,17 @@ def _shape_is_right(raw: object, field: Field) -> bool:
             return isinstance(raw, int) and not isinstance(raw, bool)
         case Kind.FLAG:
             return isinstance(raw, bool)
-        case Kind.TEXT:
-            return isinstance(raw, str) and bool(raw.strip())
+        case Kind.TEXT | Kind.WORDS:
+            return _is_words(raw) if field.kind is Kind.WORDS else isinstance(raw, str) and bool(raw.strip())
         case Kind.PAIR | Kind.TRIPLE:
             count = 2 if field.kind is Kind.PAIR else 3
             return isinstance(raw, list) and len(raw) == count and all(_number(part) for part in raw)
         case Kind.CHOICE:
             return any(raw is choice or (isinstance(raw, str) and raw == choice) for choice in field.choices)
+
+
+def _is_words(raw: object) -> bool:
+    return isinstance(raw, list) and all(isinstance(each, str) and len(each.split()) == 1 for each in raw)
 
 
 def _parts(raw: object) -> list[float]:
@@ -299,6 +304,8 @@ def _problem(raw: object, field: Field, inch: bool | None) -> str:
 def _converted(raw: object, field: Field, inch: bool) -> Value:
     if isinstance(raw, bool | str):
         return raw
+    if field.kind is Kind.WORDS and isinstance(raw, list):
+        return " ".join(word.strip() for word in raw)
     numbers = [to_model(part, field.unit, inch) for part in _parts(raw)]
     if field.kind is Kind.WHOLE:
         return int(numbers[0])

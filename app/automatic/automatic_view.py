@@ -54,6 +54,7 @@ class AutomaticPage(Page):
         self.listing = Listing(look, self)
         self.comment = CommentLine(look, self)
         self.path = PathView(look, self, player=player_of(desk))
+        self.path.stock = self._stock
         self.space = WorkingPlaneView(look, self)  # takes the path's place where the machine is a mill
         self.files = FilePrompt(look, desk.program_folders, desk.choose, self._files_closed, self)
 
@@ -142,6 +143,7 @@ class AutomaticPage(Page):
             "F8": partial(self.host.go, page_table.TOOLS),
             "F9": partial(self.host.go, page_table.SECCMP),
             "F10": partial(self.host.go, page_table.SPECIAL),
+            "B": partial(self.host.go, page_table.PART),
             "Zoom in": partial(looked_at.zoom, 1),
             "Zoom out": partial(looked_at.zoom, -1),
             "Measure": self.path.measure,
@@ -173,6 +175,14 @@ class AutomaticPage(Page):
         """The part as the first line that the program window shows leaves it."""
         if self.path.player is not None:
             self.path.player.to_line(self.listing.top + 1)
+
+    def _stock(self) -> None:
+        """What the part that is looked at is proved on."""
+        from app.part.part_sheet import PartSheet
+
+        sheet = self.desk.attached(PartSheet)
+        if sheet is not None and self.host.go(page_table.PART):
+            sheet.show_stock()
 
     def _edit(self) -> None:
         """The program on the desk, or whatever name stands in the question for a file."""

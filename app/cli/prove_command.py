@@ -162,11 +162,18 @@ def _prove(path: Path, source: Source, job: ProofJob, args: argparse.Namespace) 
         sys.stdout.write(_sheet(path, report, part))
         stops = stops_of(report, optional_stop=args.optional_stop)
         sys.stdout.write(f"  stops {stops} times for the operator\n" if stops else "")
+        sys.stdout.write(_silenced(report))
         if compare is not None:
             from app.cli.compare_figures import compare_lines
 
             sys.stdout.write(compare_lines(compare, metric=report.metric, dialect=report.dialect))
     return found
+
+
+def _silenced(report: Report) -> str:
+    """How many findings are notes only, and of which checks."""
+    found = [each.check for each in report.diagnostics if each.silenced]
+    return f"  silenced {len(found)} findings of {', '.join(sorted(set(found)))}\n" if found else ""
 
 
 def _reached(report: Report, length: Callable[[float], float], unit: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 
 from app.desk.data_folder import data_folder
@@ -132,6 +132,12 @@ class Journal(Persistence):
     def save_setting(self, key: str, value: object) -> None:
         """Post a setting."""
         self._post(lambda store: store.set_setting(key, value))
+
+    def keep_settings(self, values: Mapping[str, object]) -> None:
+        """Settings that are on the disk when this is back. Raises StoreError; not for the screen's thread."""
+        store = self._opened()
+        for written in [store.set_setting(key, value) for key, value in values.items()]:
+            written.result()
 
     def parts(self, program: str) -> int:
         """Parts counted of this program."""

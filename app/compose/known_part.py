@@ -13,6 +13,8 @@ from core.part.tool_shape import ToolShape
 from core.proving.part_proof import PartSetting
 from core.proving.thread_checks import Drives
 
+OF_MACHINE = "by the machine file"
+
 
 def known_part(
     machine: Machine,
@@ -27,6 +29,7 @@ def known_part(
         clamping=_clamping(machine, stick_out),
         drives=Drives(machine.axes[1].amax, machine.spindle.decel),
         gang={n: (tool.z, tool.x) for n, tool in tools.items()} if machine.tooling == "gang" else {},
+        silenced=dict.fromkeys(machine.silenced, OF_MACHINE),
     )
 
 

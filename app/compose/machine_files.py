@@ -7,7 +7,7 @@ from pathlib import Path
 import resources
 from core.machine import machine_file, serial_table
 from core.machine.machine_model import Machine
-from core.table_schema import Driver
+from core.table_schema import Driver, Finding, MachineFileError, written
 from drivers.canopen import canopen_table
 from drivers.grblhal import grblhal_table
 from drivers.inverter import inverter_table
@@ -31,7 +31,20 @@ BACKENDS = {driver.backend: module for driver, module in _ENTRIES if module}
 
 def parse_machine(text: str, source: str) -> Machine:
     """The machine that the TOML ``text`` describes; ``source`` names it. Raises MachineFileError."""
-    return machine_file.parse_machine(text, source, DRIVERS)
+    machine = machine_file.parse_machine(text, source, DRIVERS)
+    if machine.silenced:
+        _known_checks(machine.silenced, source)
+    return machine
+
+
+def _known_checks(silenced: tuple[str, ...], source: str) -> None:
+    from core.proving.part_checks import CHECKS
+
+    wrong = [name for name in silenced if name not in CHECKS]
+    if wrong:
+        expected = f"expected checks of the part: {', '.join(CHECKS)}"
+        found = [Finding("checks.silenced", written(name), expected) for name in wrong]
+        raise MachineFileError(found, source)
 
 
 def load_machine(path: Path | None = None) -> Machine:

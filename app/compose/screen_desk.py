@@ -18,7 +18,7 @@ from app.compose.journal import Journal
 from app.compose.machine_setup import read_machine
 from app.compose.shop_floor import keep_status, open_shop_floor
 from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_offsets
-from app.compose.workshop import drawer, give_mdi, give_searchto, samples, workshop
+from app.compose.workshop import drawer, give_mdi, give_part, give_searchto, samples, workshop
 from app.desk.alarm_log import KEPT, KINDS
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import RECORDS, data_folder
@@ -222,6 +222,7 @@ def _desk(
     desk.attach(_editor(beside, journal))
     furnish(desk, machine, keep, workshop(machine, offsets, left=left))
     give_mdi(desk, machine, offsets, keep)
+    give_part(desk, machine, keep)
     give_searchto(desk, machine)
     return desk
 

@@ -18,6 +18,7 @@ from app.desk.latest import Watch
 from app.desk.persistence import Persistence
 from app.desk.program_loading import LoadingSteps, PartProved, Proved
 from app.mdi.mdi_model import MdiLine, MdiModel, ProveLine
+from app.part.part_sheet import PartSheet
 from app.searchto.searchto_model import SearchtoModel
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Snapshot
@@ -217,6 +218,20 @@ def give_mdi(desk: Desk, machine: Machine, offsets: Callable[[], Offsets], keep:
     mdi = MdiModel(prove_line, desk.post, desk.snapshot, desk.say, desk.clear, MdiLine(keep))
     desk.attach(mdi)
     desk.own_starts.append(mdi)
+
+
+# --- The page PART of a desk: what is kept of stock and checks.
+
+
+def give_part(desk: Desk, machine: Machine, keep: Persistence) -> None:
+    """Give the desk its page of findings and stock."""
+    from core.proving.part_checks import CHECKS
+
+    held = machine.clamping
+    of_machine = frozenset(machine.silenced)
+    desk.attach(
+        PartSheet(desk, keep, frozenset(CHECKS), of_machine, held.stick_out, holds=bool(held.diameter))
+    )
 
 
 # --- SEARCHTO of a desk on this machine.

@@ -23,16 +23,11 @@ class KeptPart:
 
     stock: str = ""
     stick_out: float | None = None
-    remark: str = ""
     silenced: Mapping[str, str] = field(default_factory=dict)
 
     def settings(self, program: str) -> dict[str, object]:
         """What is stored, by the name of the setting; None: nothing."""
-        rest: dict[str, object] = {
-            "stick_out": self.stick_out,
-            "remark": self.remark,
-            "silenced": dict(self.silenced),
-        }
+        rest: dict[str, object] = {"stick_out": self.stick_out, "silenced": dict(self.silenced)}
         said = {name: value for name, value in rest.items() if value}
         return {stock_key(program): self.stock or None, part_key(program): said or None}
 
@@ -44,11 +39,10 @@ def kept_part(setting: Setting, program: str) -> KeptPart:
     """What is kept with a program; what nobody could have stored counts as not there."""
     stock, rest = setting(stock_key(program)), setting(part_key(program))
     known = rest if isinstance(rest, dict) else {}
-    out, remark, silenced = (known.get(name) for name in ("stick_out", "remark", "silenced"))
+    out, silenced = known.get("stick_out"), known.get("silenced")
     return KeptPart(
         stock if isinstance(stock, str) else "",
         float(out) if isinstance(out, int | float) and not isinstance(out, bool) and out > 0.0 else None,
-        remark if isinstance(remark, str) else "",
         {str(check): str(why) for check, why in silenced.items()} if isinstance(silenced, dict) else {},
     )
 

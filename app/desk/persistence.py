@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -18,7 +18,7 @@ class Persistence:
 
     This one is for scripts and a store that cannot be opened: settings live until the program ends, nothing
     else is kept. Reading may raise StoreError; writing is posted and never waits. ``backup``, ``restore``,
-    ``events``, ``runs`` and ``save_version`` take their time: they are called on a worker.
+    ``keep_settings``, ``events``, ``runs`` and ``save_version`` take their time: they are called on a worker.
     """
 
     settings: dict[str, object] = field(default_factory=dict)
@@ -30,6 +30,11 @@ class Persistence:
     def save_setting(self, key: str, value: object) -> None:
         """Keep anything JSON can hold; None forgets it."""
         self.settings[key] = value
+
+    def keep_settings(self, values: Mapping[str, object]) -> None:
+        """The same of several, back when they are on the disk; on a worker. Raises StoreError."""
+        for key, value in values.items():
+            self.save_setting(key, value)
 
     def parts(self, _program: str) -> int:
         """Parts counted of this program."""

@@ -39,6 +39,7 @@ from core.executor.snapshot import Snapshot
 
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
+    from core.language.diagnostics import Diagnostic
 
 Keys = dict[int, Key]
 Actions = dict[int, Callable[[], None]]
@@ -81,7 +82,7 @@ class EditorPage(Page):
         self.field = TextField(look, self)
         self.path = EditedPath(look, self.go_to, self, player_of(host.desk))
         self.space = WorkingPlaneView(look, self)  # takes the path's place where the program is for a mill
-        self.findings = FindingList(look, self.go_to, self)
+        self.findings = FindingList(look, self._go_to_finding, self)
         self.history = VersionHistory(editor.archive, editor.worker)
         self.versions = VersionList(look, self.history, self)
         self.ask = AskLine(look, self, self)
@@ -239,11 +240,17 @@ class EditorPage(Page):
         self.field.go_to(max(1, line), column)
         self.field.setFocus()
 
+    def _go_to_finding(self, found: Diagnostic) -> None:
+        """The cursor to its line; of what was found in the part that is shown, as the line leaves it."""
+        self.go_to(found.line, found.column)
+        if found.n:
+            self.path.show_part()
+
     def next_finding(self) -> None:
         """The cursor to the next line that something was found in."""
         found = self.findings.following(self.field.line)
         if found is not None:
-            self.go_to(found.line, found.column)
+            self._go_to_finding(found)
         else:
             self.editor.notice = "NOTHING WAS FOUND THAT IS WRONG"
 

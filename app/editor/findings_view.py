@@ -21,7 +21,7 @@ ROW = 5.2  # units: a fingertip, two lines of text
 class FindingList(Panel):
     """Rows in the order of lines; the row of the cursor's line is marked and kept in sight."""
 
-    def __init__(self, look: Look, go_to: Callable[[int, int], None], parent: QWidget) -> None:
+    def __init__(self, look: Look, go_to: Callable[[Diagnostic], None], parent: QWidget) -> None:
         super().__init__(look, parent)
         self._go_to = go_to
         self.findings = Findings()
@@ -88,7 +88,7 @@ class FindingList(Panel):
         room = box.adjusted(10.4 * u, 0.4 * u, -0.4 * u, -box.height() / 2)
         painter.write(room, found.text, 1.8, "text", bold=False, fit=False)
         painter.write(room.translated(0, room.height()), found.hint, 1.6, "soft", bold=False, fit=False)
-        self.place(box, lambda: self._go_to(found.line, found.column))
+        self.place(box, lambda: self._go_to(found))
 
 
 def _many(count: int, word: str) -> str:

@@ -15,7 +15,9 @@ from app.screen.panel import Press
 
 HEIGHT = 6.8  # units
 _KEY = 6.6  # units: width of a key
+_STOCK = 9.0  # the one that opens the stock
 _WORDS = 15.0  # units: time and line at the right
+_LEAST = 8.0  # units of a time line that is one
 
 Place = Callable[[QRectF, Press], None]
 
@@ -23,8 +25,9 @@ Place = Callable[[QRectF, Press], None]
 class PartBar:
     """Where the time line was drawn last, and what a finger on it means."""
 
-    def __init__(self, look: Look, player: PartPlayer) -> None:
-        self.look, self.player = look, player
+    def __init__(self, look: Look, player: PartPlayer, stock: Press | None = None) -> None:
+        """``stock`` opens what the part is proved on."""
+        self.look, self.player, self._stock = look, player, stock
         self._track = QRectF()
         self._at = 0.0  # where the finger is, pixels
 
@@ -61,8 +64,15 @@ class PartBar:
             box = box.translated((_KEY + 0.5) * u, 0)
             self._key(painter, box, word, lit=lit)
             place(box, press)
+        if self._stock is not None:
+            box = QRectF(box.right() + 0.5 * u, box.y(), _STOCK * u, box.height())
+            self._key(painter, box, tr("STOCK"), lit=False, size=1.7)
+            place(box, self._stock)
         left, right = box.right() + 2.2 * u, room.right() - (_WORDS + 1.0) * u
-        self._track = QRectF(left, room.center().y() - 0.5 * u, max(right - left, u), u)
+        self._track = QRectF()
+        if right - left < _LEAST * u:
+            return  # no room for a time line
+        self._track = QRectF(left, room.center().y() - 0.5 * u, right - left, u)
         self._line(painter)
         painter.setFont(look.font(1.7, bold=True))
         painter.setPen(look.colour("soft" if player.bound else "text"))
@@ -93,12 +103,12 @@ class PartBar:
         painter.setBrush(look.colour("text"))
         painter.drawEllipse(QPointF(at, track.center().y()), 1.3 * u, 1.3 * u)
 
-    def _key(self, painter: QPainter, box: QRectF, word: str, *, lit: bool) -> None:
+    def _key(self, painter: QPainter, box: QRectF, word: str, *, lit: bool, size: float = 2.0) -> None:
         look = self.look
         painter.fillRect(box, look.colour("lit" if lit else "key"))
         dim = "soft" if self.player.bound else "text"
         painter.setPen(look.colour("on_lit" if lit else dim))
-        painter.setFont(look.font(2.0, bold=True))
+        painter.setFont(look.font(size, bold=True))
         put(painter, box, CENTRE, word)
 
     def _sign(self, painter: QPainter, box: QRectF, tone: Tone) -> None:

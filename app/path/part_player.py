@@ -204,6 +204,12 @@ class PartPlayer:
             self.playing = False
             self.seek(float(self._picture.ends[self._picture.block_of_line(line)]))
 
+    def to_block(self, block: int) -> None:
+        """To the end of an elementary block."""
+        if not self.bound and self._picture is not None:
+            self.playing = False
+            self.seek(float(self._picture.ends[min(block, len(self._picture.ends) - 1)]))
+
     def marks(self) -> npt.NDArray[np.float64]:
         """When errors of the part come up, s."""
         if self._shown is None or self._picture is None:

@@ -313,6 +313,11 @@ class Panes:
         """Whether there is another view."""
         return len(self._views) > 1
 
+    @property
+    def choices(self) -> int:
+        """How many views there are."""
+        return len(self._views)
+
     def next_view(self) -> None:
         """Go on to the next choice of panes."""
         self._view = (self._view + 1) % max(1, len(self._views))

@@ -18,7 +18,7 @@ from app.desk.translation import tr
 from app.path.path_aspects import IN_SPACE, OF_PART, Aspect, DrawnLeg, Tip
 from app.path.path_pointer_view import Pointer
 from app.screen.look import LEFT, Look, put
-from app.screen.panel import Panel
+from app.screen.panel import Panel, Press
 
 if TYPE_CHECKING:
     from app.path import path_marks_view as marks
@@ -55,6 +55,7 @@ class PathView(Panel):
         super().__init__(look, parent)
         self._picked = picked
         self.player = player  # of the part; without one it is not shown here
+        self.stock: Press | None = None  # where the stock is said; None: not from here
         self._bar: PartBar | None = None  # the time line, once the part was shown
         self._set: Panes | None = None  # comes with the first picture, and what draws it with it
         self._tip: Tip | None = None  # not drawn before somebody tells it
@@ -225,6 +226,12 @@ class PathView(Panel):
             self._lay_out()
             self.measure(on=measuring)
 
+    def show_part(self) -> None:
+        """The part, where there is one to be shown."""
+        for _ in range(self._set.choices if self._set is not None else 0):
+            if not self.shows_part:
+                self.next_view()
+
     def zoom(self, steps: int, at: QPointF | None = None) -> None:
         """Nearer (positive) or farther, about a point of the widget or about the middle."""
         pane = self.pane_at(at)
@@ -383,7 +390,7 @@ class PathView(Panel):
 
         assert self.player is not None
         if self._bar is None:
-            self._bar = PartBar(self.look, self.player)
+            self._bar = PartBar(self.look, self.player, self.stock)
         room, u = self.room(), self.look.u
         self._bar.draw(painter, QRectF(room.x(), room.bottom(), room.width(), BAR * u), self.place)
 

@@ -24,6 +24,7 @@ NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_C, NONE): "C",
     (Key.Key_P, NONE): "P",
     (Key.Key_G, NONE): "G",
+    (Key.Key_B, NONE): "B",
     (Key.Key_U, NONE): "U",
     (Key.Key_R, NONE): "R",
     (Key.Key_D, NONE): "D",

@@ -13,7 +13,7 @@ from app.screen.page_base import Host, Page
 MENU, AUTOMATIC, EDITOR, MDI, JOG = "MAIN MENU", "AUTOMATIC", "EDITOR", "MDI", "JOG"
 SEARCHTO = "SEARCHTO"
 TOOLS, SECCMP, SPECIAL = "TOOL OFFSETS", "SECONDARY OFFSETS", "SPECIAL FUNCTIONS"
-PROGRAMS, ZERO, SHAPE = "PROGRAMS", "ZERO OFFSETS", "TOOL SHAPE"
+PROGRAMS, ZERO, SHAPE, PART = "PROGRAMS", "ZERO OFFSETS", "TOOL SHAPE", "PART"
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +85,14 @@ PAGES = (
         "F10",
         "SPECIAL",
         "speed limit, parts, inputs and outputs, log, backup",
+    ),
+    PageEntry(
+        PART,
+        "app.part.part_sheet_view.PartPage",
+        "app.part.part_sheet.PartSheet",
+        "B",
+        "PART",
+        "findings of the program, its stock, silenced checks",
     ),
     PageEntry(SHAPE, "app.offsets.tool_shapes_view.ToolShapePage"),
     PageEntry(MENU, "app.screen.main_menu.MenuPage"),

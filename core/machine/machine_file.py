@@ -115,6 +115,7 @@ def _machine(reading: Reading, added: DriverReading, kinematics: KinematicsReadi
         interlocks=values.model(Interlocks, "interlocks"),
         clamping=values.model(ClampingModel, "clamping"),
         tooling=values.text("tooling.kind"),
+        silenced=tuple(values.text("checks.silenced").split()),
         max_feed=values.number("limits.max_feed"),
         manual_rapid=values.number("limits.manual_rapid"),
         resolution=values.number("limits.resolution"),

@@ -135,6 +135,7 @@ class Machine:
     inch: bool = True  # what its builder counts in
     clamping: ClampingModel = field(default_factory=ClampingModel)
     tooling: str = "single"  # "gang": all tools ride one slide; "turret"; one at a time
+    silenced: tuple[str, ...] = ()  # checks of the part that count for nothing on this machine
     kind: str = "lathe"  # or "mill"
     c_modulo: bool = True  # C counts 0..<360 where a language asks; else its travel is -360..+360
     c_own_drive: bool = False  # C is no second use of the spindle

@@ -116,6 +116,7 @@ CLAMPING = (  # 0: not said, and not checked
     Field("max_rpm", _NUMBER, Unit.RPM, 0.0, 50000.0, default=0.0),
 )
 TOOLING = (Field("kind", _CHOICE, choices=("single", "gang", "turret"), default="single"),)
+CHECKS = (Field("silenced", Kind.WORDS, default=""),)  # of the part, by their ids
 OUTPUT = (
     Field("at", _TEXT),
     Field("safe", _CHOICE, choices=(True, False, "keep")),
@@ -152,6 +153,7 @@ def plain_tables(drivers: Sequence[Driver]) -> tuple[tuple[str, tuple[Field, ...
         ("interlocks", INTERLOCKS),
         ("clamping", CLAMPING),
         ("tooling", TOOLING),
+        ("checks", CHECKS),
     )
 
 
@@ -168,6 +170,7 @@ def top_tables(drivers: Sequence[Driver]) -> tuple[str, ...]:
             "collet",
             "clamping",
             "tooling",
+            "checks",
             "interlocks",
             "io",
             "m_codes",
@@ -186,7 +189,7 @@ TABLES_OF_A_LATHE: dict[str, tuple[Field, ...]] = {
         Field("close_s", _NUMBER, Unit.SECONDS, 0.0, 10.0, default=0.0),
     ),
 }
-MAY_BE_MISSING = ("limits", "collet", "clamping", "tooling", "c_axis", "interlocks", "m_codes")
+MAY_BE_MISSING = ("limits", "collet", "clamping", "tooling", "checks", "c_axis", "interlocks", "m_codes")
 
 # M codes with a meaning of their own; the machine file cannot assign them.
 FIXED_M_CODES = frozenset((0, 1, 2, 3, 4, 5, 8, 9, 12, 13, 19, 30, 31, 89, *range(91, 100)))

@@ -23,6 +23,10 @@ insert and no holder. What an assumption cannot know is not checked: holders and
 shape, a chuck without `[clamping]` in the machine file, the first move of a program, which begins wherever
 the slides stand, and all that moves while the collet is open. A bar that is fed begins anew where its stop
 stood.
+
+A check of the part is silenced for one program on the page PART, with a reason, or for a machine in its file:
+`[checks]` with `silenced = ["chip-load", "cuts-air"]`. Never in the text of a program: that goes to other
+machines. Its findings are notes from then on, with the reason, and counted (`silenced` of `prove --json`).
 """
 
 _WITHOUT = """

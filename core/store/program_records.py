@@ -200,7 +200,7 @@ def notes_key(program: str) -> str:
 
 
 def part_key(program: str) -> str:
-    """The setting that holds what else is kept of a program's part: stick-out, remark, silenced checks."""
+    """The setting that holds what else is kept of a program's part: stick-out and silenced checks."""
     return f"part:{program}"
 
 

@@ -24,6 +24,7 @@ LANGUAGES = ("es",)
 # Of composing, what is said while the screen is open; the rest goes to the console before there is one.
 COMPOSING = "app/compose"
 COMPOSED = (
+    "desk_part.py",
     "journal.py",
     "screen_desk.py",
     "simulated_backend.py",
@@ -39,6 +40,7 @@ ROOMS = (
         "app/jog",
         "app/mdi",
         "app/offsets",
+        "app/part",
         "app/path",
         "app/programs",
     ),

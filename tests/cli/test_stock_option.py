@@ -7,6 +7,9 @@ from pathlib import Path
 
 import pytest
 
+import resources
+from app.desk.kept_part import KeptPart
+from core.store.store import Store
 from tests.cli.conftest import Turndesk
 from tests.cli.test_prove import written
 
@@ -220,3 +223,42 @@ def test_a_kept_file_is_found_from_every_folder_and_told_when_it_is_gone(
     assert "--keep-stock" in told.err
     assert turndesk("prove", path, *given, "--stock", "bar:1", "--keep-stock").status == 0
     assert turndesk("prove", path, *given).lines[0]["stock"]["given"] == "bar:1"
+
+
+SLIP = PART.replace("M30", "X.3\nG00Z-.3\nM30")
+
+
+def test_a_silenced_check_is_a_note_and_counted(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+    path = written(tmp_path, SLIP)
+    given = ("prove", path, "--offsets", offsets, "--stock", "bar:1.2")
+    told = turndesk(*given, "--json")
+    found = [each for each in told.lines[0]["diagnostics"] if each["check"]]
+    assert told.status == 1
+    assert told.lines[0]["silenced"] == 0
+    check = found[0]["check"]
+    assert found[0]["assumed"] == ["T1"]
+    machine = written(
+        tmp_path, resources.machine_file("gt75.toml") + f'\n[checks]\nsilenced = ["{check}"]\n', "quiet.toml"
+    )
+    quiet = turndesk(*given, "--machine", machine, "--json")
+    (note,) = [each for each in quiet.lines[0]["diagnostics"] if each["check"] == check]
+    assert (quiet.status, note["severity"], note["silenced"]) == (0, "note", "by the machine file")
+    assert quiet.lines[0]["silenced"] == 1
+    assert f"silenced 1 findings of {check}" in turndesk(*given, "--machine", machine).out
+
+
+def test_what_the_store_silences_for_a_program_counts_for_that_alone(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path, home: Path
+) -> None:
+    path, other = written(tmp_path, SLIP), written(tmp_path, SLIP, "other.nc")
+    given = ("--offsets", offsets, "--stock", "bar:1.2")
+    assert turndesk("prove", path, *given).status == 1
+    with Store.open(home) as store:
+        kept = KeptPart(silenced={"rapid-into-stock": "drilled before", "through-part": "drilled before"})
+        for key, value in kept.settings("part.nc").items():
+            store.set_setting(key, value).result()
+    told = turndesk("prove", path, *given)
+    assert (told.status, "Silenced: drilled before" in told.out) == (0, True)
+    assert turndesk("prove", other, *given).status == 1
+    assert turndesk("prove", path.parent, *given).status == 1  # of the folder the other one alone
+    assert turndesk("prove", path, *given, "--jobs", "1").status == 0

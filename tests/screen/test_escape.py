@@ -47,6 +47,7 @@ KEYS = {
     Key.Key_F9: page_table.SECCMP,
     Key.Key_F10: page_table.SPECIAL,
     Key.Key_G: page_table.ZERO,
+    Key.Key_B: page_table.PART,
 }
 
 

@@ -117,7 +117,7 @@ def test_the_stock_of_a_program_is_kept_renamed_and_forgotten(tmp_path: Path) ->
 
 def test_what_is_kept_of_a_part_goes_with_its_program(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        said = KeptPart("bar:1", 20.0, "bars of the left rack", {"cuts-air": "it waits there"})
+        said = KeptPart("bar:1", 20.0, {"cuts-air": "it waits there"})
         for key, value in said.settings("PIN").items():
             store.set_setting(key, value).result()
         store.rename_program("PIN", "KNOB").result()
@@ -128,6 +128,6 @@ def test_what_is_kept_of_a_part_goes_with_its_program(tmp_path: Path) -> None:
 def test_what_nobody_could_have_kept_of_a_part_counts_as_not_there() -> None:
     kept: dict[str, object] = {
         "stock:PIN": 3,
-        "part:PIN": {"stick_out": True, "remark": 1, "silenced": "all"},
+        "part:PIN": {"stick_out": True, "silenced": "all"},
     }
     assert kept_part(kept.get, "PIN") == KeptPart()

@@ -1,0 +1,388 @@
+"""The page PART: what was found in the program on the desk, and the stock that it is proved on. No Qt.
+
+What is said here is kept in the store with the program, never written into its text; then it is proved anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from functools import partial
+from pathlib import Path
+
+from app.desk.arithmetic import CHARACTERS, EntryError
+from app.desk.desk import Desk
+from app.desk.kept_part import NOTHING_KEPT, KeptPart, kept_part, lasting
+from app.desk.latest import Latest
+from app.desk.persistence import Persistence
+from app.desk.program_loading import Loaded
+from app.desk.prompt_line import UNDER_WAY
+from app.desk.sheet import STEPS, Key, edited, following
+from app.desk.translation import tr
+from app.part.stock_entry import StockEntry, StockField, StockKind
+from core.language.diagnostics import Diagnostic, Severity
+from core.part.stock_spec import StockError
+from core.store.store_errors import StoreError
+
+_TURNS = {"Left": -1, "Right": 1}
+
+
+class Section(StrEnum):
+    """What the table shows."""
+
+    FINDINGS = "findings"
+    STOCK = "stock"
+
+
+@dataclass(slots=True)
+class PartSheet:
+    """``checks`` are those that can be silenced, ``of_machine`` those that the machine file has silenced.
+
+    ``shows`` hears of the finding whose place is to be seen.
+    """
+
+    desk: Desk
+    keep: Persistence
+    checks: frozenset[str] = frozenset()
+    of_machine: frozenset[str] = frozenset()
+    stick_out: float = 0.0  # mm, of the machine file; 0: it says none
+    holds: bool = False  # whether the machine file has a chuck or collet that a stick-out belongs to
+    section: Section = Section.FINDINGS
+    at: dict[Section, int] = field(default_factory=dict)
+    text: str = ""  # what is typed
+    silencing: str = ""  # the check whose reason is being typed
+    writing: bool = False  # the name of a file is: every character is part of it
+    worker: Latest = field(default_factory=lambda: Latest("editing-part"))
+    shows: Callable[[Diagnostic], None] = field(default=lambda _found: None)
+    kept: KeptPart = NOTHING_KEPT
+    entry: StockEntry = field(default_factory=StockEntry)
+    _seen: tuple[str, int] = ("", -1)  # the program that ``_kept`` is of, and when it was loaded
+
+    def close(self) -> None:
+        """End the worker; what is being kept is kept."""
+        self.worker.close()
+
+    # --- what is shown -------------------------------------------------------------------------------
+
+    @property
+    def loaded(self) -> Loaded:
+        """The program on the desk."""
+        return self.desk.session.now
+
+    @property
+    def name(self) -> str:
+        """Under which its part is kept."""
+        return self.loaded.name
+
+    @property
+    def metric(self) -> bool:
+        """The unit of the program."""
+        picture = self.loaded.picture
+        return picture is not None and picture.metric
+
+    @property
+    def findings(self) -> tuple[Diagnostic, ...]:
+        """Everything that was found, in the order of lines."""
+        return self.loaded.diagnostics
+
+    @property
+    def marked(self) -> int:
+        """The row that keys act on; before anybody has chosen, where to look first."""
+        first = _first(self.findings) if self.section is Section.FINDINGS else 0
+        return max(0, min(self.at.get(self.section, first), self._count - 1))
+
+    @property
+    def _count(self) -> int:
+        return len(self.findings) if self.section is Section.FINDINGS else len(self.entry.fields)
+
+    @property
+    def finding(self) -> Diagnostic | None:
+        """The marked one."""
+        if self.section is not Section.FINDINGS or not self.findings:
+            return None
+        return self.findings[self.marked]
+
+    @property
+    def here(self) -> StockField:
+        """The marked field of the stock."""
+        return self.entry.fields[min(self.at.get(Section.STOCK, 0), len(self.entry.fields) - 1)]
+
+    def look(self) -> None:
+        """Once a frame: take up what has been kept, and another program."""
+        self.worker.poll()
+        seen = self.name, self.desk.session.loads
+        if seen != self._seen:
+            if seen[0] != self._seen[0]:
+                self.drop()
+                self.at.clear()
+            self._seen = seen
+            self._read()
+
+    def _read(self) -> None:
+        try:
+            self.kept = kept_part(self.keep.setting, self.name)
+        except StoreError as error:
+            self.kept = NOTHING_KEPT
+            self.desk.refuse(str(error))
+        self.entry = StockEntry.of(self.kept)
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def keys(self) -> Mapping[str, Key]:
+        """Function keys of this moment."""
+        if self.section is Section.STOCK:
+            return {
+                "F2": Key("FINDINGS", self.turn),
+                "F4": Key("KIND", self.turn_kind),
+                "F6": Key("FORGET", self.forget),
+            }
+        found = self.finding
+        word = "UNDO" if found is not None and found.silenced else "SILENCE"
+        return {"F2": Key("STOCK", self.turn), "F4": Key(word, self.silence)}
+
+    def turn(self) -> None:
+        """To the other table."""
+        self.drop()
+        self.desk.clear()
+        self.section = following(Section, self.section)
+
+    def show_stock(self) -> None:
+        """The table of the stock, as the part view asks for it."""
+        self.section = Section.STOCK
+
+    @property
+    def has_keyboard(self) -> bool:
+        """Whether every character is text."""
+        return bool(self.silencing) or self.writing
+
+    def takes(self, key: str) -> bool:
+        """Whether a character is text here."""
+        if self.has_keyboard:
+            return len(key) == 1 and key.isprintable()
+        return self.section is Section.STOCK and self._figures and key in CHARACTERS
+
+    @property
+    def _figures(self) -> bool:
+        return bool(self.name) and self.here not in {StockField.KIND, StockField.FILE}
+
+    def typed(self, key: str) -> bool:
+        """Arrows mark, Return takes or shows, figures and letters are typed where one is asked."""
+        if key == "Enter":
+            self._enter()
+        elif self.takes(key) or (key in {"Back", "Delete"} and self._asked):
+            self.text = edited(self.text, key, 200)
+        elif key in _TURNS and self.section is Section.STOCK and self.here is StockField.KIND:
+            self.turn_kind(_TURNS[key])
+        elif key in STEPS and not self.has_keyboard:
+            self.choose(self.marked + STEPS[key])
+        else:
+            return False
+        return True
+
+    @property
+    def _asked(self) -> bool:
+        return self.has_keyboard or (self.section is Section.STOCK and self._figures)
+
+    def choose(self, row: int) -> None:
+        """Mark a row; of a finding its place is shown."""
+        self.drop()
+        self.desk.clear()
+        self.at[self.section] = max(0, min(row, self._count - 1))
+        found = self.finding
+        if found is not None:
+            self.shows(found)
+
+    def touch(self, row: int) -> None:
+        """A finger marks a row; on the marked one it turns the kind, or opens the name of a file."""
+        if row != self.marked or self.section is Section.FINDINGS:
+            self.choose(row)
+        elif self.here in {StockField.KIND, StockField.FILE} and not self.writing:
+            self._enter()
+
+    def _enter(self) -> None:
+        if self.silencing:
+            self._silence(self.silencing, self.text.strip())
+        elif self.section is Section.FINDINGS:
+            if self.finding is not None:
+                self.shows(self.finding)
+        elif self.here is StockField.KIND:
+            self.turn_kind()
+        elif self.here is StockField.FILE and not self.writing:
+            self.writing = not self._barred()
+        else:
+            self._take()
+
+    def escape(self) -> bool:
+        """What is typed, an answer, or half a stock is taken back; False when there was none of it."""
+        if self.text or self.has_keyboard:
+            self.drop()
+        elif self.desk.notice:
+            self.desk.clear()
+        elif self.entry != StockEntry.of(self.kept):
+            self.entry = StockEntry.of(self.kept)
+        else:
+            return False
+        return True
+
+    def drop(self) -> None:
+        """Forget what is typed."""
+        self.text, self.silencing, self.writing = "", "", False
+
+    def opened(self) -> None:
+        """The page comes up."""
+        self._seen = ("", -1)
+        self.look()
+
+    def leave(self) -> None:
+        """It goes: nothing stays half entered."""
+        self.drop()
+        self.section = Section.FINDINGS
+        self.at.clear()
+
+    def prompt(self) -> str:
+        """What the keys do here."""
+        if self.silencing:
+            return tr("TYPE THE REASON, RETURN KEEPS IT WITH THE PROGRAM; ESC LEAVES THE CHECK ON")
+        if self.writing:
+            return tr("TYPE THE NAME OF THE FILE; RETURN TAKES IT, ESC LEAVES IT AS IT WAS")
+        if self.section is Section.FINDINGS:
+            return tr("UP AND DOWN SHOW THE PLACE OF A FINDING; F2: STOCK, F4 SILENCES A CHECK")
+        if self.here is StockField.KIND:
+            return tr("LEFT AND RIGHT TURN THE KIND OF STOCK; F6: NOTHING IS SAID ANY MORE")
+        return tr("TYPE A LENGTH OR A SUM, RETURN KEEPS IT WITH THE PROGRAM; 0: NOT SAID")
+
+    # --- what is said --------------------------------------------------------------------------------
+
+    def _barred(self) -> bool:
+        """Whether nothing may be changed now; says why."""
+        if not self.name:
+            self.desk.say(tr("LOAD A PROGRAM FIRST: ITS STOCK IS KEPT WITH IT"))
+        elif self.desk.snapshot().state in UNDER_WAY:
+            self.desk.say(tr("WHAT THE PART IS PROVED ON CHANGES BETWEEN TWO CYCLES ONLY"))
+        elif self.worker.busy or self.loaded.busy:
+            self.desk.say(tr("THE PROGRAM IS BEING PROVED: WAIT A MOMENT"))
+        else:
+            return False
+        return True
+
+    def turn_kind(self, by: int = 1) -> None:
+        """The next kind of stock; what it still lacks is asked for, and until then the stock is as before."""
+        self.drop()
+        if self._barred():
+            return
+        self.desk.clear()
+        kinds = list(StockKind)
+        kind = kinds[(kinds.index(self.entry.kind) + by) % len(kinds)]
+        self._say(replace(self.entry, kind=kind, file=""))
+        self.at[Section.STOCK] = 0
+
+    def forget(self) -> None:
+        """Nothing is said of stock and stick-out any more."""
+        self.drop()
+        if self._barred():
+            return
+        if not (self.kept.stock or self.kept.stick_out):
+            self.desk.say(tr("NOTHING IS SAID OF THIS PROGRAM'S STOCK"))
+            return
+        self.entry = StockEntry()
+        self._keep(replace(self.kept, stock="", stick_out=None), tr("NOTHING IS SAID OF THE STOCK ANY MORE"))
+
+    def _take(self) -> None:
+        """Return on a field."""
+        if self._barred():
+            return
+        try:
+            if self.writing:
+                entry = replace(self.entry, file=self._found(self.text.strip()))
+            else:
+                entry = self.entry.typed(self.here, self.text, self.metric)
+        except EntryError as error:
+            self.desk.refuse(str(error))
+            return
+        self.drop()
+        self.desk.clear()
+        self._say(entry)
+
+    def _found(self, name: str) -> str:
+        """The file of this name: beside the program, or where programs are kept. Raises EntryError."""
+        beside = self.loaded.path.parent if self.loaded.path is not None else Path()
+        there = beside / Path(name).expanduser()
+        if name and there.is_file():
+            return str(there)
+        path = self.desk.program_folders.find(name) if name else None
+        if path is None:
+            raise EntryError(tr("there is no file {name} beside the program").format(name=name or "–"))
+        return str(path)
+
+    def _say(self, entry: StockEntry) -> None:
+        """What is whole is kept, and the program proved on it."""
+        self.entry = entry
+        if entry.lacks is not None:
+            return
+        try:
+            stock = lasting(entry.words)
+        except StockError as error:
+            self.desk.refuse(str(error))
+            return
+        kept = replace(self.kept, stock=stock, stick_out=entry.stick_out or None)
+        if kept != self.kept:
+            self._keep(kept, tr("KEPT WITH {name}").format(name=self.name))
+
+    # --- silenced ------------------------------------------------------------------------------------
+
+    def silence(self) -> None:
+        """F4: ask why the check of the marked finding is silenced, or let it speak again."""
+        found = self.finding
+        self.drop()
+        if found is None:
+            self.desk.say(tr("MARK THE FINDING WHOSE CHECK IS TO BE SILENCED"))
+        elif found.check not in self.checks:
+            self.desk.say(tr("ONLY CHECKS OF THE PART ARE SILENCED; THIS IS ONE OF THE PROGRAM"))
+        elif found.check in self.of_machine:
+            self.desk.say(tr("THE MACHINE FILE SILENCES {check}: [checks]").format(check=found.check))
+        elif self._barred():
+            return
+        elif found.silenced:
+            rest = {check: why for check, why in self.kept.silenced.items() if check != found.check}
+            said = tr("{check} IS LOOKED FOR AGAIN").format(check=found.check)
+            self._keep(replace(self.kept, silenced=rest), said)
+        else:
+            self.desk.clear()
+            self.silencing = found.check
+
+    def _silence(self, check: str, why: str) -> None:
+        if not why:
+            self.desk.refuse(tr("a check is not silenced without a reason"))
+        elif not self._barred():
+            silenced = {**self.kept.silenced, check: why}
+            self.drop()
+            self._keep(replace(self.kept, silenced=silenced), tr("{check} IS SILENCED").format(check=check))
+
+    # --- the store -----------------------------------------------------------------------------------
+
+    def _keep(self, kept: KeptPart, said: str) -> None:
+        """On the worker, to the disk; then the program is proved anew."""
+        name = self.name
+        self.worker.queue(
+            partial(self.keep.keep_settings, kept.settings(name)),
+            lambda _none: self._is_kept(name, said),
+            lambda why: self.desk.say(tr("NOT KEPT: {why}").format(why=why)),
+        )
+
+    def _is_kept(self, name: str, said: str) -> None:
+        self.desk.say(said)
+        loaded = self.loaded
+        if self.name != name or loaded.path is None:
+            return
+        if self.desk.snapshot().state in UNDER_WAY:  # somebody started a cycle at the station meanwhile
+            self.desk.rebuilding.wanted = True
+        else:
+            self.desk.session.load(loaded.path, loaded.block_delete)
+
+
+def _first(found: tuple[Diagnostic, ...]) -> int:
+    """Where to look first: the first error, or else what was first found in the part."""
+    errors = [place for place, each in enumerate(found) if each.severity is Severity.ERROR]
+    of_part = [place for place, each in enumerate(found) if each.n and not each.silenced]
+    return next(iter((*errors, *of_part)), 0)

@@ -1,0 +1,128 @@
+"""The page PART: findings or stock at the left, the part at the right as the marked finding leaves it."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
+from app.part.part_sheet import PartSheet, Section
+from app.part.part_tables import table
+from app.path.part_player import player_of
+from app.path.path_view import PathView
+from app.screen import page_table
+from app.screen.entry_panel import KeyPad
+from app.screen.letter_keys import LetterPad
+from app.screen.page_base import Host, KeyActions
+from app.screen.sheet_panel import ListPage, SheetPanel
+from core.executor.snapshot import Snapshot
+from core.language.diagnostics import Diagnostic
+
+SHARE, PAD, LETTERS = 0.5, 28.4, 24.0  # of the width; units: width of the figures, height of the letters
+
+
+class PartView(PathView):
+    """The part as the marked finding leaves it, or as the time line says."""
+
+    title = "PART"
+
+
+class PartPage(ListPage):
+    """The model decides; this shows it and hands the keys on."""
+
+    NAME = page_table.PART
+    model: PartSheet
+
+    def __init__(self, host: Host, model: PartSheet, parent: QWidget) -> None:
+        super().__init__(host, model, parent)
+        self.table = SheetPanel(self.look, model.touch, self)
+        self.path = PartView(self.look, self, player=player_of(host.desk))
+        self.pad = KeyPad(self.look, self.touched, own=None, parent=self)
+        self.letters = LetterPad(self.look, self.touched, self)
+        self._loaded: Loaded | None = None
+        self._shown: Diagnostic | None = None  # whose place the part view stands at
+        model.shows = self._show
+
+    def labels(self) -> tuple[str, ...]:
+        """Those of the table that is shown, and the page's own."""
+        return self.labels_of({"F3": "EDIT", "F5": "FIT", "F8": "TOOLS"}, self.model.keys())
+
+    def key_actions(self) -> KeyActions:
+        """Keys of the table, of the time line and of looking around."""
+        path, player = self.path, self.path.player
+        assert player is not None
+        return {
+            **{name: key.action for name, key in self.model.keys().items()},
+            "F3": partial(self.host.go, page_table.EDITOR),
+            "F5": path.fit,
+            "F8": partial(self.host.go, page_table.TOOLS),
+            "View": path.next_view,
+            "Zoom in": partial(path.zoom, 1),
+            "Zoom out": partial(path.zoom, -1),
+            "Pan left": partial(path.pan, -1, 0),
+            "Pan right": partial(path.pan, 1, 0),
+            "Pan up": partial(path.pan, 0, -1),
+            "Pan down": partial(path.pan, 0, 1),
+            "Play": player.play_or_pause,
+            "Play fast": player.faster,
+            "Step back": partial(player.step, -1),
+            "Step on": partial(player.step, 1),
+        }
+
+    def has_field(self) -> bool:
+        """A reason or the name of a file is written; figures are typed beside the letters' own meaning."""
+        return self.model.has_keyboard
+
+    def dress(self) -> None:
+        """The picture in the colours of now."""
+        self.path.restart()
+
+    def _show(self, found: Diagnostic) -> None:
+        """The part as the block leaves it in which something was found."""
+        player = self.path.player
+        assert player is not None
+        self._shown = found
+        if found.n:
+            player.to_block(found.n)
+        elif found.line:
+            player.to_line(found.line)
+
+    def refresh(self, _snapshot: Snapshot, _view: MachineStatus, loaded: Loaded) -> None:
+        """The table of this moment, and the part."""
+        model = self.model
+        model.look()
+        sheet = table(model)
+        self.table.show_sheet(sheet)
+        self._show_part(loaded)
+        figures = model.section is Section.STOCK and model.takes("1") and not model.has_keyboard
+        if (figures, model.has_keyboard) != (not self.pad.isHidden(), not self.letters.isHidden()):
+            self.pad.setVisible(figures)
+            self.letters.setVisible(model.has_keyboard)
+            self._lay_out()
+
+    def _show_part(self, loaded: Loaded) -> None:
+        if loaded is not self._loaded:
+            self._loaded = loaded
+            self.path.show_picture(loaded.picture)
+            self.path.show_part()
+            first = self.model.finding
+            if first is not None and loaded.picture is not None and first is not self._shown:
+                self._show(first)
+        self.path.advance()
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """Table, part and pads side by side."""
+        self._lay_out()
+
+    def _lay_out(self) -> None:
+        u = self.look.u
+        gap, left = max(4, round(0.7 * u)), round(SHARE * self.width())
+        right, pad = self.width() - left - gap, 0 if self.pad.isHidden() else round(PAD * u) + gap
+        low = 0 if self.letters.isHidden() else round(LETTERS * u) + gap
+        self.table.setGeometry(0, 0, left, self.height())
+        self.path.setGeometry(left + gap, 0, right - pad, self.height() - low)
+        self.pad.setGeometry(self.width() - pad + gap, 0, max(0, pad - gap), self.height())
+        self.letters.setGeometry(left + gap, self.height() - low + gap, right, max(0, low - gap))

@@ -1,0 +1,133 @@
+"""Stock and stick-out of a program as fields: what was said, and the words in which the store keeps it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+
+from app.desk.arithmetic import EntryError, value_of
+from app.desk.formats import MM_PER_INCH, length
+from app.desk.kept_part import KeptPart
+from core.part.stock_spec import StockError, StockSpec, stock_spec
+
+_PLACES = 6
+
+
+class StockKind(StrEnum):
+    """What the stock is; ``NONE``: nobody has said it."""
+
+    NONE = "none"
+    BAR = "bar"
+    TUBE = "tube"
+    PROFILE = "profile"
+    AFTER = "after"
+
+
+class StockField(StrEnum):
+    """The fields; all but kind and file are lengths."""
+
+    KIND = "kind"
+    DIAMETER = "diameter"
+    BORE = "bore"
+    LENGTH = "length"
+    FILE = "file"
+    ALLOWANCE = "allowance"
+    STICK_OUT = "stick_out"
+
+
+_ROUND = (StockField.DIAMETER, StockField.LENGTH, StockField.ALLOWANCE)
+_OF_A_FILE = (StockField.FILE, StockField.ALLOWANCE)
+_FIELDS = {
+    StockKind.NONE: (),
+    StockKind.BAR: _ROUND,
+    StockKind.TUBE: (StockField.DIAMETER, StockField.BORE, StockField.LENGTH, StockField.ALLOWANCE),
+    StockKind.PROFILE: _OF_A_FILE,
+    StockKind.AFTER: _OF_A_FILE,
+}
+_STICK_OUTS = (0.0, 40.0 * MM_PER_INCH)
+
+
+@dataclass(frozen=True, slots=True)
+class StockEntry:
+    """Lengths in mm, 0: not said. ``file`` is a profile's, or the program before."""
+
+    kind: StockKind = StockKind.NONE
+    diameter: float = 0.0
+    bore: float = 0.0
+    length: float = 0.0
+    allowance: float = 0.0
+    file: str = ""
+    stick_out: float = 0.0
+
+    @classmethod
+    def of(cls, kept: KeptPart) -> StockEntry:
+        """What is kept with a program; of words that mean nothing only the stick-out."""
+        out = kept.stick_out or 0.0
+        try:
+            spec = stock_spec(kept.stock) if kept.stock else StockSpec("")
+        except StockError:
+            return cls(stick_out=out)
+        kind = StockKind(kept.stock.partition(":")[0]) if kept.stock else StockKind.NONE
+        file = spec.profile or spec.after
+        return cls(kind, spec.diameter, spec.bore, spec.length, spec.allowance, file, out)
+
+    @property
+    def fields(self) -> tuple[StockField, ...]:
+        """Those that this kind has."""
+        return (StockField.KIND, *_FIELDS[self.kind], StockField.STICK_OUT)
+
+    def cell(self, name: StockField, metric: bool) -> str:
+        """A field as it is read; empty where nothing is said."""
+        if name is StockField.FILE:
+            return Path(self.file).name
+        if name is StockField.KIND:
+            return "" if self.kind is StockKind.NONE else self.kind.name
+        value = float(getattr(self, name))
+        return length(value, metric) if value else ""
+
+    def typed(self, name: StockField, text: str, metric: bool) -> StockEntry:
+        """With a length that was typed, in inches or mm. Raises EntryError for what it cannot be."""
+        value = value_of(text) * (1.0 if metric else MM_PER_INCH)
+        if value < 0.0:
+            raise EntryError("a length of the stock is not negative; 0 takes it back")
+        low, high = _STICK_OUTS
+        if name is StockField.STICK_OUT and not low <= value <= high:
+            raise EntryError("the stick-out is more than 0 and up to 40 in")
+        changed = replace(self, **{name.value: round(value, _PLACES)})  # type: ignore[arg-type]
+        if changed.kind is StockKind.TUBE and changed.diameter and changed.bore >= changed.diameter:
+            raise EntryError("the bore of a tube is less than its diameter")
+        return changed
+
+    @property
+    def lacks(self) -> StockField | None:
+        """What is still to be said before it is a stock; None: nothing."""
+        wanted = {
+            StockKind.BAR: (StockField.DIAMETER,),
+            StockKind.TUBE: (StockField.DIAMETER, StockField.BORE),
+            StockKind.PROFILE: (StockField.FILE,),
+            StockKind.AFTER: (StockField.FILE,),
+        }.get(self.kind, ())
+        return next((name for name in wanted if not getattr(self, name)), None)
+
+    @property
+    def words(self) -> str:
+        """As ``--stock`` has it. Raises StockError for what no stock can be; empty where none is said."""
+        if self.kind is StockKind.NONE:
+            return ""
+        if self.kind in {StockKind.PROFILE, StockKind.AFTER}:
+            sizes = [self.file]
+        else:
+            round_ones = [self.diameter, *([self.bore] if self.kind is StockKind.TUBE else [])]
+            sizes = [_word(each) for each in (*round_ones, *([self.length] if self.length else []))]
+        allowance = f"+{_word(self.allowance)}" if self.allowance else ""
+        text = f"{self.kind}:{':'.join(sizes)}{allowance}"
+        stock_spec(text)
+        return text
+
+
+def _word(mm: float) -> str:
+    """A length in inches where that is shorter, else in mm."""
+    inches, metric = (f"{value:.6f}".rstrip("0").rstrip(".") for value in (mm / MM_PER_INCH, mm))
+    exact = abs(float(inches) * MM_PER_INCH - mm) < 1e-6
+    return inches if exact and len(inches) <= len(metric) + 2 else f"{metric}mm"

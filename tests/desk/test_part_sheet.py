@@ -1,0 +1,278 @@
+"""The page PART: what is said of the stock and kept, what is refused, and checks that are silenced."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from app.compose.machine_files import load_machine
+from app.compose.workshop import workshop
+from app.desk.arithmetic import EntryError
+from app.desk.desk import Desk
+from app.desk.kept_part import KeptPart, kept_part
+from app.desk.persistence import Persistence
+from app.desk.program_folder import ProgramFolders
+from app.desk.program_loading import Phase, ProgramLoader
+from app.part.part_sheet import PartSheet, Section
+from app.part.part_tables import table
+from app.part.stock_entry import StockEntry, StockField, StockKind
+from core.executor.commands import Command
+from core.executor.snapshot import Snapshot, State
+from core.language.diagnostics import Diagnostic, Severity
+from core.part.stock_spec import stock_spec
+from core.proving.part_checks import CHECKS
+from core.store.store_errors import StoreError
+from tests.desk.test_part_found import LIMIT, SHAFT, SLIP, TOOLS, TURNING
+
+
+class Bench:
+    """The page of a desk that loads real programs."""
+
+    def __init__(self, folder: Path, of_machine: frozenset[str] = frozenset()) -> None:
+        self.state, self.folder = State.IDLE, folder
+        self.keep, posted = Persistence(), list[Command]()
+        steps = workshop(
+            load_machine(None),
+            lambda: (TOOLS, {}, {}),
+            shapes=lambda: {1: TURNING},
+            kept=partial(kept_part, self.keep.setting),
+        )
+        self.desk = Desk(
+            post=posted.append,
+            snapshot=lambda: Snapshot(state=self.state),
+            session=ProgramLoader(steps, posted.append),
+            program_folders=ProgramFolders((folder,)),
+        )
+        self.page = PartSheet(self.desk, self.keep, frozenset(CHECKS), of_machine)
+        self.shown: list[Diagnostic] = []
+        self.page.shows = self.shown.append
+        self.desk.attach(self.page)
+
+    def load(self, text: str, name: str = "part.nc") -> None:
+        (self.folder / name).write_text(text)
+        self.desk.session.load(self.folder / name)
+        self.settle()
+
+    def settle(self) -> None:
+        self.page.worker.settle(LIMIT)
+        self.desk.session.settled(LIMIT)
+        self.page.look()
+
+    def types(self, text: str) -> None:
+        for key in text:
+            assert self.page.typed(key), key
+        assert self.page.typed("Enter")
+        self.settle()
+
+    def press(self, *keys: str) -> None:
+        for key in keys:
+            named = self.page.keys().get(key)
+            if named is not None:
+                named.action()
+            else:
+                self.page.typed(key)
+        self.settle()
+
+    @property
+    def kept(self) -> KeptPart:
+        return kept_part(self.keep.setting, "part.nc")
+
+    @property
+    def cells(self) -> Mapping[str, tuple[str, ...]]:
+        return {row.cells[0]: row.cells[1:] for row in table(self.page).rows}
+
+
+@pytest.fixture
+def bench(tmp_path: Path) -> Iterator[Bench]:
+    made = Bench(tmp_path)
+    yield made
+    made.desk.close()
+
+
+# --- the stock in fields ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["bar:1", "bar:0.75:3+0.02", "bar:25mm", "tube:1:0.5:2.5", "profile:/a/blank.csv+0.1", "after:/b/op1.nc"],
+)
+def test_what_is_kept_comes_back_as_it_was_said(words: str) -> None:
+    entry = StockEntry.of(KeptPart(words, 20.0))
+    assert entry.words == words
+    assert entry.stick_out == 20.0
+    assert entry.lacks is None
+
+
+def test_words_mean_the_lengths_that_were_typed() -> None:
+    entry = StockEntry(StockKind.TUBE).typed(StockField.DIAMETER, "1+1/8", metric=False)
+    entry = entry.typed(StockField.BORE, "10", metric=True)
+    spec = stock_spec(entry.words)
+    assert (spec.diameter, spec.bore) == (pytest.approx(28.575, abs=1e-6), pytest.approx(10.0))
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        (StockField.DIAMETER, "-1"),
+        (StockField.DIAMETER, "1/0"),
+        (StockField.STICK_OUT, "41"),
+        (StockField.BORE, "1"),
+    ],
+)
+def test_what_no_stock_can_be_is_refused(name: StockField, text: str) -> None:
+    with pytest.raises(EntryError):
+        StockEntry(StockKind.TUBE, diameter=25.4).typed(name, text, metric=False)
+
+
+# --- saying it ----------------------------------------------------------------------------------------
+
+
+def test_a_bar_is_said_kept_and_the_program_proved_on_it(bench: Bench) -> None:
+    bench.load(SLIP)
+    assert bench.desk.session.now.phase is Phase.READY
+    bench.press("F2")
+    assert bench.page.section is Section.STOCK
+    assert bench.cells["STOCK"] == ("–", "BAR")  # what is assumed stands beside it
+    bench.press("Right")
+    assert bench.kept == KeptPart()  # without a diameter it is none yet
+    assert table(bench.page).notes == ("DIAMETER IS STILL TO BE SAID",)
+    bench.press("Down")
+    bench.types("1")
+    assert bench.kept.stock == "bar:1"
+    assert bench.cells["DIAMETER"] == ("1.00000", "")
+    assert bench.desk.session.now.phase is Phase.REFUSED  # the tool has a shape: nothing is assumed
+    bench.press("Down", "Down")
+    bench.types(".02")
+    assert bench.kept.stock == "bar:1+0.02"
+    bench.press("Down")
+    bench.types(".8")
+    assert bench.kept == KeptPart("bar:1+0.02", pytest.approx(20.32))
+    assert "COUNTS ONLY WITH [clamping]" in table(bench.page).notes[0]
+
+
+def test_what_was_said_is_forgotten(bench: Bench) -> None:
+    bench.load(SLIP)
+    bench.press("F2", "Right", "Down")
+    bench.types("1")
+    bench.press("F6")
+    assert bench.kept == KeptPart()
+    assert bench.desk.session.now.phase is Phase.READY
+    assert "NOTHING IS SAID" in bench.desk.notice
+    bench.press("F6")
+    assert bench.desk.notice == "NOTHING IS SAID OF THIS PROGRAM'S STOCK"
+
+
+def test_a_file_is_found_beside_the_program_and_kept_by_its_whole_path(bench: Bench) -> None:
+    (bench.folder / "blank.csv").write_text("-2,.5\n0,.5\n")
+    bench.load(SHAFT)
+    bench.press("F2", "Left", "Left")
+    assert bench.cells["STOCK"][0] == "PROFILE"
+    bench.press("Down", "Enter")
+    assert bench.page.has_keyboard
+    bench.types("gone.csv")
+    assert "there is no file gone.csv" in bench.desk.notice
+    bench.press(*["Back"] * 8)
+    bench.types("blank.csv")
+    assert bench.kept.stock == f"profile:{bench.folder / 'blank.csv'}"
+    part = bench.desk.session.now.part
+    assert part is not None
+    assert part.report is not None
+    assert part.report.stock is not None
+    assert part.report.stock.radius == pytest.approx(12.7)
+
+
+@pytest.mark.parametrize("text", ["-1", "1..", ""])
+def test_what_is_no_length_changes_nothing(bench: Bench, text: str) -> None:
+    bench.load(SHAFT)
+    bench.press("F2", "Right", "Down")
+    bench.types(text)
+    assert bench.desk.notice.startswith("REFUSED")
+    assert bench.kept == KeptPart()
+
+
+def test_under_a_running_program_nothing_is_changed(bench: Bench) -> None:
+    bench.load(SLIP)
+    bench.state = State.RUN
+    bench.press("F4")
+    assert "BETWEEN TWO CYCLES ONLY" in bench.desk.notice
+    assert not bench.page.has_keyboard
+    bench.press("F2", "Right")
+    assert bench.cells["STOCK"][0] == "–"
+    assert bench.kept == KeptPart()
+
+
+def test_without_a_program_there_is_nothing_to_say(bench: Bench) -> None:
+    bench.page.look()
+    assert table(bench.page).rows == ()
+    bench.press("F2", "Right")
+    assert "LOAD A PROGRAM FIRST" in bench.desk.notice
+    assert not bench.page.takes("1")
+
+
+def test_a_disk_that_takes_nothing_is_told(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_given: object) -> None:
+        raise StoreError("the disk is full")
+
+    bench.load(SHAFT)
+    monkeypatch.setattr(Persistence, "keep_settings", full)
+    bench.press("F2", "Right", "Down")
+    bench.types("1")
+    assert bench.desk.notice == "NOT KEPT: the disk is full"
+    assert bench.desk.session.now.phase is Phase.READY
+
+
+# --- findings -----------------------------------------------------------------------------------------
+
+
+def test_a_finding_is_listed_with_its_remedy_and_shows_its_place(bench: Bench) -> None:
+    bench.load(SLIP)
+    (row,) = table(bench.page).rows
+    assert row.cells[:2] == ("11", "rapid-into-stock")
+    assert "G00 left on" in " ".join(table(bench.page).notes)
+    bench.press("Enter")
+    assert [found.line for found in bench.shown] == [11]
+
+
+def test_a_check_is_silenced_with_a_reason_and_speaks_again(bench: Bench) -> None:
+    bench.load(SLIP)
+    bench.press("F4")
+    assert table(bench.page).question == "WHY IS rapid-into-stock SILENCED?"
+    bench.types("")
+    assert "without a reason" in bench.desk.notice
+    bench.types("drilled before")
+    assert bench.kept.silenced == {"rapid-into-stock": "drilled before"}
+    (found,) = bench.desk.session.now.diagnostics
+    assert (found.severity, found.silenced) == (Severity.NOTE, "drilled before")
+    assert bench.page.keys()["F4"].label == "UNDO"
+    bench.press("F4")
+    assert bench.kept == KeptPart()
+    assert bench.desk.session.now.diagnostics[0].severity is Severity.WARNING
+
+
+def test_escape_leaves_the_check_on(bench: Bench) -> None:
+    bench.load(SLIP)
+    bench.press("F4")
+    bench.page.typed("x")
+    assert bench.page.escape()
+    assert not bench.page.has_keyboard
+    assert bench.kept == KeptPart()
+    assert not bench.page.escape()
+
+
+def test_what_the_interpreter_has_found_is_not_silenced(bench: Bench) -> None:
+    bench.load("G90G94F100\nT1\nX.5Q7\nM30\n")
+    assert bench.page.finding is not None
+    bench.press("F4")
+    assert "ONLY CHECKS OF THE PART" in bench.desk.notice
+    assert not bench.page.has_keyboard
+
+
+def test_what_the_machine_file_silences_is_not_undone_here(tmp_path: Path) -> None:
+    bench = Bench(tmp_path, frozenset({"rapid-into-stock"}))
+    bench.load(SLIP)
+    bench.press("F4")
+    assert "THE MACHINE FILE SILENCES rapid-into-stock" in bench.desk.notice
+    bench.desk.close()
