@@ -161,8 +161,8 @@ class SpecialFunctions:
             self.show(self.at + (1 if key == "Down" else -1))
         elif key in {"Enter", "Tab"}:
             self.enter(self.at)
-        elif key.isdigit() and 1 <= int(key) <= len(self.functions):
-            self.enter(int(key) - 1)
+        elif key.isdigit() and (int(key) or 10) <= len(self.functions):
+            self.enter((int(key) or 10) - 1)
         else:
             return False
         return True

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QResizeEvent
+from PySide6.QtGui import QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
@@ -24,11 +24,14 @@ from core.executor.snapshot import Snapshot
 # --- the list of functions ---------------------------------------------------------------------------------
 
 
-ROW = 7.0  # units at most: a fingertip
+ROW = 7.0  # units: a fingertip
 
 
 class ItemList(Panel):
-    """The one that is shown is filled; it has a bar while the keys are its own."""
+    """The one that is shown is filled; it has a bar while the keys are its own. It stays in sight.
+
+    Rows are never lower than a fingertip: where not all fit, two keys at the foot and the wheel leaf.
+    """
 
     title = "SPECIAL FUNCTIONS"
     mark: Shown[object] = Shown(None)  # where it stands: redrawn when it has moved
@@ -38,14 +41,48 @@ class ItemList(Panel):
     ) -> None:
         super().__init__(look, parent)
         self.model, self._enter = model, enter
+        self.top = 0
+        self._followed = -1
+
+    @property
+    def rows(self) -> int:
+        """How many rows fit, those of the foot left out where there is one."""
+        fit = max(1, int(self.inside().height() / (ROW * self.look.u)))
+        return fit if fit >= len(self.model.functions) else max(1, fit - 1)
+
+    def leaf(self, rows: int) -> None:
+        """So many rows down the list."""
+        self.top = max(0, min(self.top + rows, len(self.model.functions) - self.rows))
+        self.update()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """A row a notch."""
+        self.leaf(-round(event.angleDelta().y() / 120))
 
     def draw(self, painter: Painter) -> None:
         room, functions = self.inside(), self.model.functions
-        high = min(room.height() / max(1, len(functions)), ROW * self.look.u)
-        for number, function in enumerate(functions):
-            box = QRectF(room.x(), room.y() + number * high, room.width(), high - 0.4 * self.look.u)
-            self._item(painter, box, number, function.name, function.use)
+        rows, high = self.rows, ROW * self.look.u
+        if self._followed != self.model.at:  # a key has moved it; a finger that leafs does not
+            self._followed = self.model.at
+            self.top = min(max(self.top, self.model.at - rows + 1), self.model.at)
+        self.top = max(0, min(self.top, len(functions) - rows))
+        for number in range(self.top, min(len(functions), self.top + rows)):
+            y = room.y() + (number - self.top) * high
+            box = QRectF(room.x(), y, room.width(), high - 0.4 * self.look.u)
+            self._item(painter, box, number, functions[number].name, functions[number].use)
             self.place(box, partial(self._enter, number))
+        if rows < len(functions):
+            self._foot(painter, QRectF(room.x(), room.bottom() - high, room.width(), high))
+
+    def _foot(self, painter: Painter, box: QRectF) -> None:
+        """Up and down by a screenful."""
+        half = (box.width() - 0.6 * self.look.u) / 2
+        for x, sign, rows in ((box.x(), "▲", -self.rows), (box.right() - half, "▼", self.rows)):
+            key = QRectF(x, box.y(), half, box.height())
+            ends = self.top == 0 if rows < 0 else self.top + self.rows >= len(self.model.functions)
+            painter.fill(key, "key")
+            painter.write(key, sign, 2.6, "ghost" if ends else "accent", at=CENTRE, raw=True)
+            self.place(key, partial(self.leaf, rows))
 
     def _item(self, painter: Painter, box: QRectF, number: int, name: str, use: str) -> None:
         u = self.look.u

@@ -338,3 +338,22 @@ def test_the_count_of_no_program_is_not_corrected(hands: Hands) -> None:
     open_function(hands, 2)
     hands.key(Key.Key_F2)
     assert hands.prompt().startswith("CHOOSE A PROGRAM FIRST")
+
+
+def test_the_list_has_rows_of_a_fingertip_and_leafs(hands: Hands) -> None:
+    """At 600 lines not all fit: the foot leafs without opening anything, 0 is the tenth function."""
+    hands.key(Key.Key_F10)
+    page = hands.frame.page
+    assert isinstance(page, SpecialPage)
+    items, count = page.items, len(page.model.functions)
+    assert items.rows < count
+    items.leaf(items.rows)
+    assert items.top == count - items.rows
+    assert not page.model.inside
+    items.leaf(-99)
+    assert items.top == 0
+    hands.type("0")
+    assert page.model.inside
+    assert page.model.at == 9
+    items.grab()  # drawn: the tenth is in sight
+    assert items.top <= 9 < items.top + items.rows

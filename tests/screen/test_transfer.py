@@ -38,6 +38,7 @@ class Reach:
     total: int = 1280
     lines: int = 20
     what: str = "held"
+    heard: str = ""
 
 
 class Script:
@@ -104,9 +105,11 @@ def hands(
     """A desk whose machine has a line for programs."""
     desk = desk_on(machine, keep=journal)
     section = SerialTransfer(desk, journal, lines, DEFAULT, tmp_path / "own")
-    *others, last = desk.attached(SpecialFunctions).functions
-    last.close()
-    desk.attached(SpecialFunctions).functions = [*others, section]
+    functions = list(desk.attached(SpecialFunctions).functions)
+    (line,) = (number for number, each in enumerate(functions) if each.name == section.name)
+    functions[line].close()
+    functions[line] = section
+    desk.attached(SpecialFunctions).functions = functions
     window = MainWindow(Look(DARK))
     window.resize(1024, 600)
     with qtbot.waitExposed(window):
