@@ -17,6 +17,7 @@ from app.programs.import_export import ImportExport
 from app.programs.preview import Preview
 from app.programs.program_list import ProgramList
 from app.programs.run_history import RunHistory
+from app.scope.scope_function import ScopeFunction
 from app.special.backup_and_restore import BackupAndRestore
 from app.special.drive_status import DriveStatus
 from app.special.inputs_outputs import InputsOutputs
@@ -87,6 +88,7 @@ def furnish(
     functions = [make(desk, machine, persistence, worker) for make in ITEMS]
     functions.append(_transfer(desk, machine, persistence, workshop, own))
     functions.append(_setup_sheet(desk, machine, persistence, worker))
+    functions.append(ScopeFunction(desk))
     desk.attach(SpecialFunctions(functions, worker))
     desk.attach(_files(desk, persistence, workshop, own))
 

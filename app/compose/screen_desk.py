@@ -16,6 +16,7 @@ from app.compose.error_log import Log
 from app.compose.inverter_backend import has_inverter
 from app.compose.journal import Journal
 from app.compose.machine_setup import read_machine
+from app.compose.scope_desk import give_scope
 from app.compose.shop_floor import keep_status, open_shop_floor
 from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_offsets
 from app.compose.workshop import drawer, give_mdi, give_part, give_searchto, samples, workshop
@@ -153,6 +154,7 @@ def desk_and_executor(
     )
     desk = _desk(machine, executor, connected, events, offsets)
     events.desk, desk.recorder = desk, recorder
+    give_scope(desk)
     if journal is not None:
         desk.log.recall(_stops(journal))
     desk.shut = connected.close

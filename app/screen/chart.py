@@ -14,7 +14,7 @@ import numpy.typing as npt
 import pyqtgraph as pg
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
-from PySide6.QtWidgets import QFrame, QGraphicsItem, QWidget
+from PySide6.QtWidgets import QFrame, QGraphicsItem, QGraphicsView, QWidget
 
 from app.desk.formats import fixed
 from app.screen.look import FAMILY, LEAST, Look
@@ -48,7 +48,7 @@ class Axis(pg.AxisItem):  # type: ignore[misc]
     def figures(self, low: float, high: float, size: float) -> list[float]:
         """Where figures stand on it between two values, ``size`` pixels apart."""
         levels = self.tickValues(low, high, size) if high > low and size > 0.0 else []
-        return [float(value) for _spacing, values in levels[:2] for value in values]
+        return [float(value) for _spacing, values in levels[:1] for value in values]
 
     def tickStrings(self, values: Sequence[float], _scale: float, spacing: float) -> list[str]:
         """The figures, with as many places as their distance asks for."""
@@ -117,7 +117,7 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.viewport().setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents, False)
         self.setAntialiasing(False)
-        self.ci.layout.setSpacing(0)
+        self.setCacheMode(QGraphicsView.CacheModeFlag.CacheNone)  # of the background: the grid moves
         self.dress()
 
     def add(self) -> Plot:
@@ -142,6 +142,7 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         """Colours and letters of now."""
         margin = round(0.4 * self.look.u)
         self.ci.layout.setContentsMargins(margin, margin, margin, margin)
+        self.ci.layout.setSpacing(round(1.2 * self.look.u))  # figures of two axes never touch
         self.setBackground(self.look.colour("panel"))
         for plot in self.plots:
             self._dress(plot)

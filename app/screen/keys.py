@@ -52,6 +52,8 @@ NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_PageUp, NONE): "Page up",
     (Key.Key_PageDown, NONE): "Page down",
     (Key.Key_Home, NONE): "Follow",
+    (Key.Key_F10, SHIFT): "Scope",
+    (Key.Key_Q, NONE): "Q",
 }
 REPEATING = frozenset(
     {"+", "-", ",", ".", "Zoom in", "Zoom out", "Page up", "Page down"}

@@ -14,6 +14,7 @@ MENU, AUTOMATIC, EDITOR, MDI, JOG = "MAIN MENU", "AUTOMATIC", "EDITOR", "MDI", "
 SEARCHTO = "SEARCHTO"
 TOOLS, SECCMP, SPECIAL = "TOOL OFFSETS", "SECONDARY OFFSETS", "SPECIAL FUNCTIONS"
 PROGRAMS, ZERO, SHAPE, PART = "PROGRAMS", "ZERO OFFSETS", "TOOL SHAPE", "PART"
+SCOPE = "SCOPE"
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +94,14 @@ PAGES = (
         "B",
         "PART",
         "findings of the program, its stock, silenced checks",
+    ),
+    PageEntry(
+        SCOPE,
+        "app.scope.scope_view.ScopePage",
+        "app.scope.scope_model.Scope",
+        "Q",
+        "SCOPE",
+        "axes and spindle as curves: following error, speed, load",
     ),
     PageEntry(SHAPE, "app.offsets.tool_shapes_view.ToolShapePage"),
     PageEntry(MENU, "app.screen.main_menu.MenuPage"),

@@ -68,6 +68,7 @@ class Frame(QWidget):
         self._docked = True
         host = Host(look, desk, press, self.go, self.log.hide)
         self._host = host
+        self._before_scope = page_table.AUTOMATIC
         self._moved_at: float | None = None  # when slides were last moved by hand
         self.automatic = AutomaticPage(host, self)
         self._pages: dict[str, Page] = {page_table.AUTOMATIC: self.automatic}
@@ -92,6 +93,15 @@ class Frame(QWidget):
         self._front()
         return True
 
+    def toggle_scope(self) -> None:
+        """The scope from any page, and back to that page."""
+        if self.page.NAME == page_table.SCOPE:
+            self.go(self._before_scope)
+        else:
+            before = self.page.NAME
+            if self.go(page_table.SCOPE):
+                self._before_scope = before
+
     def _front(self) -> None:
         page = self.page
         self.desk.starts_here, self.desk.field_open = page.STARTS, page.has_field
@@ -109,6 +119,7 @@ class Frame(QWidget):
         return {
             "F1": partial(self.go, page_table.MENU),
             "F7": self.toggle_log,
+            "Scope": self.toggle_scope,
             **self.page.key_actions(),
             **(self._log_keys() if self.log.isVisible() else {}),
         }

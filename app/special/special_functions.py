@@ -18,6 +18,7 @@ class SpecialFunction:
 
     name: ClassVar[str]
     use: ClassVar[str]
+    page: ClassVar[str] = ""  # that comes up instead when it is opened
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk

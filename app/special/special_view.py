@@ -118,10 +118,25 @@ class SpecialPage(ListPage):
 
     def _enter(self, number: int) -> None:
         self.model.enter(number)
+        self._page_instead()
+
+    def typed(self, key: str) -> bool:
+        """As every list; a function that has a page of its own opens that."""
+        taken = super().typed(key)
+        if taken:
+            self._page_instead()
+        return taken
+
+    def _page_instead(self) -> None:
+        shown = self.model.shown
+        if self.model.inside and shown.page:
+            self.model.inside = False
+            self.host.go(shown.page)
 
     def _chosen(self, row: int) -> None:
         self.model.inside = True
         self.model.shown.choose(row)
+        self._page_instead()
 
     def touched(self, key: str) -> None:
         """A finger on a key is for the function that is shown."""

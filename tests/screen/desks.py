@@ -8,6 +8,7 @@ from pathlib import Path
 from app.compose.desk_functions import furnish
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
+from app.compose.scope_desk import give_scope
 from app.compose.workshop import drawer, proof_of
 from app.desk.desk import Desk
 from app.desk.latest import Watch
@@ -18,6 +19,7 @@ from app.editor.editor import Editor
 from app.editor.versions import Archive, NoArchive
 from app.offsets.offset_effect import Effect
 from app.path.path_picture import Picture, picture_of
+from app.scope.scope_curves import LiveSamples
 from core.executor.job import Job
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
@@ -36,6 +38,7 @@ def desk_on(
     two_hand: bool = True,
     archive: Archive | None = None,
     keep: Persistence | None = None,
+    live: LiveSamples | None = None,
 ) -> Desk:
     """A desk with the simulated station, on these folders or on the samples."""
     lathe = load_machine(None)
@@ -74,6 +77,7 @@ def desk_on(
     desk.attach(Effect(drawer(lathe)))
     desk.attach(Editor(work, archive, folders[0] if folders else Path("/dev/null"), SAMPLES))
     furnish(desk, lathe, keep or Persistence(), work, folders[0] if folders else None)
+    give_scope(desk, live)
     built.append(desk)
     machine.hear = desk.hear
     return desk

@@ -48,6 +48,7 @@ KEYS = {
     Key.Key_F10: page_table.SPECIAL,
     Key.Key_G: page_table.ZERO,
     Key.Key_B: page_table.PART,
+    Key.Key_Q: page_table.SCOPE,
 }
 
 

@@ -18,6 +18,7 @@ PAGES = (
     (("F1", "F9"), "SECONDARY OFFSETS"),
     (("F1", "F10"), "SPECIAL FUNCTIONS"),
     (("F1", "b"), "PART"),
+    (("F1", "q"), "SCOPE"),
     (("F1",), "MAIN MENU"),
 )
 OURS = ("setpoint", "too early", "splice", "Error", "queue")  # words of whoever wrote the control

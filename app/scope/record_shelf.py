@@ -1,0 +1,175 @@
+"""Records of the scope on the disk: what is there, saved, opened, and written as a table for others.
+
+All of it is a worker's; a full disk and a file that is none are told in a sentence.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+from app.desk.formats import file_size, local_time
+from core.records.record import Record
+from core.records.record_file import ENDING
+
+INSTANT = "instant"  # of a record's words: seconds from its first sample to the trigger or the alarm
+MOST = 500
+_ROOM = 20_000_000  # bytes that are left free: the store and the log need the disk more
+
+
+class ShelfError(Exception):
+    """It was not done; the sentence says why and what to do."""
+
+
+class Kept(NamedTuple):
+    """One file: its name, when it was written, how large it is."""
+
+    path: Path
+    written: float
+    size: int
+
+    @property
+    def when(self) -> str:
+        """The time of day it was written."""
+        return time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(self.written))
+
+    @property
+    def size_words(self) -> str:
+        """How large, in words."""
+        return file_size(self.size)
+
+
+Save = Callable[[Record, Path], None]
+Open = Callable[[Path], Record]
+WriteTable = Callable[[Record, Callable[[str], object]], None]
+
+
+@dataclass(slots=True)
+class RecordShelf:
+    """``folder`` holds the records; ``save``, ``open_file`` and ``table`` know the format.
+
+    What they raise is a sentence: ShelfError, or an error whose text is one.
+    """
+
+    folder: Path
+    save: Save
+    open_file: Open
+    table: WriteTable
+    clock: Callable[[], float] = time.time
+    files: tuple[Kept, ...] = field(default=())
+
+    def look(self) -> tuple[Kept, ...]:
+        """What is there now, newest first. On a worker."""
+        found = []
+        with suppress(FileNotFoundError):
+            for entry in os.scandir(self.folder):
+                with suppress(OSError):
+                    if entry.name.endswith(ENDING) and entry.is_file():
+                        told = entry.stat()
+                        found.append(Kept(Path(entry.path), told.st_mtime, told.st_size))
+        return tuple(sorted(found, key=lambda each: -each.written)[:MOST])
+
+    def keep(self, record: Record) -> Path:
+        """Save a record under the time of day. Raises ShelfError."""
+        path = self._new("scope", ENDING)
+        self._guarded(path, lambda: self.save(record, path))
+        return path
+
+    def write_csv(self, record: Record) -> Path:
+        """The same as a table of figures. Raises ShelfError."""
+        path = self._new("scope", ".csv")
+
+        def write() -> None:
+            with _draft(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
+                self.table(record, file.write)
+            draft.replace(path)
+
+        self._guarded(path, write)
+        return path
+
+    def write_picture(self, png: bytes) -> Path:
+        """A picture of the page. Raises ShelfError."""
+        path = self._new("scope", ".png")
+
+        def write() -> None:
+            with _draft(path) as draft:
+                draft.write_bytes(png)
+            draft.replace(path)
+
+        self._guarded(path, write)
+        return path
+
+    def open(self, path: Path) -> Record:
+        """A record that was kept. Raises ShelfError."""
+        return self._told(path, lambda: self.open_file(path))
+
+    def delete(self, path: Path) -> None:
+        """Take a file away. Raises ShelfError."""
+        self._told(path, path.unlink)
+
+    def _new(self, stem: str, ending: str) -> Path:
+        """A name that is free, by the time of day."""
+        named = f"{stem} {time.strftime('%Y-%m-%d %H-%M-%S', time.localtime(self.clock()))}"
+        names = (f"{named}{more}{ending}" for more in ("", *(f" {n}" for n in range(2, 100))))
+        return next(self.folder / name for name in names if not (self.folder / name).exists())
+
+    def _guarded(self, path: Path, write: Callable[[], None]) -> None:
+        """Write where there is room."""
+
+        def carefully() -> None:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            told = os.statvfs(self.folder)
+            if told.f_bavail * told.f_frsize < _ROOM:
+                raise ShelfError(f"{path.name} IS NOT WRITTEN: THE DISK IS FULL; DELETE RECORDS OR PROGRAMS")
+            write()
+
+        self._told(path, carefully)
+
+    def _told(self, path: Path, work: Callable[[], Record | None]) -> Record:
+        """Do it; what goes wrong is told with the file's name."""
+        try:
+            return work()  # type: ignore[return-value]  # who writes takes no answer
+        except ShelfError:
+            raise
+        except OSError as error:
+            raise ShelfError(f"{path.name}: {error.strerror or error}") from error
+
+
+def _draft(path: Path) -> _Draft:
+    return _Draft(path.with_name(path.name + ".part"))
+
+
+class _Draft:
+    """A file beside its place; gone again where it was not finished."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+
+    def __enter__(self) -> Path:
+        return self._path
+
+    def __exit__(self, kind: object, *_rest: object) -> None:
+        if kind is not None:
+            with suppress(OSError):
+                self._path.unlink()
+
+
+def instant_of(record: Record) -> float:
+    """The record's instant 0, of its clock: the trigger or the alarm, else its last sample."""
+    told = record.about.get(INSTANT, "")
+    if not len(record.times):
+        return 0.0
+    try:
+        return float(record.times[0]) + float(told)
+    except ValueError:
+        return float(record.times[-1])
+
+
+def day_of(record: Record) -> str:
+    """When its first sample was taken, in words."""
+    return local_time(time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(record.started)))

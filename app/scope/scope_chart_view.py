@@ -1,0 +1,192 @@
+"""The curves of the scope as they are drawn: a lane a quantity, below each other, over one time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pyqtgraph as pg
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QFontMetricsF, QPainter
+from PySide6.QtWidgets import QWidget
+
+from app.desk.translation import tr
+from app.scope.curve_columns import Points
+from app.scope.scope_curves import Curve, Sight
+from app.scope.signals import Quantity
+from app.scope.time_window import Cursors
+from app.screen.chart import Chart, Plot, curve_colour, line_pen, set_curve
+from app.screen.look import Look
+
+_LEFT = 8.6  # units: width of the figures at the left
+_HIGH, _STEP = 0.66, 1.0  # of a logic line and from one to the next
+_DIM = 0.45  # of its colour that an earlier record keeps
+_LETTERS = 1.5  # units
+_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+
+
+class ScopeChart(Chart):
+    """``show_sight`` puts a picture on it; lanes are made anew when other quantities are shown."""
+
+    def __init__(self, look: Look, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._lanes: dict[Quantity, Plot] = {}
+        self._curves: dict[tuple[str, bool], pg.PlotCurveItem] = {}
+        self._made: object = None
+        self.sight = Sight()
+        self.cursors = Cursors()
+        self.colours: dict[str, int] = {}  # of the signals, by key: the number of the colour
+
+    # --- what is seen --------------------------------------------------------------------------------
+
+    def show_sight(self, sight: Sight, cursors: Cursors) -> None:
+        """Draw this picture; nothing is worked out here."""
+        self.sight, self.cursors = sight, cursors
+        self._make(sight)
+        for quantity, plot in self._lanes.items():
+            low, high = sight.ranges.get(quantity, (0.0, 1.0))
+            if quantity is Quantity.LOGIC:
+                low, high = -_STEP * self._count(sight.curves) + _HIGH, 1.0
+            plot.setXRange(sight.begin, sight.end, padding=0)
+            plot.setYRange(low, high, padding=0)
+        place = 0
+        for curve in sight.curves:
+            down = 0.0
+            if curve.signal.quantity is Quantity.LOGIC:
+                down, place = -_STEP * place, place + 1
+            self._draw(curve, False, down)
+        for curve in sight.earlier:
+            if curve.signal.quantity is not Quantity.LOGIC:
+                self._draw(curve, True, 0.0)
+        self.viewport().update()
+
+    def _draw(self, curve: Curve, earlier: bool, down: float) -> None:
+        item = self._curves.get((curve.signal.key, earlier))
+        if item is None:
+            return
+        points = curve.points
+        values = points.values
+        if curve.signal.quantity is Quantity.LOGIC:
+            values = values * _HIGH + down
+        set_curve(item, points.times, values, _connect(points))
+
+    def _make(self, sight: Sight) -> None:
+        """Lanes and curves for what is shown, where they are not those that are there."""
+        shown = [*((each, True) for each in sight.earlier), *((each, False) for each in sight.curves)]
+        known = tuple((each.signal.key, earlier) for each, earlier in shown)
+        if known == self._made:
+            return
+        self._made = known
+        self.empty()
+        self._lanes.clear()
+        self._curves.clear()
+        self.colours = {each.signal.key: number for number, each in enumerate(sight.curves)}
+        quantities = list(dict.fromkeys(each.signal.quantity for each in sight.curves))
+        quantities.sort(key=lambda each: each is Quantity.LOGIC)
+        for quantity in quantities:
+            plot = self._lanes[quantity] = self.add()
+            plot.showAxis("bottom", quantity is quantities[-1])
+            plot.getAxis("left").setStyle(showValues=quantity is not Quantity.LOGIC)
+        for each, earlier in shown:
+            lane = self._lanes.get(each.signal.quantity)
+            if lane is not None:
+                self._curves[each.signal.key, earlier] = lane.curve(line_pen(self._ink(each, earlier)))
+        self.share_left(_LEFT)
+
+    def _ink(self, curve: Curve, earlier: bool) -> QColor:
+        full = curve_colour(self.look, self.colours.get(curve.signal.key, 0))
+        return mixed(full, self.look.colour("panel"), _DIM) if earlier else full
+
+    def dress(self) -> None:
+        """Colours and letters of now: everything is made anew with the next picture."""
+        super().dress()
+        self._made = None
+
+    @staticmethod
+    def _count(curves: Sequence[Curve]) -> int:
+        return sum(each.signal.quantity is Quantity.LOGIC for each in curves)
+
+    # --- places --------------------------------------------------------------------------------------
+
+    @property
+    def room(self) -> QRectF:
+        """Where curves are, across all lanes; pixels of the chart."""
+        rooms = [plot.room() for plot in self.plots]
+        return rooms[0].united(rooms[-1]) if rooms else QRectF()
+
+    def time_at(self, place: QPointF) -> float:
+        """The instant at a place of the chart, as the window counts it."""
+        room, sight = self.room, self.sight
+        share = (place.x() - room.x()) / max(1.0, room.width())
+        return sight.begin + share * (sight.end - sight.begin)
+
+    def across(self, instant: float) -> float:
+        """Where an instant lies, in pixels of the chart."""
+        room, sight = self.room, self.sight
+        return room.x() + (instant - sight.begin) / (sight.end - sight.begin) * room.width()
+
+    def quantity_at(self, place: QPointF) -> Quantity | None:
+        """The lane at a place of the chart."""
+        found = (each for each, plot in self._lanes.items() if plot.room().bottom() >= place.y())
+        return next(found, None)
+
+    # --- over the curves -----------------------------------------------------------------------------
+
+    def drawForeground(self, painter: QPainter, rect: QRectF) -> None:
+        """Names of the lanes, instant 0 of a record, and the cursors."""
+        super().drawForeground(painter, rect)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
+        if not self.plots or not self.room.width():
+            return
+        for quantity, plot in self._lanes.items():
+            self._name(painter, quantity, plot.room())
+        sight, room, u = self.sight, self.room, self.look.u
+        painter.setPen(self.look.colour("soft"))
+        painter.drawText(QRectF(room.right() - 2 * u, room.bottom() + 0.4 * u, 2 * u, 2 * u), _RIGHT, "s")
+        if not sight.live and sight.begin < 0.0 < sight.end:
+            self._upright(painter, 0.0, "pause", "0")
+        if self.cursors.shown:
+            for number, (time, word) in enumerate(zip(self.cursors.times, "AB", strict=True)):
+                if room.x() <= self.across(time) <= room.right():
+                    self._upright(painter, time, "accent" if number == self.cursors.at else "soft", word)
+
+    def _name(self, painter: QPainter, quantity: Quantity, room: QRectF) -> None:
+        u = self.look.u
+        painter.setFont(self.look.font(_LETTERS, bold=True))
+        if quantity is Quantity.LOGIC:
+            logic = [each for each in self.sight.curves if each.signal.quantity is quantity]
+            high = room.height() / max(1, len(logic))
+            for number, curve in enumerate(logic):
+                painter.setPen(curve_colour(self.look, self.colours.get(curve.signal.key, 0)))
+                painter.drawText(
+                    QPointF(room.x() + 0.6 * u, room.y() + (number + 0.62) * high), curve.signal.title
+                )
+            return
+        unit = quantity.unit(self.sight.metric)
+        text = tr(quantity.title) + (f"  {unit}" if unit else "")
+        wide = QFontMetricsF(painter.font()).horizontalAdvance(text)
+        box = QRectF(room.x() + 0.4 * u, room.y() + 0.3 * u, wide + 0.8 * u, 2.0 * u)
+        painter.fillRect(box, self.look.colour("panel"))
+        painter.setPen(self.look.colour("soft"))
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
+
+    def _upright(self, painter: QPainter, time: float, ink: str, word: str) -> None:
+        u, room, x = self.look.u, self.room, round(self.across(time))
+        painter.setPen(line_pen(self.look.colour(ink)))
+        painter.drawLine(x, round(room.y()), x, round(room.bottom()))
+        box = QRectF(x - 1.0 * u, room.y(), 2.0 * u, 2.2 * u)
+        painter.fillRect(box, self.look.colour(ink))
+        painter.setPen(self.look.colour("panel"))
+        painter.setFont(self.look.font(_LETTERS, bold=True))
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, word)
+
+
+def _connect(points: Points) -> object:
+    if points.pairs:
+        return "pairs"
+    return "all" if points.joined is None else points.joined
+
+
+def mixed(ink: QColor, ground: QColor, share: float) -> QColor:
+    """A colour between two: an opaque line is drawn faster than one that lets the ground through."""
+    parts = ((ink.red(), ground.red()), (ink.green(), ground.green()), (ink.blue(), ground.blue()))
+    return QColor(*(round(share * a + (1.0 - share) * b) for a, b in parts))

@@ -1,0 +1,317 @@
+"""What the scope draws, worked out beside the screen: curves of a record, and of the samples that come in.
+
+Both give a ``Sight``: arrays that are ready to be drawn, in the units that are shown. Live curves are carried
+on: only what was sampled since the last picture is looked at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from app.scope.curve_columns import Columns, Points, kept_range, points_of
+from app.scope.scope_trigger import Trigger
+from app.scope.signals import Quantity, Signal
+from core.executor.snapshot import State
+from core.records.record import Channel, Record
+
+FloatArray = npt.NDArray[np.float64]
+Range = tuple[float, float]
+GAP = 0.02  # s that a fetch reaches back beyond what derived signals need
+ALARMED = (State.FAULT.value, State.ESTOP.value)
+
+
+class LiveSamples(Protocol):
+    """The ring of the last minutes, as the page reads it; from any thread."""
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """What is recorded."""
+        ...
+
+    @property
+    def last(self) -> float:
+        """Time of the newest sample, minus infinity without one; seconds of the monotonic clock."""
+        ...
+
+    @property
+    def lasts(self) -> float:
+        """Seconds that are kept."""
+        ...
+
+    def between(self, begin: float, end: float, names: Collection[str] | None = None) -> Record:
+        """The samples from ``begin`` up to and with ``end``; ``names``: these channels alone."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """One signal as it is drawn, in the units shown; ``latest`` is its newest figure, nan without one."""
+
+    signal: Signal
+    points: Points
+    latest: float = np.nan
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sight:
+    """One picture. Times of curves are seconds less ``zero``; ``begin`` and ``end`` of the window too.
+
+    ``ranges`` are those of the lanes, in units shown; ``at`` the figures at the two cursors, by signal.
+    """
+
+    curves: tuple[Curve, ...] = ()
+    earlier: tuple[Curve, ...] = ()  # of the record that is laid over
+    begin: float = -1.0
+    end: float = 0.0
+    zero: float = 0.0
+    rate: float = 0.0
+    live: bool = True
+    metric: bool = False
+    ranges: Mapping[Quantity, Range] = field(default_factory=dict)
+    at: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    released: float | None = None  # when the trigger was, seconds of the clock
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What is to be drawn: signals, window, how many pixels wide, in which units.
+
+    ``begin`` and ``end`` count from ``zero`` of a record; live, the newest sample is the end.
+    """
+
+    signals: tuple[Signal, ...]
+    begin: float
+    end: float
+    pixels: int
+    metric: bool
+    trigger: Trigger = field(default_factory=Trigger)
+    cursors: tuple[float, float] | None = None
+    ranges: Mapping[Quantity, Range] = field(default_factory=dict)  # those chosen by hand
+
+    @property
+    def span(self) -> float:
+        """Seconds that the window is wide."""
+        return self.end - self.begin
+
+    @property
+    def width(self) -> float:
+        """Seconds a pixel."""
+        return self.span / max(1, self.pixels)
+
+
+def shown(points: Points, scale: float, zero: float) -> Points:
+    """In the units that are shown, counted from ``zero``."""
+    return Points(points.times - zero, points.values * scale, points.pairs, points.joined)
+
+
+def ranges_of(
+    curves: Sequence[Curve], before: Mapping[Quantity, Range], wanted: Wanted
+) -> dict[Quantity, Range]:
+    """A range for each lane: the one that was chosen by hand, or one in which its curves lie."""
+    found: dict[Quantity, Range] = {}
+    for quantity in dict.fromkeys(each.signal.quantity for each in curves):
+        chosen = wanted.ranges.get(quantity)
+        values = [each.points.values for each in curves if each.signal.quantity is quantity]
+        values = [each for each in values if len(each)]
+        if chosen is not None:
+            found[quantity] = chosen
+        elif not values:
+            found[quantity] = before.get(quantity, (0.0, 1.0))
+        else:
+            low, high = min(float(v.min()) for v in values), max(float(v.max()) for v in values)
+            least = quantity.least * quantity.scale(wanted.metric)
+            found[quantity] = kept_range(before.get(quantity), low, high, least)
+    return found
+
+
+# --- of a record ----------------------------------------------------------------------------------------
+
+
+@dataclass(slots=True, eq=False)
+class RecordCurves:
+    """The curves of one record; derived columns are kept. ``zero`` is its instant 0, of its clock."""
+
+    record: Record
+    zero: float
+    _columns: dict[str, FloatArray] = field(default_factory=dict)
+    _ranges: Mapping[Quantity, Range] = field(default_factory=dict)
+    _metric: bool | None = None
+
+    def column(self, signal: Signal) -> FloatArray | None:
+        """All figures of a signal, units inside; None: the record has none."""
+        source = self.record.columns.get(signal.channel)
+        if source is None:
+            return None
+        if signal.key not in self._columns:
+            self._columns[signal.key] = signal.values(self.record.times, source)
+        return self._columns[signal.key]
+
+    def curves(self, wanted: Wanted) -> tuple[Curve, ...]:
+        """As they are drawn in the window."""
+        times = self.record.times
+        begin, end = self.zero + wanted.begin, self.zero + wanted.end
+        first = max(0, int(np.searchsorted(times, begin)) - 1)
+        last = int(np.searchsorted(times, end, side="right")) + 1
+        found = []
+        for signal in wanted.signals:
+            column = self.column(signal)
+            if column is not None:
+                points = points_of(times[first:last], column[first:last], wanted.width)
+                scale = signal.quantity.scale(wanted.metric)
+                found.append(Curve(signal, shown(points, scale, self.zero)))
+        return tuple(found)
+
+    def sight(self, wanted: Wanted, overlay: RecordCurves | None = None) -> Sight:
+        """The picture of a window of it, ``overlay`` laid over with its own instant 0."""
+        curves = self.curves(wanted)
+        earlier = overlay.curves(wanted) if overlay is not None else ()
+        if self._metric is not wanted.metric:
+            self._ranges, self._metric = {}, wanted.metric
+        ranges = ranges_of((*curves, *earlier), self._ranges, wanted)
+        self._ranges = ranges
+        at = {}
+        if wanted.cursors is not None:
+            for signal in wanted.signals:
+                at[signal.key] = self._at(signal, wanted.cursors, wanted.metric)
+        return Sight(
+            curves,
+            earlier,
+            wanted.begin,
+            wanted.end,
+            self.zero,
+            self.record.rate,
+            False,
+            wanted.metric,
+            ranges,
+            at,
+        )
+
+    def _at(self, signal: Signal, cursors: tuple[float, float], metric: bool) -> tuple[float, float]:
+        """The figures of the samples nearest to both cursors; nan beyond the record."""
+        column, times = self.column(signal), self.record.times
+        if column is None or not len(times):
+            return np.nan, np.nan
+        scale, values = signal.quantity.scale(metric), []
+        for cursor in cursors:
+            when = self.zero + cursor
+            i = int(np.searchsorted(times, when))
+            if i > 0 and (i == len(times) or when - times[i - 1] <= times[i] - when):
+                i -= 1
+            one = 1.0 / max(self.record.rate, 1.0)
+            outside = not times[0] - one <= when <= times[-1] + one
+            values.append(np.nan if outside else float(column[i]) * scale)
+        return values[0], values[1]
+
+
+# --- live -----------------------------------------------------------------------------------------------
+
+
+@dataclass(slots=True, eq=False)
+class LiveCurves:
+    """Curves that are carried on; begun anew when window, size or signals are others."""
+
+    source: LiveSamples
+    _of: object = None
+    _columns: dict[str, Columns] = field(default_factory=dict)
+    _done: dict[str, float] = field(default_factory=dict)
+    _latest: dict[str, float] = field(default_factory=dict)
+    _ranges: Mapping[Quantity, Range] = field(default_factory=dict)
+    _watched: float = np.nan  # up to where the trigger has looked
+    _trigger: Trigger | None = None
+
+    def sight(self, wanted: Wanted, overlay: RecordCurves | None = None) -> Sight:
+        """The picture of the last seconds, up to the newest sample."""
+        newest = self.source.last
+        width = wanted.width
+        known = (wanted.signals, wanted.span, wanted.pixels, wanted.metric)
+        if known != self._of or not np.isfinite(newest):
+            self._of = known
+            self._columns = {each.key: Columns.none(width) for each in wanted.signals}
+            self._done, self._latest = {}, {}
+            self._ranges = {}
+        if not np.isfinite(newest):
+            return Sight(begin=-wanted.span, end=0.0, metric=wanted.metric)
+        end = np.ceil(newest / width) * width  # whole columns, or the curve would flicker
+        rate = self._carry_on(wanted, newest)
+        curves = []
+        for signal in wanted.signals:
+            columns = self._columns[signal.key]
+            columns.forget(end - wanted.span - width)
+            scale = signal.quantity.scale(wanted.metric)
+            latest = self._latest.get(signal.key, np.nan) * scale
+            curves.append(Curve(signal, shown(columns.points(), scale, end), latest))
+        earlier = overlay.curves(wanted) if overlay is not None else ()
+        self._ranges = ranges_of((*curves, *earlier), self._ranges, wanted)
+        released = self._released(wanted, newest)
+        begin = -wanted.span
+        return Sight(
+            tuple(curves),
+            earlier,
+            begin,
+            0.0,
+            end,
+            rate,
+            True,
+            wanted.metric,
+            self._ranges,
+            {},
+            released,
+        )
+
+    def _carry_on(self, wanted: Wanted, newest: float) -> float:
+        """Take what has come; the rate of the samples."""
+        start = newest - wanted.span
+        back = max((each.span for each in wanted.signals), default=0.0) + GAP
+        done = min((self._done.get(each.key, start) for each in wanted.signals), default=start)
+        names = {each.channel for each in wanted.signals}
+        record = self.source.between(max(done, start) - back, newest, names)
+        times = record.times
+        for signal in wanted.signals:
+            source = record.columns.get(signal.channel)
+            if source is None or not len(times):
+                continue
+            values = signal.values(times, source)
+            sure = float(times[-1]) - 0.5 * signal.span if signal.span else float(times[-1])
+            first, last = np.searchsorted(times, (self._done.get(signal.key, start), sure), side="right")
+            if signal.span:
+                told = np.flatnonzero(np.isfinite(values[first:last]))
+                last = first + (told[-1] + 1 if len(told) else 0)
+            if last > first:
+                self._columns[signal.key].append(times[first:last], values[first:last])
+                self._done[signal.key] = float(times[last - 1])
+                self._latest[signal.key] = float(values[last - 1])
+        return record.rate
+
+    def _released(self, wanted: Wanted, newest: float) -> float | None:
+        """When the trigger was released by what has come; what lay before it was set counts for nothing."""
+        trigger = wanted.trigger
+        if trigger != self._trigger:
+            self._trigger, self._watched = trigger, newest
+        name = trigger.wants
+        if not name:
+            return None
+        signal = next((each for each in wanted.signals if each.key == name), None)
+        channel, back = (signal.channel, signal.span) if signal is not None else (name, 0.0)
+        record = self.source.between(self._watched - back - GAP, newest, {channel})
+        column = record.columns.get(channel)
+        if column is None or len(record.times) < 2:
+            return None
+        values = signal.values(record.times, column) if signal is not None else column
+        told = np.flatnonzero(np.isfinite(values))
+        if not len(told):
+            return None
+        first = max(0, int(np.searchsorted(record.times, self._watched)) - 1)
+        cut = slice(first, int(told[-1]) + 1)
+        self._watched = max(self._watched, float(record.times[told[-1]]))
+        return trigger.released(record.times[cut], values[cut], alarmed_of(record))
+
+
+def alarmed_of(record: Record) -> frozenset[int]:
+    """The figures of the channel ``state`` that mean an alarm or E-stop."""
+    words = record.about.get("states", "").split("|")
+    return frozenset(i for i, word in enumerate(words) if word in ALARMED)

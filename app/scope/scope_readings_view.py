@@ -1,0 +1,131 @@
+"""Beside the curves of the scope: which colour is which signal, and its figure now, or at both cursors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QWheelEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk import formats
+from app.scope.scope_curves import Sight
+from app.scope.scope_model import Scope
+from app.scope.signals import Signal
+from app.screen.look import CENTRE, RIGHT, Look, Painter
+from app.screen.panel import Panel, Shown
+from app.screen.theme import CURVES
+from app.screen.window_layout import FINGER
+
+_ROW = 5.6  # units at most
+_READ = 0.1  # s that a live figure stands
+
+
+class Readings(Panel):
+    """A row a curve; a finger marks it."""
+
+    title = "FIGURES"
+    mark: Shown[object] = Shown(None)
+
+    def __init__(self, look: Look, scope: Scope, choose: Callable[[int], None], parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self.scope, self._choose = scope, choose
+        self.sight = Sight()
+        self._top = 0
+        self._known: object = None
+        self.figures: tuple[tuple[str, ...], ...] = ()
+
+    def show_sight(self, sight: Sight) -> None:
+        """The figures of this picture; a live one changes ten times a second, or nobody could read it."""
+        scope = self.scope
+        latest = {each.signal.key: each.latest for each in sight.curves}
+        figures = tuple(self._words(each, latest, sight) for each in scope.shown)
+        times = scope.cursors.times if scope.cursors.shown else None
+        known = (
+            scope.marked,
+            times,
+            tuple(each.key for each in scope.shown),
+            self.look.palette,
+            sight.metric,
+        )
+        if sight.live and known == self._known and abs(sight.zero - self.sight.zero) < _READ:
+            return
+        self.sight, self._known = sight, known
+        self.mark = (figures, known)
+        self.figures = figures
+
+    def _words(self, signal: Signal, latest: dict[str, float], sight: Sight) -> tuple[str, ...]:
+        places = signal.quantity.places(sight.metric)
+        unit = signal.quantity.unit(sight.metric)
+        if signal.key in sight.at:
+            a, b = sight.at[signal.key]
+            return tuple(formats.fixed(value, places) for value in (a, b, b - a))
+        value = latest.get(signal.key, math.nan)
+        return (f"{formats.fixed(value, places)} {unit}" if math.isfinite(value) else "",)
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """The next curve, or the one before."""
+        self._choose(max(0, self.scope.marked + (-1 if event.angleDelta().y() > 0 else 1)))
+        event.accept()
+
+    @property
+    def high(self) -> float:
+        """Of a row, in pixels: a fingertip at least."""
+        return max(float(FINGER), _ROW * self.look.u)
+
+    def draw(self, painter: Painter) -> None:
+        room, shown = self.inside(), self.scope.shown
+        u = self.look.u
+        if self.scope.cursors.shown:
+            room = self._between(painter, room)
+        if not shown:
+            row = QRectF(room.x(), room.y(), room.width(), 3 * u)
+            painter.write(row, "F4 chooses curves.", 1.8, "soft", bold=False)
+            return
+        fits = max(1, int(room.height() / self.high))
+        marked = min(self.scope.marked, len(shown) - 1)
+        self._top = max(0, min(max(self._top, marked - fits + 1), marked, max(0, len(shown) - fits)))
+        for place, number in enumerate(range(self._top, min(len(shown), self._top + fits))):
+            box = QRectF(room.x(), room.y() + place * self.high, room.width(), self.high - 0.4 * u)
+            self._row(painter, box, number, shown[number])
+            self.place(box, partial(self._choose, number))
+
+    def _between(self, painter: Painter, room: QRectF) -> QRectF:
+        """What lies between the cursors; the room below."""
+        u, apart = self.look.u, self.scope.cursors.apart
+        hertz = f"{1.0 / abs(apart):.4g} Hz" if apart else formats.NOTHING
+        row = QRectF(room.x(), room.y(), room.width(), 2.6 * u)
+        painter.write(row, f"B − A   {formats.fixed(1000.0 * apart, 2)} ms", 1.8, "accent", raw=True)
+        row.translate(0.0, 2.6 * u)
+        painter.write(row, f"1 / (B − A)   {hertz}", 1.8, "soft", raw=True)
+        return room.adjusted(0, 5.8 * u, 0, 0)
+
+    def _row(self, painter: Painter, box: QRectF, number: int, signal: Signal) -> None:
+        u = self.look.u
+        colours = CURVES[self.look.palette.name]
+        here = number == min(self.scope.marked, len(self.scope.shown) - 1)
+        painter.fill(box, "here" if here else "key")
+        patch = QRectF(box.x(), box.y(), 2.4 * u, box.height())
+        painter.fillRect(patch, colours[number % len(colours)])
+        painter.write(patch, str(number + 1), 1.6, "panel", at=CENTRE)
+        text = box.adjusted(3.0 * u, 0.06 * box.height(), -0.4 * u, -0.06 * box.height())
+        upper = QRectF(text.x(), text.y(), text.width(), 0.48 * text.height())
+        painter.write(upper, signal.title, 1.7, "text", raw=True)
+        lower = upper.translated(0, upper.height())
+        ink = "text" if here else "soft"
+        words = self.figures[number] if number < len(self.figures) else ("",)
+        if len(words) == 3:
+            for place, (name, word) in enumerate(zip(("A", "B", "Δ"), words, strict=True)):
+                cell = QRectF(
+                    lower.x() + place * lower.width() / 3,
+                    lower.y(),
+                    lower.width() / 3 - 0.3 * u,
+                    lower.height(),
+                )
+                painter.write(cell, f"{name} {word}", 1.6, ink, raw=True, bold=False)
+            return
+        painter.write(lower, words[0], 1.9, "text", at=RIGHT, raw=True)
+        if signal.note:
+            painter.write(lower, signal.note, 1.5, "soft", raw=True, bold=False)

@@ -1,0 +1,250 @@
+"""Beside the curves of the scope: the list of all signals, the trigger, the records on the disk."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from app.desk import formats
+from app.desk.arithmetic import EntryError, line_of, value_of
+from app.desk.sheet import STEPS, Entry, Key, Row, Sheet
+from app.desk.translation import tr
+from app.scope.scope_model import Scope, Side
+from app.scope.scope_trigger import When
+from app.scope.signals import Signal
+
+_RELEASE, _SIGNAL, _LEVEL, _PLACE = range(4)  # rows of the trigger
+
+
+@dataclass(slots=True)
+class ScopeSheets:
+    """Rows are marked by arrows or a finger; Return, or a second touch, does what the row is for."""
+
+    scope: Scope
+    marked: dict[Side, int] = field(default_factory=dict)
+    entry: Entry = field(default_factory=Entry)
+
+    @property
+    def at(self) -> int:
+        """The marked row."""
+        return max(0, min(self.marked.get(self.scope.side, 0), self.count - 1))
+
+    @property
+    def count(self) -> int:
+        """How many rows there are."""
+        scope = self.scope
+        return {
+            Side.READINGS: len(scope.shown),
+            Side.CURVES: len(scope.signals),
+            Side.TRIGGER: 4,
+            Side.FILES: len(scope.shelf.files),
+        }[scope.side]
+
+    def open(self, side: Side) -> None:
+        """Another table; the same again goes back to the readings."""
+        self.scope.desk.clear()
+        self.entry.text = ""
+        self.scope.side = Side.READINGS if self.scope.side is side else side
+        if self.scope.side is Side.FILES:
+            self.scope.list_files()
+
+    def sheet(self) -> Sheet:
+        """The table of this instant."""
+        side = self.scope.side
+        if side is Side.CURVES:
+            return self._curves()
+        return self._trigger() if side is Side.TRIGGER else self._files()
+
+    def _curves(self) -> Sheet:
+        scope = self.scope
+        metric = scope.metric
+        rows = tuple(
+            Row((each.title, each.quantity.unit(metric)), each.key in scope.chosen) for each in scope.signals
+        )
+        notes = (tr("Velocities and ripple are taken over a span: it stands beside them."),)
+        return Sheet(tr("CURVES"), ("", ""), (0.78, 0.22), rows, self.at, notes=notes, raw=frozenset({0}))
+
+    def _trigger(self) -> Sheet:
+        scope = self.scope
+        trigger, signal = scope.trigger, self._signal
+        what, unit = "", ""
+        if trigger.when.by_level and signal is not None:
+            quantity = signal.quantity
+            unit = quantity.unit(scope.metric)
+            what = formats.fixed(trigger.level * quantity.scale(scope.metric), quantity.places(scope.metric))
+        elif trigger.when is When.LINE:
+            what = str(trigger.line)
+        rows = (
+            Row(("RELEASED BY", tr(trigger.when.value))),
+            Row(("SIGNAL", signal.title if trigger.when.by_level and signal is not None else "")),
+            Row(("LINE" if trigger.when is When.LINE else "LEVEL", f"{what} {unit}".strip())),
+            Row(("LIES IN THE WINDOW AT", formats.percent(trigger.before))),
+        )
+        asked = self.at == _LEVEL and bool(what)
+        return Sheet(
+            tr("TRIGGER") + (f"  ·  {scope.trigger_words}" if scope.trigger_words else ""),
+            ("", ""),
+            (0.45, 0.55),
+            rows,
+            self.at,
+            question=("LINE?" if trigger.when is When.LINE else "LEVEL?") if asked else "",
+            text=self.entry.text,
+            notes=("When it is released the curves are frozen: once.",),
+            raw=frozenset({1}),
+        )
+
+    def _files(self) -> Sheet:
+        files = self.scope.shelf.files
+        rows = tuple(
+            Row((each.path.stem, each.when, each.size_words), self._lit(each.path.name)) for each in files
+        )
+        notes = () if files else (tr("No record is kept yet: F2 saves what is seen."),)
+        heads = (tr("NAME"), tr("WRITTEN"), tr("SIZE"))
+        return Sheet(tr("RECORDS"), heads, (0.5, 0.32, 0.18), rows, self.at, notes=notes, raw=frozenset({0}))
+
+    def _lit(self, name: str) -> bool:
+        return name in {self.scope.name, self.scope.over_name}
+
+    @property
+    def _signal(self) -> Signal | None:
+        found = (each for each in self.scope.signals if each.key == self.scope.trigger.signal)
+        return next(found, self.scope.marked_signal)
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def keys(self) -> Mapping[str, Key]:
+        """Function keys while the records are listed."""
+        if self.scope.side is not Side.FILES:
+            return {}
+        scope = self.scope
+        return {
+            "F2": Key("SAVE", scope.save),
+            "F3": Key("OPEN", self._open),
+            "F4": Key("OVERLAY", self._overlay),
+            "F5": Key("CSV", scope.write_csv),
+            "F8": Key("DELETE", self._delete),
+        }
+
+    def _open(self) -> None:
+        if self.count:
+            self.scope.open(self.scope.shelf.files[self.at])
+
+    def _overlay(self) -> None:
+        if self.count:
+            self.scope.lay_over(self.scope.shelf.files[self.at])
+
+    def _delete(self) -> None:
+        if self.count:
+            self.scope.delete(self.scope.shelf.files[self.at])
+
+    @property
+    def asks(self) -> bool:
+        """Whether a figure is asked for."""
+        return self.scope.side is Side.TRIGGER and bool(self._trigger().question)
+
+    def takes(self, key: str) -> bool:
+        """Whether a character is a figure that is asked for."""
+        return self.asks and self.entry.takes(key)
+
+    def typed(self, key: str) -> bool:
+        """Arrows mark, Return does, figures are typed."""
+        if self.asks and self.entry.type(key):
+            self.scope.desk.clear()
+            return True
+        if key in STEPS and self.count:
+            self.entry.text = ""
+            self._mark(max(0, min(self.count - 1, self.at + STEPS[key])))
+            return True
+        if key == "Enter" and self.count:
+            self.act()
+            return True
+        return False
+
+    def _mark(self, row: int) -> None:
+        self.marked[self.scope.side] = row
+        if self.scope.side is Side.READINGS:
+            self.scope.mark(row)
+
+    def choose(self, row: int) -> None:
+        """A finger: on a curve it acts at once, elsewhere on the marked row."""
+        if row >= self.count:
+            return
+        again = row == self.at
+        self._mark(row)
+        if self.scope.side is Side.CURVES or again:
+            self.act()
+
+    def act(self) -> None:
+        """Return on the marked row."""
+        scope = self.scope
+        scope.desk.clear()
+        if scope.side is Side.CURVES:
+            scope.toggle(scope.signals[self.at])
+        elif scope.side is Side.FILES:
+            self._open()
+        elif scope.side is Side.TRIGGER:
+            self._act_on_trigger()
+
+    def _act_on_trigger(self) -> None:
+        trigger, row = self.scope.trigger, self.at
+        if row == _RELEASE:
+            order = list(When)
+            following = order[(order.index(trigger.when) + 1) % len(order)]
+            signal = self._signal
+            name = signal.key if signal is not None else ""
+            self.scope.set_trigger(replace(trigger, when=following, signal=name))
+        elif row == _SIGNAL and trigger.when.by_level and self.scope.shown:
+            names = [each.key for each in self.scope.shown]
+            at = names.index(trigger.signal) if trigger.signal in names else -1
+            self.scope.set_trigger(replace(trigger, signal=names[(at + 1) % len(names)]))
+        elif row == _LEVEL and self.asks and self.entry.text:
+            self._enter()
+        elif row == _PLACE:
+            self.scope.set_trigger(trigger.following_share())
+
+    def _enter(self) -> None:
+        """Take the figure that was typed, or say why it is none."""
+        scope, trigger = self.scope, self.scope.trigger
+        if trigger.when is When.LINE:
+            line = line_of(self.entry.text)
+            if line is None:
+                scope.desk.refuse(tr("a line of the program is a whole number from 1 on"))
+                return
+            scope.set_trigger(replace(trigger, line=line))
+            self.entry.text = ""
+            return
+        signal = self._signal
+        scale = signal.quantity.scale(scope.metric) if signal is not None else 1.0
+        try:
+            scope.set_trigger(replace(trigger, level=value_of(self.entry.text) / scale))
+        except EntryError as error:
+            scope.desk.refuse(str(error))
+            return
+        self.entry.text = ""
+
+    def escape(self) -> bool:
+        """One step back; False from the readings without cursors."""
+        scope = self.scope
+        if scope.desk.notice:
+            scope.desk.clear()
+        elif self.entry.text:
+            self.entry.text = ""
+        elif scope.side is not Side.READINGS:
+            scope.side = Side.READINGS
+        elif scope.cursors.shown:
+            scope.cursors.at = -1
+        else:
+            return False
+        return True
+
+    def prompt(self) -> str:
+        """What keys do now."""
+        if self.scope.side is Side.READINGS:
+            if self.scope.cursors.shown:
+                return tr("ARROWS MOVE THE CURSOR, TAB TAKES THE OTHER; Z ZOOMS, CTRL+ARROWS PAN AND STRETCH")
+            return tr("UP AND DOWN CHOOSE A CURVE; Z ZOOMS, CTRL+ARROWS PAN AND STRETCH; F2 FREEZES")
+        if self.scope.side is Side.CURVES:
+            return tr("RETURN SHOWS THE MARKED CURVE, OR TAKES IT AWAY; ESC GOES BACK TO THE CURVES")
+        if self.scope.side is Side.TRIGGER:
+            return tr("RETURN GOES ON TO THE NEXT CHOICE; A LEVEL IS TYPED; ESC GOES BACK TO THE CURVES")
+        return tr("F2 SAVES WHAT IS SEEN; RETURN OPENS A RECORD; ESC GOES BACK TO THE CURVES")

@@ -1,0 +1,213 @@
+"""Signals of the scope: what can be shown of a machine, each with its quantity, unit and source.
+
+Most are channels of a record as they are; velocity, acceleration and ripple are derived from them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+import numpy.typing as npt
+
+from app.desk.formats import MM_PER_INCH
+from app.desk.translation import tr
+from core.records import derived_figures
+from core.records.record import Channel
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class Quantity(Enum):
+    """What is measured; signals of one share a lane. Name, metric unit, inch unit, least range shown."""
+
+    POSITION = ("POSITION", "mm", "in", 1e-3)
+    ERROR = ("FOLLOWING ERROR", "mm", "in", 1e-3)
+    VELOCITY = ("VELOCITY", "mm/s", "in/s", 0.1)
+    ACCELERATION = ("ACCELERATION", "mm/s²", "in/s²", 10.0)
+    ANGLE = ("ANGLE", "°", "°", 0.1)
+    ANGLE_ERROR = ("FOLLOWING ERROR", "°", "°", 0.01)
+    TURNING = ("TURNING SPEED", "°/s", "°/s", 1.0)
+    TURNING_CHANGE = ("TURNING ACCELERATION", "°/s²", "°/s²", 10.0)
+    SPINDLE = ("SPINDLE", "rpm", "rpm", 10.0)
+    RIPPLE = ("SPINDLE RIPPLE", "rpm", "rpm", 1.0)
+    TURNS = ("SPINDLE TURNS", tr("turns"), tr("turns"), 1.0)
+    LOAD = ("LOAD", "%", "%", 10.0)
+    OVERRIDE = ("OVERRIDE", "%", "%", 10.0)
+    QUEUE = ("QUEUE", "ms", "ms", 10.0)
+    LATENESS = ("LATENESS", "ms", "ms", 1.0)
+    NUMBER = ("LINE", "", "", 5.0)
+    LOGIC = ("INPUTS AND OUTPUTS", "", "", 1.0)
+
+    @property
+    def title(self) -> str:
+        """Its name in English."""
+        return str(self.value[0])
+
+    @property
+    def least(self) -> float:
+        """The smallest range that is worth showing, in units inside."""
+        return float(self.value[3])
+
+    @property
+    def length(self) -> bool:
+        """Whether it is shown in inch where the desk shows inch."""
+        return self.unit(True) != self.unit(False)
+
+    def unit(self, metric: bool) -> str:
+        """The unit it is shown in."""
+        return str(self.value[1] if metric else self.value[2])
+
+    def scale(self, metric: bool) -> float:
+        """By what a figure inside is multiplied to be shown."""
+        if self is Quantity.OVERRIDE:
+            return 100.0
+        if self in {Quantity.QUEUE, Quantity.LATENESS}:
+            return 1000.0
+        return 1.0 / MM_PER_INCH if self.length and not metric else 1.0
+
+    def places(self, metric: bool) -> int:
+        """Places behind the point that figures of it have."""
+        return _PLACES[self] + (1 if self.length and not metric else 0)
+
+
+_PLACES = {
+    Quantity.POSITION: 4,
+    Quantity.ERROR: 4,
+    Quantity.VELOCITY: 3,
+    Quantity.ACCELERATION: 1,
+    Quantity.ANGLE: 3,
+    Quantity.ANGLE_ERROR: 4,
+    Quantity.TURNING: 2,
+    Quantity.TURNING_CHANGE: 1,
+    Quantity.SPINDLE: 1,
+    Quantity.RIPPLE: 2,
+    Quantity.TURNS: 3,
+    Quantity.LOAD: 1,
+    Quantity.OVERRIDE: 0,
+    Quantity.QUEUE: 1,
+    Quantity.LATENESS: 2,
+    Quantity.NUMBER: 0,
+    Quantity.LOGIC: 0,
+}
+
+Derive = Callable[[FloatArray, FloatArray], FloatArray]
+
+
+def _as_it_is(_times: FloatArray, values: FloatArray) -> FloatArray:
+    return values
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """One curve: the channel it comes from, what is made of it, and ``span``: of how many seconds.
+
+    ``letter`` is its axis, empty of the machine's own; ``word`` says what it is, in English; ``raw``
+    words are names of the machine file.
+    """
+
+    key: str
+    word: str
+    quantity: Quantity
+    channel: str
+    letter: str = ""
+    derive: Derive = _as_it_is
+    span: float = 0.0
+    raw: bool = False
+
+    @property
+    def title(self) -> str:
+        """Its name, in the operator's language."""
+        word = self.word if self.raw else tr(self.word)
+        return f"{self.letter} {word}" if self.letter else word
+
+    @property
+    def note(self) -> str:
+        """Over what time it is taken; empty where it stands as it was sampled."""
+        return tr("over {ms} ms").format(ms=f"{1000.0 * self.span:g}") if self.span else ""
+
+    def values(self, times: FloatArray, column: FloatArray) -> FloatArray:
+        """Its figures at these times, of the channel's; units inside."""
+        return self.derive(times, column)
+
+
+def _speed(key: str, word: str, letter: str, channel: str, quantity: Quantity) -> Signal:
+    span = derived_figures.VELOCITY_SPAN
+    return Signal(key, word, quantity, channel, letter, derived_figures.velocity, span)
+
+
+def _of_axis(letter: str, rotary: bool) -> list[Signal]:
+    place, off, fast, faster = (
+        (Quantity.ANGLE, Quantity.ANGLE_ERROR, Quantity.TURNING, Quantity.TURNING_CHANGE)
+        if rotary
+        else (Quantity.POSITION, Quantity.ERROR, Quantity.VELOCITY, Quantity.ACCELERATION)
+    )
+    demand, actual = f"{letter} demand", f"{letter} actual"
+    span = derived_figures.ACCELERATION_SPAN
+    return [
+        Signal(demand, tr("commanded"), place, demand, letter),
+        Signal(actual, tr("measured"), place, actual, letter),
+        Signal(f"{letter} following error", tr("following error"), off, f"{letter} following error", letter),
+        _speed(f"{letter} demand velocity", tr("velocity commanded"), letter, demand, fast),
+        _speed(f"{letter} velocity", tr("velocity"), letter, actual, fast),
+        Signal(
+            f"{letter} acceleration",
+            tr("acceleration"),
+            faster,
+            actual,
+            letter,
+            derived_figures.acceleration,
+            span,
+        ),
+        Signal(f"{letter} load", tr("load"), Quantity.LOAD, f"{letter} load", letter),
+    ]
+
+
+_MACHINE = (
+    Signal("spindle command", tr("Spindle commanded"), Quantity.SPINDLE, "spindle command"),
+    Signal("spindle speed", tr("Spindle measured"), Quantity.SPINDLE, "spindle speed"),
+    Signal(
+        "spindle ripple",
+        tr("Spindle ripple"),
+        Quantity.RIPPLE,
+        "spindle speed",
+        "",
+        derived_figures.ripple,
+        derived_figures.RIPPLE_SPAN,
+    ),
+    Signal("spindle turns", tr("Spindle turns"), Quantity.TURNS, "spindle turns"),
+    Signal("spindle load", tr("Spindle load"), Quantity.LOAD, "spindle load"),
+    Signal("feed override", tr("Feed override"), Quantity.OVERRIDE, "feed override"),
+    Signal("spindle override", tr("Spindle override"), Quantity.OVERRIDE, "spindle override"),
+    Signal("queue", tr("Queue depth"), Quantity.QUEUE, "queue"),
+    Signal("lateness", tr("Lateness"), Quantity.LATENESS, "lateness"),
+    Signal("line", tr("Line"), Quantity.NUMBER, "line"),
+)
+
+
+def signals_of(channels: Sequence[Channel]) -> tuple[Signal, ...]:
+    """Everything that can be shown of these channels, in the order of the list."""
+    there = {each.name: each for each in channels}
+    found: list[Signal] = []
+    for channel in channels:
+        letter, _, what = channel.name.partition(" ")
+        if what == "demand" and len(letter) == 1:
+            found += _of_axis(letter, channel.unit == "deg")
+    found += _MACHINE
+    for channel in channels:
+        if channel.logic:
+            name = channel.name.partition(" ")[2]
+            found.append(Signal(channel.name, name, Quantity.LOGIC, channel.name, raw=True))
+    return tuple(each for each in found if each.channel in there)
+
+
+def first_chosen(signals: Sequence[Signal]) -> tuple[str, ...]:
+    """What is shown before anybody has chosen: following errors and velocities of the slides, the spindle."""
+    slides = [each.letter for each in signals if each.quantity is Quantity.ERROR][:2]
+    wanted = [f"{letter} following error" for letter in slides]
+    wanted += [f"{letter} velocity" for letter in slides]
+    wanted += ["spindle command", "spindle speed"]
+    there = {each.key for each in signals}
+    return tuple(each for each in wanted if each in there)

@@ -1,0 +1,407 @@
+"""The scope page by keys, wheel and fingers: frozen, zoomed, measured, triggered, kept and opened again."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, QPointF, Qt
+from PySide6.QtGui import QColor, QWheelEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.scope.record_shelf import RecordShelf, ShelfError
+from app.scope.scope_model import Scope, Side
+from app.scope.scope_trigger import When
+from app.scope.scope_view import ScopePage
+from app.screen import page_table
+from app.screen.look import Look
+from app.screen.main_window import MainWindow
+from app.screen.theme import CURVES, DARK
+from app.screen.window_layout import FINGER
+from core.executor.commands import FeedHold
+from core.executor.snapshot import State
+from core.records.record_file import open_record
+from tests.scope.played_record import PlayedSamples, record_of, seconds
+from tests.screen.desks import desk_on
+from tests.screen.fake import FakeMachine
+from tests.screen.hands import Hands, Key
+from tests.screen.yes import yes
+
+SHIFT, CTRL = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.ControlModifier
+
+
+@pytest.fixture
+def played() -> PlayedSamples:
+    return PlayedSamples()
+
+
+@pytest.fixture
+def hands(
+    qtbot: QtBot,
+    machine: FakeMachine,
+    played: PlayedSamples,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> Iterator[Hands]:
+    """An operator in front of a desk that records."""
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    desk = desk_on(machine, live=played)
+    window = MainWindow(Look(DARK))
+    window.resize(1024, 600)
+    with qtbot.waitExposed(window):
+        window.show()
+    window.open_desk(desk)
+    window.activateWindow()
+    yield Hands(qtbot, window, desk, machine)
+    machine.idle()
+    window.close()
+    desk.close()
+    window.deleteLater()
+
+
+def opened(hands: Hands) -> ScopePage:
+    """By the one key from any page, and until curves are seen."""
+    hands.key(Key.Key_F10, SHIFT)
+    page = hands.frame.page
+    assert isinstance(page, ScopePage)
+    hands.sees(lambda: page.curves.chart is not None and bool(page.curves.chart.sight.curves))
+    return page
+
+
+def frozen(hands: Hands) -> ScopePage:
+    page = opened(hands)
+    hands.key(Key.Key_F2)
+    hands.sees(lambda: not page.scope.sight.live and page.scope.frozen is not None)
+    return page
+
+
+def wheel(page: ScopePage, share: float, notches: int, held: Qt.KeyboardModifier = SHIFT) -> None:
+    chart = page.curves.chart
+    assert chart is not None
+    room = chart.room
+    at = QPointF(room.x() + share * room.width(), room.center().y())
+    spot = QPointF(page.curves.mapToGlobal(at.toPoint()))
+    event = QWheelEvent(
+        at,
+        spot,
+        QPoint(),
+        QPoint(0, 120 * notches),
+        Qt.MouseButton.NoButton,
+        held,
+        Qt.ScrollPhase.NoScrollPhase,
+        False,
+    )
+    QApplication.sendEvent(page.curves, event)
+
+
+def test_one_key_leads_there_and_back(hands: Hands) -> None:
+    hands.key(Key.Key_F1)
+    hands.key(Key.Key_F5)
+    hands.sees(lambda: hands.frame.page.NAME == page_table.JOG)
+    opened(hands)
+    hands.key(Key.Key_F10, SHIFT)
+    assert hands.frame.page.NAME == page_table.JOG
+
+
+def test_f10_has_it_in_its_list(hands: Hands) -> None:
+    hands.key(Key.Key_F10)
+    model = hands.frame.page.model  # type: ignore[attr-defined]
+    number = [each.name for each in model.functions].index("SCOPE")
+    for _ in range(number):
+        hands.key(Key.Key_Down)
+    hands.key(Key.Key_Return)
+    assert hands.frame.page.NAME == page_table.SCOPE
+
+
+def test_curves_are_drawn_in_their_colours(hands: Hands) -> None:
+    page = opened(hands)
+    image = page.curves.grab().toImage()
+    seen = {image.pixelColor(x, y).name() for x in range(60, image.width(), 3) for y in range(image.height())}
+    assert {QColor(each).name() for each in CURVES["dark"][:4]} <= seen
+
+
+def test_frozen_curves_do_not_move(hands: Hands, played: PlayedSamples) -> None:
+    page = frozen(hands)
+    before = page.scope.sight.zero
+    played.now += 5.0
+    hands.qtbot.wait(50)
+    assert page.scope.sight.zero == before
+    hands.key(Key.Key_F2)
+    hands.sees(lambda: page.scope.sight.live and page.scope.sight.zero > before + 4.9)
+
+
+def test_the_wheel_zooms_about_the_pointer(hands: Hands) -> None:
+    page = frozen(hands)
+    before = page.scope.window.begin + 0.25 * page.scope.window.span
+    wheel(page, 0.25, 1, Qt.KeyboardModifier.NoModifier)
+    window = page.scope.window
+    assert window.span == pytest.approx(5.0)
+    assert window.begin + 0.25 * window.span == pytest.approx(before, abs=0.02)
+
+
+def test_shift_and_wheel_stretch_the_lane(hands: Hands) -> None:
+    page = frozen(hands)
+    before = dict(page.scope.sight.ranges)
+    wheel(page, 0.5, 1)
+    hands.sees(lambda: page.scope.sight.ranges != before)
+    wider = {name: b[1] - b[0] for name, b in before.items()}
+    narrower = [name for name, now in page.scope.sight.ranges.items() if now[1] - now[0] < 0.9 * wider[name]]
+    assert len(narrower) == 1
+
+
+def test_keys_zoom_pan_and_fit(hands: Hands) -> None:
+    page = frozen(hands)
+    hands.key(Key.Key_Z)
+    assert page.scope.window.span == pytest.approx(5.0)
+    end = page.scope.window.end
+    hands.key(Key.Key_Left, CTRL)
+    assert page.scope.window.end == pytest.approx(end - 0.5)
+    hands.key(Key.Key_Z, SHIFT)
+    assert page.scope.window.span == pytest.approx(10.0)
+    hands.key(Key.Key_F6)
+    assert page.scope.window.span == pytest.approx(60.0, abs=0.01)
+
+
+def test_two_cursors_tell_the_difference(hands: Hands) -> None:
+    page = frozen(hands)
+    hands.key(Key.Key_F5)
+    scope = page.scope
+    hands.sees(lambda: "X following error" in scope.sight.at)
+    first, second = scope.cursors.times
+    hands.key(Key.Key_Right)
+    assert scope.cursors.times[0] == pytest.approx(first + 10.0 / scope.pixels)
+    hands.key(Key.Key_Tab)
+    hands.key(Key.Key_Left)
+    assert scope.cursors.times[1] == pytest.approx(second - 10.0 / scope.pixels)
+    hands.key(Key.Key_Escape)
+    assert not scope.cursors.shown
+    assert hands.frame.page is page
+
+
+def test_cursors_stand_on_frozen_curves_only(hands: Hands) -> None:
+    opened(hands)
+    hands.key(Key.Key_F5)
+    hands.sees(lambda: "PRESS F2 TO FREEZE" in hands.prompt())
+
+
+def test_a_finger_takes_a_cursor_along(hands: Hands) -> None:
+    page = frozen(hands)
+    hands.key(Key.Key_F5)
+    chart = page.curves.chart
+    assert chart is not None
+    hands.sees(lambda: chart.cursors.shown)
+    x = round(chart.across(page.scope.cursors.times[0]))
+    y = page.curves.height() // 2
+    QTest.mousePress(page.curves, Qt.MouseButton.LeftButton, pos=QPoint(x + 5, y))
+    QTest.mouseMove(page.curves, QPoint(x + 60, y))
+    QTest.mouseRelease(page.curves, Qt.MouseButton.LeftButton, pos=QPoint(x + 60, y))
+    assert page.scope.cursors.times[0] == pytest.approx(chart.time_at(QPointF(x + 60, y)), abs=1e-6)
+
+
+def test_a_drag_goes_through_time(hands: Hands) -> None:
+    page = frozen(hands)
+    hands.key(Key.Key_Z)
+    before = page.scope.window.end
+    hands.sees(lambda: page.curves.chart is not None and page.curves.chart.sight.end == before)
+    y = page.curves.height() // 2
+    QTest.mousePress(page.curves, Qt.MouseButton.LeftButton, pos=QPoint(200, y))
+    QTest.mouseMove(page.curves, QPoint(300, y))
+    QTest.mouseRelease(page.curves, Qt.MouseButton.LeftButton, pos=QPoint(300, y))
+    assert page.scope.window.end == pytest.approx(before - 100 * 5.0 / page.scope.pixels, rel=0.01)
+
+
+def test_curves_are_chosen_by_keys(hands: Hands) -> None:
+    page = opened(hands)
+    hands.key(Key.Key_F4)
+    assert page.scope.side is Side.CURVES
+    hands.key(Key.Key_Return)  # the first of the list: X commanded
+    assert "X demand" in page.scope.chosen
+    hands.key(Key.Key_Return)
+    assert "X demand" not in page.scope.chosen
+    hands.key(Key.Key_Escape)
+    assert page.scope.side is Side.READINGS
+
+
+def test_a_ninth_curve_is_refused(hands: Hands) -> None:
+    page = opened(hands)
+    hands.key(Key.Key_F4)
+    for key in (Key.Key_Return, Key.Key_Down, Key.Key_Return, Key.Key_Down, Key.Key_Down, Key.Key_Return):
+        hands.key(key)
+    hands.sees(lambda: "8 CURVES ARE SHOWN" in hands.prompt())
+    assert len(page.scope.shown) == 8
+
+
+def test_a_trigger_freezes_once(hands: Hands, played: PlayedSamples) -> None:
+    page = opened(hands)
+    scope = page.scope
+    hands.key(Key.Key_F3)
+    hands.key(Key.Key_Return)
+    assert scope.trigger.when is When.RISES
+    hands.key(Key.Key_Down)
+    hands.key(Key.Key_Down)
+    hands.type(".0003")  # in, of the following error of X, that swings by .01 mm
+    hands.key(Key.Key_Return)
+    assert scope.trigger.level == pytest.approx(0.0003 * 25.4)
+    assert scope.armed
+
+    def later() -> bool:
+        played.now += 0.05
+        return scope.frozen is not None
+
+    hands.sees(later)
+    # .01·cos t = .00762 on the way up: 2πn − arccos(.762)
+    assert scope.frozen is not None
+    assert scope.frozen.zero == pytest.approx(32.0 * np.pi + 2 * np.pi - np.arccos(0.762), abs=0.002)
+    assert scope.window.begin == pytest.approx(-5.0)
+    assert scope.window.end == pytest.approx(5.0)
+    assert not scope.armed
+
+
+def test_a_level_that_is_none_is_refused(hands: Hands) -> None:
+    page = opened(hands)
+    hands.key(Key.Key_F3)
+    hands.key(Key.Key_Return)
+    hands.key(Key.Key_Down)
+    hands.key(Key.Key_Down)
+    hands.type("1/0")
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: hands.prompt().startswith("REFUSED"))
+    assert page.scope.trigger.level == 0.0
+    assert page.scope.frozen is None
+
+
+def test_what_is_seen_is_kept_and_opened_again(hands: Hands, tmp_path: Path) -> None:
+    page = frozen(hands)
+    scope = page.scope
+    hands.key(Key.Key_F9)
+    hands.key(Key.Key_F2)
+    hands.sees(lambda: len(scope.shelf.files) == 1)
+    kept = open_record(scope.shelf.files[0].path)
+    whole = record_of(seconds(90.0, 100.0))
+    assert (kept.times == whole.times).all()
+    assert (kept.columns["X actual"] == whole.columns["X actual"]).all()
+    hands.key(Key.Key_F3)
+    hands.sees(lambda: scope.name == scope.shelf.files[0].path.name)
+    assert scope.window.span == pytest.approx(10.0)
+
+
+def test_an_earlier_record_lies_over(hands: Hands) -> None:
+    page = frozen(hands)
+    scope = page.scope
+    hands.key(Key.Key_F9)
+    hands.key(Key.Key_F2)
+    hands.sees(lambda: len(scope.shelf.files) == 1)
+    hands.key(Key.Key_F4)
+    hands.sees(lambda: bool(scope.sight.earlier))
+    hands.key(Key.Key_F4)
+    hands.sees(lambda: not scope.sight.earlier)
+
+
+def test_a_table_and_a_picture_are_written(hands: Hands, tmp_path: Path) -> None:
+    frozen(hands)
+    hands.key(Key.Key_F9)
+    hands.key(Key.Key_F5)
+    hands.sees(lambda: hands.prompt().startswith("WRITTEN") and ".csv" in hands.prompt())
+    hands.key(Key.Key_F6)
+    hands.sees(lambda: ".png" in hands.prompt())
+    table = next((tmp_path / "records").glob("*.csv")).read_text().splitlines()
+    assert table[0].startswith("t [s],X demand [mm]")
+    assert len(table) == 1 + 10_001
+    assert next((tmp_path / "records").glob("*.png")).read_bytes().startswith(b"\x89PNG")
+
+
+def test_live_curves_are_no_record_yet(hands: Hands, tmp_path: Path) -> None:
+    opened(hands)
+    hands.key(Key.Key_F9)
+    hands.key(Key.Key_F2)
+    hands.sees(lambda: "PRESS F2 TO FREEZE" in hands.prompt())
+    assert not list((tmp_path / "records").glob("*"))
+
+
+def test_a_file_is_deleted_after_asking(hands: Hands, tmp_path: Path) -> None:
+    page = frozen(hands)
+    hands.key(Key.Key_F9)
+    hands.key(Key.Key_F2)
+    hands.sees(lambda: len(page.scope.shelf.files) == 1)
+    hands.key(Key.Key_F8)
+    assert hands.desk.asked
+    assert list((tmp_path / "records").glob("*.scope"))
+    yes(hands)
+    hands.sees(lambda: not page.scope.shelf.files)
+    assert not list((tmp_path / "records").glob("*.scope"))
+
+
+def test_what_is_no_record_is_told(hands: Hands, tmp_path: Path) -> None:
+    (tmp_path / "records").mkdir()
+    (tmp_path / "records" / "bad.scope").write_bytes(b"no record")
+    page = opened(hands)
+    hands.key(Key.Key_F9)
+    hands.sees(lambda: len(page.scope.shelf.files) == 1)
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: hands.prompt().startswith("REFUSED") and "bad.scope" in hands.prompt())
+    assert page.scope.is_live
+
+
+def test_hold_and_escape_stop_here_too(hands: Hands) -> None:
+    hands.load("bushing")
+    hands.both_palms()
+    hands.sees(lambda: hands.machine.now.state is State.RUN)
+    frozen(hands)
+    hands.key(Key.Key_H)
+    assert any(isinstance(each, FeedHold) for each in hands.machine.posted)
+    hands.machine.posted.clear()
+    hands.both_palms()
+    assert not [each for each in hands.machine.posted if not isinstance(each, FeedHold)]
+
+
+def test_rows_are_large_enough_for_a_finger(hands: Hands) -> None:
+    page = opened(hands)
+    assert page.readings.high >= FINGER
+    places = page.readings._places
+    assert len(places) == len(page.scope.shown)
+    QTest.mouseClick(page.readings, Qt.MouseButton.LeftButton, pos=places[2][0].center().toPoint())
+    assert page.scope.marked == 2
+
+
+def test_other_colours_at_once(hands: Hands) -> None:
+    page = frozen(hands)
+    hands.key(Key.Key_T)
+    hands.qtbot.wait(100)
+    image = page.curves.grab().toImage()
+    seen = {image.pixelColor(x, y).name() for x in range(60, image.width(), 3) for y in range(image.height())}
+    assert {QColor(each).name() for each in CURVES["light"][:4]} <= seen
+
+
+def test_nothing_is_recorded_on_a_machine_without(hands: Hands) -> None:
+    scope = hands.desk.attached(Scope)
+    assert scope is not None
+    scope.live = scope._carried = None
+    scope.signals = ()
+    hands.key(Key.Key_F10, SHIFT)
+    hands.key(Key.Key_F2)
+    hands.sees(lambda: "NOTHING IS RECORDED" in hands.prompt())
+
+
+def test_a_full_disk_is_told(tmp_path: Path) -> None:
+    def full(_record: object, _path: Path) -> None:
+        raise OSError(28, "No space left on device")
+
+    shelf = RecordShelf(tmp_path, full, open_record, lambda _record, _write: None)
+    with pytest.raises(ShelfError, match=r"scope .*: No space left on device"):
+        shelf.keep(record_of(seconds(0.0, 1.0)))
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.long
+def test_the_desk_starts_without_pyqtgraph() -> None:
+    code = (
+        "import sys; import app.screen.run_screen, app.compose.screen_desk;"
+        "import app.scope.scope_view; sys.exit('pyqtgraph' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
