@@ -11,6 +11,7 @@ import re
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
+from itertools import count
 from pathlib import Path
 
 from core.alarms import CATALOGUE
@@ -51,7 +52,7 @@ ROOMS = (
 # Scripts and tables that no screen shows, and what the console is told where there is no screen.
 APART = frozenset(
     {
-        *("code_table.py", "language_page.py", "keys.py", "run_without_screen.py"),
+        *("code_entry.py", "code_table.py", "language_page.py", "keys.py", "run_without_screen.py"),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
         "screen/pdf_pages.py",
     }
@@ -118,7 +119,16 @@ def _of_codes() -> list[str]:
     """What the code table says of codes to an operator; the rest of it is documentation."""
     codes = [code for _, chapter in CHAPTERS for code in chapter]
     said = {code.not_in_mdi for code in codes} | {code.group for code in codes}
+    for refusal in (each for code in codes for each in code.plain_refusals):
+        said |= {_with_numbered_holes(refusal.text), _with_numbered_holes(refusal.hint)}
+    rules = [rule for code in codes for rule in code.rules.values()]
+    said |= {rule.what for rule in rules if any("{what}" in each.text for each in rule.refusals)}
     return sorted(text for text in said if _is_read(text, False))
+
+
+def _with_numbered_holes(text: str) -> str:
+    numbers = count(1)
+    return re.sub(r"\{\w+\}", lambda _: f"%{next(numbers)}", text)
 
 
 def _loud_alarms() -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 
 import pytest
@@ -15,22 +16,30 @@ from core.interpreter.actions import Dwell
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.interpreter.omniturn import dwell
+from core.interpreter.omniturn.code_entry import (
+    HEAD,
+    TAIL,
+    Acts,
+    Code,
+    FWord,
+    Limit,
+    Refusal,
+    WordRule,
+    names,
+)
 from core.interpreter.omniturn.code_table import (
     CHAPTERS,
     FLOW_CODES,
     G_CODES,
-    HEAD,
+    LETTERS,
     M_CODES,
-    Acts,
-    Code,
-    FWord,
     carry_out,
-    names,
 )
 from core.interpreter.omniturn.language_page import page
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.language.diagnostics import Severity
+from core.language.omniturn.omniturn_words import RANGES
 from core.language.source import Source
 from core.proving.prove_program import prove
 from tests.interpreter.programs import passed
@@ -48,8 +57,7 @@ FAMILIES = sorted({code.handler.split(".")[0] for code in CODES} - {"omniturn_st
 def test_no_code_has_two_entries() -> None:
     written = [code.name for code in CODES]
     assert sorted(written) == sorted(set(written))
-    of_control = len(G_CODES) + len(M_CODES) + len(FLOW_CODES)
-    assert of_control + sum(code.acts is Acts.WORD for code in CODES) == len(CODES)
+    assert len(G_CODES) + len(M_CODES) + len(FLOW_CODES) + len(LETTERS) == len(CODES)
 
 
 @pytest.mark.parametrize("code", CODES, ids=lambda code: code.name)
@@ -58,7 +66,7 @@ def test_an_entry_is_whole(code: Code) -> None:
     assert code.what.endswith(".")
     assert code.name.strip("()") in code.example + code.subroutine
     assert callable(carry_out(code))
-    assert not code.bounds.keys() - code.words
+    assert code.acts is Acts.WORD or not code.rules.keys() - code.words
     # Either it may stand alone, or something says why not: nothing falls through in MDI.
     assert bool(code.not_in_mdi) or code.acts not in {Acts.FLOW, Acts.CONTOUR}
 
@@ -86,8 +94,56 @@ def test_each_refusal_of_a_family_stands_in_an_entry(family: str) -> None:
 def test_no_entry_names_a_refusal_that_is_none() -> None:
     files = [file for file in ROOM.glob("*.py") if file.name != "code_table.py"]
     text = "".join(file.read_text(encoding="utf-8") for file in files)
-    refusals = frozenset().union(*(code.refusals for code in CODES))
-    assert [code for code in sorted(refusals) if f'"{code}"' not in text] == []
+    further = frozenset().union(*(code.further for code in CODES))
+    stated = {each.code for code in CODES for each in code.plain_refusals}
+    assert [code for code in sorted(further - stated) if f'"{code}"' not in text] == []
+
+
+def spoilt(letter: str, rule: WordRule) -> Iterator[tuple[str | None, Refusal | None]]:
+    """What to write behind the letter (None: leave the word out) for each refusal of a rule."""
+    yield None, rule.missing
+    yield "", rule.numberless
+    yield "1", rule.numbered
+    if rule.least > -inf:
+        yield f"{rule.least if rule.over else rule.least / 2 or -1:f}", rule.wrong
+    if rule.nonzero:
+        yield "0", rule.wrong
+    if rule.whole:
+        yield f"{max(rule.least, 0) + 0.5:g}", rule.wrong
+    most = RANGES[letter][1] if isinstance(rule.most, Limit) else rule.most + 1
+    if most < inf:
+        yield f"{most:g}", rule.too_great or rule.wrong
+
+
+REFUSED = [
+    pytest.param(code, letter, number, refusal, id=f"{code.name}-{letter}{number}-{refusal.code}")
+    for code in CODES
+    for letter, rule in code.rules.items()
+    for number, refusal in spoilt(letter, rule)
+    if refusal is not None and not (code.acts is Acts.WORD and number == "")
+]
+
+
+@pytest.mark.parametrize(("code", "letter", "number", "refusal"), REFUSED)
+def test_a_rule_refuses_what_it_says(code: Code, letter: str, number: str | None, refusal: Refusal) -> None:
+    """The example, its word left out or written with a number that the rule does not take."""
+    lines = code.example.splitlines()
+    at = next(k for k, line in enumerate(lines) if code.name.strip("()") in line)
+    word = re.compile(rf"(?<![A-Z]){letter}(?:[-+.\d]+|(?![A-Z]))")
+    others = {each for letters, _ in code.apart if letter in letters for each in letters} - {letter}
+    for other in sorted(others):
+        lines[at] = re.sub(rf"{other}[-+.\d]+", "", lines[at])
+    bare = word.sub("", lines[at], count=1)
+    lines[at] = bare if number is None else f"{bare}{letter}{number}"
+    text = HEAD + "\n".join(lines) + "\n" + TAIL + code.subroutine
+    assert refusal.code in [found for _, _, found in passed(text).errors], text
+
+
+def test_a_rule_in_the_entry_is_what_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    strict = replace(G_CODES[4], rules={"F": replace(G_CODES[4].rules["F"], most=1.0)})
+    assert passed(program("G04F2")).errors == []
+    monkeypatch.setitem(G_CODES, 4, strict)
+    assert [code for _, _, code in passed(program("G04F2")).errors] == ["dwell-range"]
 
 
 def test_the_page_is_written_from_the_table() -> None:
@@ -138,6 +194,8 @@ def test_a_code_whose_f_means_nothing_is_none() -> None:
         replace(TRIAL, words=names("S T D"))
     with pytest.raises(TypeError):
         Code("G05", "G05Fn", "Waits.", "G05F2", acts=Acts.MOTION, handler="dwell.dwell")  # type: ignore[call-arg]
+    with pytest.raises(ValueError, match="rule for a word"):
+        replace(TRIAL, rules={"K": WordRule("a lead")})
     with pytest.raises(ValueError, match="group"):
         replace(TRIAL, acts=Acts.MODE)
 

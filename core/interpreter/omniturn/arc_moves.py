@@ -7,6 +7,7 @@ from math import dist
 from core.geometry.lines_and_arcs import Point, arc_length, centre_from_radius
 from core.interpreter import units
 from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.omniturn.code_rules import check_together, check_when, checked
 from core.interpreter.omniturn.feeds import check_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
@@ -22,6 +23,8 @@ def arc_move(state: State, made: Statement) -> Block:
     start, programmed = (state.x, state.z), (state.px, state.pz)
     go(state, x, z)  # before any refusal, so that the lines after it are judged from the right point
     check_tool(state, made.line, x, z)
+    check_when(state, made, made.entry)
+    check_together(made, made.entry)
     clockwise = made.one_shot == 2
     if "R" in made.words:
         centre = _centre_by_radius(state, made, start, clockwise=clockwise)
@@ -38,13 +41,7 @@ def arc_move(state: State, made: Statement) -> Block:
 
 
 def _centre_by_radius(state: State, made: Statement, start: Point, *, clockwise: bool) -> Point:
-    _check_mode(state, made)
-    for letter in ("I", "K"):
-        if letter in made.words:
-            raise made.refuse(letter, "arc-both", f"The arc has R and {letter}.", "Keep one way.")
-    radius = on_step(state, made, "R")
-    if radius is None or radius <= 0:
-        raise made.refuse("R", "arc-r-sign", "R must be a number over 0.", "Give larger arcs I and K.")
+    radius = checked(state, made, "R", on_step(state, made, "R")) or 0.0
     chord = dist(start, (state.x, state.z))
     if chord <= _SAME:
         text = "The arc by R ends where it starts."
@@ -58,11 +55,7 @@ def _centre_by_radius(state: State, made: Statement, start: Point, *, clockwise:
 
 def _centre_by_words(state: State, made: Statement, start: Point) -> Point:
     """Centre by I and K: coordinates under G90 G73, else distances from the start of the arc."""
-    _check_mode(state, made)
     i, k = on_step(state, made, "I"), on_step(state, made, "K")
-    if i is None and k is None:
-        text = "The arc has neither R nor I and K."
-        raise made.refuse("", "arc-centre-missing", text, "Add R, or I and K.")
     if state.modal.diameter or not state.absolute:
         return start[0] + (i or 0.0) + state.dx, start[1] + (k or 0.0) + state.dz
     if i is None or k is None:
@@ -71,12 +64,6 @@ def _centre_by_words(state: State, made: Statement, start: Point) -> Point:
         text = f"{letter} is missing: under G90 and G73, I and K are the centre's coordinates."
         raise made.refuse(given, "arc-coordinate-missing", text, f"Add {letter}.")
     return i + state.dx, k + state.dz
-
-
-def _check_mode(state: State, made: Statement) -> None:
-    if state.modal.diameter and not state.absolute:
-        text = "Arcs cannot be incremental in diameter mode."
-        raise made.refuse("", "arc-mode", text, "Use G90 or G73 for the arc.")
 
 
 def _check_radii(state: State, made: Statement, first: float, last: float) -> None:

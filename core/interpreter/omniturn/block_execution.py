@@ -10,7 +10,8 @@ from core.interpreter.omniturn.arc_moves import arc_move
 from core.interpreter.omniturn.c_axis import c_move, lock, positions
 from core.interpreter.omniturn.canned_cycles import blocks_of_moves, check_ready
 from core.interpreter.omniturn.coarse_feeds import coarse_line
-from core.interpreter.omniturn.code_table import Acts, carry_out
+from core.interpreter.omniturn.code_entry import Acts
+from core.interpreter.omniturn.code_table import carry_out
 from core.interpreter.omniturn.corners import read_corner, refuse_radius
 from core.interpreter.omniturn.feeds import feed_words, warn_of_crash_feed
 from core.interpreter.omniturn.m_codes import after_motion, before_motion
@@ -88,11 +89,11 @@ def _motion(state: State, made: Statement, contour: Sequence[Statement] = ()) ->
         described = (contour,) if acts is Acts.CONTOUR else ()
         yield from blocks_of_moves(state, made, carry_out(made.entry)(state, made, *described))
     elif made.turns and (state.modal.c_locked or not made.moves or "C" not in made.words):
-        refuse_radius(made)
+        refuse_radius(state, made)
         yield from c_move(state, made)
     elif made.moves:
         block = statement_move(state, made)
         read_corner(state, made)
         yield block
     elif made.one_shot is None:
-        refuse_radius(made)
+        refuse_radius(state, made)

@@ -7,6 +7,9 @@ from math import copysign, hypot
 
 from core.interpreter.actions import SpindleLock
 from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.omniturn.code_entry import Code
+from core.interpreter.omniturn.code_rules import check_together, check_when, checked, number
+from core.interpreter.omniturn.code_table import LETTERS
 from core.interpreter.omniturn.dwell import expect_arrival, warn_of_short_dwell
 from core.interpreter.omniturn.feeds import check_move
 from core.interpreter.omniturn.omniturn_state import State
@@ -27,15 +30,11 @@ def positions(state: State, made: Statement) -> bool:
 def lock(state: State, made: Statement) -> Iterator[Block]:
     """M19, M89, G89: stop and lock; M19 then turns to 0 and counts from there."""
     word = made.m_word if made.m in {19, 89} else made.code
-    column = word.column if word else 0
-    name = word.text.upper() if word else "M19"
-    if not state.setup.limits.c_enabled:
-        text = f"{name} needs a C axis, and the machine file switches it off."
-        raise made.refuse(column, "c-disabled", text, "Set axis.C.enabled.")
-    if made.one_shot == 89 and made.m is not None:
-        text = "G89 locks the spindle and stands without M codes."
-        raise made.refuse(column, "not-alone", text, "Split the line.")
-    rpm = speed_of_c(state, made)
+    code = made.m_code if made.m_code is not None and made.m in {19, 89} else made.entry
+    check_when(state, made, code, word=word)
+    if made.one_shot == 89:
+        check_when(state, made, made.entry, word=word)
+    rpm = speed_of_c(state, made, code)
     modal = state.modal
     state.adopt(modal._replace(spindle=0, c_locked=True, c_rpm=rpm))
     yield state.action(made.line, made.part("m"), SpindleLock(orient=made.m == 19))
@@ -43,16 +42,15 @@ def lock(state: State, made: Statement) -> Iterator[Block]:
         yield from _to_zero(state, made)
 
 
-def speed_of_c(state: State, made: Statement) -> float | None:
+def _entry(state: State, made: Statement) -> Code:
+    """Of the word that turns C; C alone counts like CA under G90 and like CI under G91."""
+    return LETTERS["CI" if "CI" in made.words or ("C" in made.words and not state.absolute) else "CA"]
+
+
+def speed_of_c(state: State, made: Statement, code: Code) -> float | None:
     """S of the line in rpm, unsigned; None without S. Raises ProgramError beyond what C can do."""
-    word = made.words.get("S")
-    if word is None or word.value is None:
-        return None
-    most = state.setup.limits.c_max_rpm
-    if not 0.0 < abs(word.value) <= most * (1.0 + 1e-9):
-        text = f"{word.text}: C turns at more than 0 and at most {most:g} rpm."
-        raise made.refuse(word, "speed-range", text, "Correct S.")
-    return abs(word.value)
+    speed = made.value("S")
+    return None if speed is None else checked(state, made, "S", abs(speed), code)
 
 
 def _to_zero(state: State, made: Statement) -> Iterator[Block]:
@@ -82,7 +80,7 @@ def c_move(state: State, made: Statement) -> Iterator[Block]:
         x, z = on_step(state, made, "X"), on_step(state, made, "Z")
         go(state, x, z)
         check_tool(state, made.line, x, z)
-    rpm = speed_of_c(state, made)
+    rpm = speed_of_c(state, made, _entry(state, made))
     if rpm is not None:
         state.adopt(state.modal._replace(c_rpm=rpm))
     way = hypot(state.x - x0, state.z - z0)
@@ -111,17 +109,13 @@ def rotation(state: State, line: int, text: str, goal: float) -> Block:
 
 
 def _c_word(state: State, made: Statement) -> Word:
-    found = [made.words[letter] for letter in C_WORDS if letter in made.words]
-    if len(found) > 1:
-        text = f"The line holds {found[0].text} and {found[1].text}."
-        raise made.refuse(found[1], "word-twice", text, "Keep one of them.")
-    if not state.modal.c_locked:
-        text = f"{found[0].text} turns the spindle, which is not locked."
-        raise made.refuse(found[0], "c-unlocked", text, "Write M19 or M89 before.")
-    if found[0].value is None:
-        text = f"{found[0].text} has no number."
-        raise made.refuse(found[0], "number-missing", text, "Write the degrees.")
-    return found[0]
+    code = _entry(state, made)
+    check_together(made, code)
+    word = next(made.words[letter] for letter in C_WORDS if letter in made.words)
+    check_when(state, made, code, word=word)
+    if word.letter == "C":
+        number(state, made, "C", code)
+    return word
 
 
 def _goal(state: State, made: Statement, word: Word) -> float:

@@ -10,6 +10,7 @@ from core.geometry.lines_and_arcs import Arc, Line, Point, arc_length
 from core.interpreter import units
 from core.interpreter.adjusted_moves import move_words
 from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.omniturn.code_rules import check_when, checked
 from core.interpreter.omniturn.feeds import check_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
@@ -39,40 +40,12 @@ def name(made: Statement) -> str:
 
 def check_ready(state: State, made: Statement) -> None:
     """Refuse a cycle where its start point or its feed is not known, or nose compensation is active."""
-    if state.modal.nose_comp != 40:
-        text = f"{name(made)} cannot run while nose compensation is active."
-        raise made.refuse("G", "cycle-nose-comp", text, "Put G40 and a departure before it.")
-    tool_line = state.tool_line
-    if tool_line:
-        state.tool_line = 0
-        text = (
-            f"{name(made)} is the first move after the T on line {tool_line}: its start point is not known."
-        )
-        raise made.refuse("G", "tool-first-move", text, "Move to X and Z of the start point before it.")
-    if "F" not in made.words and (not state.cut or state.modal.feed is None):
-        text = f"{name(made)} has no feed: none for cutting is in force."
-        raise made.refuse("G", "feed-missing", text, f"Write F on the {name(made)} line.")
+    check_when(state, made, made.entry)
 
 
-def positive(state: State, made: Statement, letter: str, meaning: str) -> float:
-    """A length word over 0, mm. Raises ProgramError where it is missing, 0 or negative."""
-    value = on_step(state, made, letter)
-    if value is None:
-        text = f"{name(made)} needs {letter}, {meaning}."
-        raise made.refuse(letter, "word-missing", text, f"Add {letter}.")
-    if value <= 0:
-        text = f"{made.words[letter].text}: {letter}, {meaning}, must be over 0."
-        raise made.refuse(letter, "cycle-length", text, f"Correct {letter}.")
-    return value
-
-
-def left_over(state: State, made: Statement) -> float:
-    """U, what is left on the part per side, mm; 0 without the word."""
-    value = on_step(state, made, "U") or 0.0
-    if value < 0:
-        text = f"{made.words['U'].text}: U is what the cycle leaves on a side, which is never negative."
-        raise made.refuse("U", "cycle-length", text, "Take the sign out.")
-    return value
+def length(state: State, made: Statement, letter: str) -> float:
+    """A length word, mm; 0 without it. Raises ProgramError where its rule in the table refuses it."""
+    return checked(state, made, letter, on_step(state, made, letter)) or 0.0
 
 
 def check_count(made: Statement, letter: str, count: int, what: str) -> None:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from core.interpreter import units
+from core.interpreter.omniturn.code_entry import MOST_PER_REV, When
+from core.interpreter.omniturn.code_rules import check_when, number
+from core.interpreter.omniturn.code_table import G_CODES, LETTERS
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
 
 COARSE = frozenset({35, 36})
-MOST_PER_REV = tuple(inches * units.MM_PER_INCH for inches in (0.2, 1.0, 2.0))
-"""The greatest feed and lead, mm/rev, by G36, G35 and G35F2."""
-
 _SAME = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)  # mm; the coarsest step
 
 
@@ -23,8 +23,8 @@ def looks_ahead(made: Statement) -> bool:
 def coarse_line(state: State, made: Statement, ahead: Sequence[ReadyLine]) -> bool:
     """Carry out a line of G35 or G36; False for any other. Raises ProgramError, for a T under G35 too."""
     if COARSE.isdisjoint(made.modal):
-        if state.modal.coarse and "T" in made.words:
-            _refuse_tool(made)
+        if "T" in made.words:
+            check_when(state, made, LETTERS["T"])
         return False
     _change(state, made, ahead)
     return True
@@ -34,8 +34,12 @@ def _change(state: State, made: Statement, ahead: Sequence[ReadyLine]) -> None:
     """Take up or leave a coarse step. ``ahead``: the lines that follow."""
     code = 35 if 35 in made.modal else 36
     before = state.modal.coarse
-    _check_alone(made, code)
-    _check_change(state, made, code)
+    entry = G_CODES[code]
+    check_when(state, made, entry, When.WITH_OTHERS)
+    if "F" in made.words:
+        number(state, made, "F", entry)
+    check_when(state, made, entry)
+    _check_place(state, made, code)
     state.coarse_at = (state.x + state.offset_x, state.z + state.offset_z) if code == 35 else None
     modal = state.modal._replace(coarse=0 if code == 36 else 2 if "F" in made.words else 1)
     if before and code == 36 and modal.per_rev and (modal.feed or 0.0) > MOST_PER_REV[0] * (1 + 1e-9):
@@ -44,27 +48,8 @@ def _change(state: State, made: Statement, ahead: Sequence[ReadyLine]) -> None:
     _check_preset(state, made, code, ahead)
 
 
-def _refuse_tool(made: Statement) -> None:
-    """A T between G35 and G36 would leave its tool on the coarse step."""
-    text = "A T stands between G35 and G36."
-    raise made.refuse("T", "coarse-tool", text, "Write G36 before it.")
-
-
-def _check_alone(made: Statement, code: int) -> None:
-    others = set(made.words) - ({"F"} if code == 35 else set())
-    if others or made.one_shot is not None or made.m is not None or len(made.modal) > 1:
-        text = f"G{code} stands alone on its line."
-        raise made.refuse(1, "not-alone", text, "Put the rest on a line of its own.")
-    if "F" in made.words and made.value("F") != 2:
-        text = f"{made.words['F'].text}: beside G35 only F2 has a meaning (leads to 2 in/rev)."
-        raise made.refuse("F", "coarse-range", text, "Write G35 or G35F2.")
-
-
-def _check_change(state: State, made: Statement, code: int) -> None:
-    on = bool(state.modal.coarse)
-    if on == (code == 35):
-        text = "G35 is in force already." if on else "No G35 is in force that G36 could end."
-        raise made.refuse(1, "coarse-order", text, "Take the line out.")
+def _check_place(state: State, made: Statement, code: int) -> None:
+    """G36 ends a coarse feed where G35 began it."""
     if code == 35 or state.coarse_at is None:
         return
     x, z = state.coarse_at

@@ -19,6 +19,8 @@ from core.interpreter.actions import AskInput, Preset, ProgramEnd, ToolChange
 from core.interpreter.adjusted_moves import inserted_after, moved_along, standstill_at
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.omniturn.code_rules import check_together, check_when, checked
+from core.interpreter.omniturn.code_table import LETTERS
 from core.interpreter.omniturn.omniturn_state import CompensationSwitch, Corner, Item, State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import on_step
@@ -36,29 +38,28 @@ def read_corner(state: State, made: Statement) -> None:
 
     A C word is a corner unless C is an axis at the moment.
     """
-    word = made.words.get("R")
     chamfers = None if state.modal.c_locked else made.words.get("C")
-    if word is not None and chamfers is not None:
-        text = "The line has both C and R."
-        raise made.refuse(chamfers, "corner-both", text, "Keep one of them.")
-    word = word or chamfers
+    word = made.words.get("R") or chamfers
     if word is None:
         return
-    size = on_step(state, made, word.letter)
-    if size is None or size <= 0:
-        text = f"{word.text}: a corner's size must be a number over 0."
-        raise made.refuse(word, "corner-size", text, "Write the size in full.")
+    if chamfers is not None:
+        check_together(made, LETTERS["C"])
+    size = corner_size(state, made, word)
     state.contour.corner = Corner(word.letter, size, word.column)
     state.contour.active, state.fast = True, False
 
 
-def refuse_radius(made: Statement) -> None:
+def corner_size(state: State, made: Statement, word: Word) -> float:
+    """The size that a C or R word gives a corner, mm. Raises ProgramError where it is none."""
+    size = on_step(state, made, word.letter)
+    return checked(state, made, word.letter, size or 0.0, LETTERS[word.letter]) or 0.0
+
+
+def refuse_radius(state: State, made: Statement) -> None:
     """Raises ProgramError for R on a line without a straight move of X and Z alone."""
     word = made.words.get("R")
     if word is not None:
-        text = f"{word.text} makes a corner at the end of a straight move, and the line has none."
-        hint = "Put it on the line with X or Z."
-        raise made.refuse(word, "corner-without-move", text, hint)
+        check_when(state, made, LETTERS["R"], word=word)
 
 
 @dataclass(slots=True)

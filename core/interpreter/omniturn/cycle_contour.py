@@ -8,8 +8,10 @@ from collections.abc import Sequence
 
 from core.geometry.lines_and_arcs import Element, Line, Point, arc_between
 from core.interpreter.omniturn.arc_moves import arc_move
-from core.interpreter.omniturn.code_table import Acts
-from core.interpreter.omniturn.corners import ContourPiece, cut_corners
+from core.interpreter.omniturn.code_entry import Acts
+from core.interpreter.omniturn.code_rules import check_together
+from core.interpreter.omniturn.code_table import LETTERS
+from core.interpreter.omniturn.corners import ContourPiece, corner_size, cut_corners
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import UNREADABLE, Statement
 from core.interpreter.omniturn.straight_moves import geometry_modes, go, on_step
@@ -99,21 +101,13 @@ class _Reader:
             self._begin(line, corner)
             return
         element = self._arc(line) if line.entry.acts is Acts.ARC else self._line(line)
-        size = 0.0 if corner is None else self._size(line, corner)
+        size = 0.0
+        if corner is not None:
+            check_together(line, LETTERS[corner.letter])
+            size = corner_size(self._own, line, corner)
         if corner is not None or element.length > _SAME:
             metric = self._own.modal.metric
             self._pieces.append(ContourPiece(element, line.line, corner, size, metric))
-
-    def _size(self, line: Statement, corner: Word) -> float:
-        if line.words.keys() >= _CORNERS:
-            text = "The line has both C and R."
-            raise line.refuse(corner, "corner-both", text, "Keep one of them.")
-        size = on_step(self._own, line, corner.letter)
-        if size is None or size <= 0:
-            text = f"{corner.text}: a corner's size must be a number over 0."
-            hint = "Write the size in full."
-            raise line.refuse(corner, "corner-size", text, hint)
-        return size
 
     def _begin(self, line: Statement, corner: Word | None) -> None:
         """The first line is the way from the start point to the first point of the contour."""

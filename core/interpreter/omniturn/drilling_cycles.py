@@ -5,7 +5,8 @@ from __future__ import annotations
 from math import ceil
 
 from core.interpreter import units
-from core.interpreter.omniturn.canned_cycles import LIFT, Move, check_count, name, positive
+from core.interpreter.omniturn.canned_cycles import LIFT, Move, check_count, length
+from core.interpreter.omniturn.code_rules import checked
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import on_step
@@ -30,12 +31,12 @@ def peck_moves(state: State, made: Statement) -> list[Move]:
     moves = _position(state, made)
     x = moves[-1].x if moves else state.x
     start, depth = state.z, _depth(state, made)
-    peck = positive(state, made, "K", "the depth of a peck")
+    peck = length(state, made, "K")
     count = ceil((start - depth) / peck - _WHOLE)
     check_count(made, "K", count, "pecks")
     rate, clear = _rate(state, made), LIFT
     if "C" in made.words:
-        clear = positive(state, made, "C", "the distance before the cut at which the feed begins")
+        clear = length(state, made, "C")
     out = _retract(state, made, max(start - peck, depth))
     for k in range(1, count + 1):
         reached = depth if k == count else start - k * peck
@@ -54,11 +55,7 @@ def _position(state: State, made: Statement) -> list[Move]:
 
 
 def _depth(state: State, made: Statement) -> float:
-    z = on_step(state, made, "Z")
-    if z is None:
-        text = f"{name(made)} needs Z, the bottom of the hole."
-        raise made.refuse("Z", "word-missing", text, "Add Z.")
-    depth = z + (state.dz if state.absolute else state.z)
+    depth = length(state, made, "Z") + (state.dz if state.absolute else state.z)
     if depth >= state.z:
         text = (
             f"The bottom of the hole at {state.modal.length_text(depth)} is not beyond the start point"
@@ -82,12 +79,8 @@ def _retract(state: State, made: Statement, first: float) -> float:
 
 def _rate(state: State, made: Statement) -> float:
     """L, the rate of the ways out and back, mm/s."""
-    value, most = made.value("L"), state.setup.limits.max_feed
+    value = made.value("L")
     if value is None:
-        return min(_RETRACT_RATE, most)
+        return min(_RETRACT_RATE, state.setup.limits.max_feed)
     rate = value * units.per_unit(metric=state.modal.metric) / 60
-    if not 0 < rate <= most * (1 + 1e-9):
-        shown = state.modal.feed_text(most, per_rev=False)
-        text = f"{made.words['L'].text}: the rate of the retract goes from over 0 to {shown}."
-        raise made.refuse("L", "cycle-rate", text, "Correct L.")
-    return rate
+    return checked(state, made, "L", rate) or 0.0

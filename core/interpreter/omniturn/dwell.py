@@ -7,23 +7,18 @@ from math import ceil, sqrt
 
 from core.interpreter.actions import Dwell
 from core.interpreter.elementary_blocks import Block
+from core.interpreter.omniturn.code_rules import number
 from core.interpreter.omniturn.code_table import G_CODES
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 
-_SHORTEST, _LONGEST = G_CODES[4].bounds["F"]  # s
+_SHORTEST = G_CODES[4].rules["F"].least  # s
 _DONE = 1e-9  # s, degrees
 
 
 def dwell(state: State, made: Statement) -> Iterator[Block]:
     """The block of G04. Raises ProgramError where F is missing or out of range."""
-    seconds = made.value("F")
-    if seconds is None:
-        text = "G04 does not say how long."
-        raise made.refuse("", "word-missing", text, "Write G04Fn, n in seconds.")
-    if not _SHORTEST <= seconds <= _LONGEST:
-        text = f"A dwell of {seconds:g} s is out of range: 0.1 s to an hour."
-        raise made.refuse("F", "dwell-range", text, "Correct F.")
+    seconds = number(state, made, "F") or 0.0
     _shorten_arrival(state, seconds)
     yield state.action(made.line, made.part("move"), Dwell(seconds))
 

@@ -6,14 +6,16 @@ from collections.abc import Sequence
 
 from core.interpreter import units
 from core.interpreter.modal_state import Modal
-from core.interpreter.omniturn.coarse_feeds import MOST_PER_REV
+from core.interpreter.omniturn.code_entry import Limit
+from core.interpreter.omniturn.code_rules import check_when, limit
+from core.interpreter.omniturn.code_table import G_CODES, LETTERS
 from core.interpreter.omniturn.dwell import warn_of_short_dwell
 from core.interpreter.omniturn.omniturn_state import HIGH_FEED, State
 from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
 from core.language.diagnostics import program_error
 from core.language.omniturn import Word
 
-_LEAST = 0.00005 * units.MM_PER_INCH  # per minute or per revolution
+_LEAST = LETTERS["F"].rules["F"].least * units.MM_PER_INCH  # per minute or per revolution
 _SLOW_MOVE = 30.0  # s; a single move that takes longer was hardly meant
 _TAPPING_LINES = 6  # so soon after the feed the spindle turns back
 _ROUNDING = 1 + 1e-9
@@ -25,9 +27,8 @@ def feed_words(state: State, made: Statement, *, first: bool) -> None:
     word = made.words.get("F") if made.f_is_feed else None
     if not modes and word is None:
         return
-    if 0 in modes and not first and (word is not None or modes - {0}):
-        message = "G00 stands with F, G94 or G95, each of which ends the rapid."
-        raise made.refuse(1, "rapid-and-feed", message, "Split the line.")
+    if 0 in modes and not first:
+        check_when(state, made, G_CODES[0])
     if modes:
         _modes(state, made, modes, has_feed=word is not None)
     if word is not None and word.value is not None:
@@ -44,8 +45,7 @@ def _modes(state: State, made: Statement, modes: set[int], *, has_feed: bool) ->
             per_rev, feed = modal.cut_per_rev, modal.cut_feed
         elif not has_feed:
             state.adopt(state.modal._replace(rapid=False))
-            message = "G01 goes back to the last cutting feed, and none has been set after the first line."
-            raise made.refuse(1, "no-cut-feed", message, "Set one with G95Fn or G94Fn.")
+            check_when(state, made, G_CODES[1])
     elif modes & {94, 95} and per_rev != (95 in modes):
         per_rev = 95 in modes
         feed = modal.cut_feed if 1 in modes and modal.cut_per_rev == per_rev else None
@@ -70,7 +70,7 @@ def _rapid(state: State, made: Statement) -> None:
 def _feed(state: State, made: Statement, word: Word, *, first: bool) -> None:
     modal = state.modal
     feed = state.feed_word(word.value or 0.0)
-    most = MOST_PER_REV[modal.coarse] if modal.per_rev else state.setup.limits.max_feed
+    most = limit(state, Limit.FEED_IN_FORCE)
     state.title_rapid = 0
     state.reported.discard("feed-missing")
     least = _LEAST if modal.per_rev else _LEAST / 60
@@ -84,16 +84,17 @@ def _feed(state: State, made: Statement, word: Word, *, first: bool) -> None:
     elif modal.rapid or not modal.feed == modal.cut_feed == within or modal.cut_per_rev is not modal.per_rev:
         state.adopt(modal._replace(feed=within, rapid=False, cut_feed=within, cut_per_rev=modal.per_rev))
     if not least / _ROUNDING <= feed <= most * _ROUNDING:
-        message = out_of_range(modal, feed, least, most)
-        otherwise = "Lower F." if feed > most else "Raise F."
-        hint = "Look for a lost decimal point, or G94 for G95." if modal.per_rev else otherwise
-        raise made.refuse(word, "feed-range", message, hint)
+        raise made.refuse(word, *out_of_range(modal, feed, least, most))
 
 
-def out_of_range(modal: Modal, feed: float, least: float, most: float) -> str:
-    """The sentence for a feed that is none, as G94 or G95 counts it."""
+def out_of_range(modal: Modal, feed: float, least: float, most: float) -> tuple[str, str, str]:
+    """Code, sentence and remedy for a feed that is none, as G94 or G95 counts it."""
+    rule = LETTERS["F"].rules["F"]
+    refusal = rule.too_great if feed > most else rule.wrong
+    assert refusal is not None
     low, high, shown = (modal.feed_text(each, per_rev=modal.per_rev) for each in (least, most, feed))
-    return f"Feed {shown} is out of range: {low} to {high}."
+    hint = "Look for a lost decimal point, or G94 for G95." if modal.per_rev else refusal.hint
+    return refusal.code, refusal.text.format(value=shown, least=low, most=high), hint
 
 
 def warn_of_crash_feed(state: State, made: Statement, ahead: Sequence[ReadyLine]) -> None:

@@ -7,7 +7,9 @@ from collections.abc import Iterator
 from core.interpreter import actions
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.omniturn.carry_over import after_end
-from core.interpreter.omniturn.code_table import Acts, carry_out
+from core.interpreter.omniturn.code_entry import Acts
+from core.interpreter.omniturn.code_rules import check_when
+from core.interpreter.omniturn.code_table import carry_out
 from core.interpreter.omniturn.dwell import warn_of_short_dwell
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
@@ -42,9 +44,8 @@ def coolant(state: State, made: Statement) -> Iterator[Block]:
 def collet(state: State, made: Statement) -> Iterator[Block]:
     """The block of M12 (clamps) or M13. Raises ProgramError where it may not open while the spindle turns."""
     opens = made.m == 13
-    if opens and state.modal.spindle and not state.setup.limits.unclamp_while_turning:
-        text = "M13 opens the collet while the spindle turns."
-        raise made.refuse("M", "unclamp-turning", text, "Stop it with M05 first.")
+    assert made.m_code is not None
+    check_when(state, made, made.m_code)
     state.adopt(state.modal._replace(collet_closed=not opens))
     yield _done(state, made, actions.Collet(closed=not opens))
 

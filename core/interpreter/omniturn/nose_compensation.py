@@ -15,7 +15,8 @@ from core.interpreter.actions import ToolChange
 from core.interpreter.adjusted_moves import element_of, inserted_after, moved_along, standstill_at
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.omniturn.code_table import FLOW_CODES
+from core.interpreter.omniturn.code_rules import check_when
+from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES
 from core.interpreter.omniturn.corners import STRAIGHT
 from core.interpreter.omniturn.omniturn_state import CompensationSwitch, Item, State
 from core.interpreter.omniturn.omniturn_statement import Statement
@@ -289,12 +290,7 @@ def switch(state: State, made: Statement, code: int, *, called: bool) -> Compens
     on = state.modal.nose_comp
     if code == 40 and on == 40:
         return None
-    if made.words or made.code or made.m_word or len(made.modal) > 1:
-        text = f"G{code} does not stand alone on its line."
-        raise made.refuse(1, "not-alone", text, "Put the rest on a line of its own.")
-    if code != 40 and on != 40:
-        text = f"G{code} comes while G{on} is on."
-        raise made.refuse(1, "comp-on", text, f"End G{on} first: a move off the part, then G40.")
+    check_when(state, made, G_CODES[code])
     if called:
         text = f"G{code} stands in a subroutine."
         raise made.refuse(1, "comp-subroutine", text, "Write the compensated contour in the main program.")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES, M_CODES, PLAIN, Acts, Code, FWord, SWord
+from core.interpreter.omniturn.code_entry import Acts, Code, FWord, SWord
+from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES, M_CODES, PLAIN
 from core.language.diagnostics import ProgramError, program_error
 from core.language.omniturn import Line, Word, other_controls
 from core.language.omniturn.plane_switching_lines import PlaneLine
@@ -228,22 +229,15 @@ def _check_flow(made: Statement, line: Line) -> None:
     if line.block_delete and not FLOW_CODES[made.flow].deletable:
         what = f"deletes {made.flow}, without which the rest has no meaning"
         raise _refused(line, line.words[0], "block-delete-flow", what, "Take '/' out.")
-    for letter in allowed - {"M", "LF", "RF"}:
+    for letter in sorted(allowed - {"M", "LF", "RF"}):
         if made.value(letter) is None:
             what = f"holds {made.flow} without {letter}"
             raise _refused(line, line.words[0], "word-missing", what, f"Add {letter} with its number.")
-    if made.flow == "M97":
-        _check_condition(made, line)
-
-
-def _check_condition(made: Statement, line: Line) -> None:
-    if made.value("C") not in {0, 1}:
-        what = f"holds {made.words['C'].text}, which is neither C1 (on) nor C0 (off)"
-        raise _refused(line, made.words["C"], "condition", what, "Write C1 or C0.")
-    number = made.value("I")
-    if number is None or number < 1 or number != int(number):
-        what = f"holds {made.words['I'].text}, which is no number of an input"
-        raise _refused(line, made.words["I"], "input-number", what, "Write the input's number.")
+    for letter, rule in FLOW_CODES[made.flow].rules.items():
+        word = made.words[letter]
+        refusal = rule.refusal_of(word.value or 0.0)
+        if refusal is not None:
+            raise made.refuse(word, refusal.code, refusal.text.format(word=word.text), refusal.hint)
 
 
 def _name_parts(made: Statement, line: Line) -> None:

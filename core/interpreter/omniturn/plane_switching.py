@@ -13,6 +13,8 @@ from core.interpreter import units
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Mill
 from core.interpreter.omniturn.c_axis import rotation
+from core.interpreter.omniturn.code_rules import check_when
+from core.interpreter.omniturn.code_table import FLOW_CODES
 from core.interpreter.omniturn.dwell import warn_of_short_dwell
 from core.interpreter.omniturn.feeds import out_of_range
 from core.interpreter.omniturn.omniturn_state import State
@@ -170,20 +172,7 @@ def plane_line(state: State, made: Statement) -> Iterator[Block]:
 
 def _enter(state: State, made: Statement, name: str) -> None:
     modal = state.modal
-    if not modal.c_locked:
-        raise plane_refusal(
-            made, "c-unlocked", f"(~{name}) turns C, which is not locked.", "Write M19 before."
-        )
-    if modal.per_rev:
-        text = f"(~{name}) under G95: a plane is fed in inches a minute."
-        raise plane_refusal(made, "plane-feed-mode", text, "Write G94 with F before.")
-    if modal.nose_comp != 40:
-        raise plane_refusal(
-            made, "plane-nose-comp", f"(~{name}) with nose compensation on.", "Write G40 before."
-        )
-    if state.tool_line:
-        text = f"The T on line {state.tool_line} has not been moved to X and Z."
-        raise plane_refusal(made, "tool-first-move", text, "Move there before the plane.")
+    check_when(state, made, FLOW_CODES[f"~{name}"])
     if state.px > -_SAME:
         text = (
             f"(~{name}) needs the tool on the negative X side, and X is {state.modal.length_text(state.px)}."
@@ -234,5 +223,5 @@ def _feed(state: State, made: Statement) -> None:
     )
     state.reported.discard("feed-missing")
     if not _LEAST_FEED * (1 - 1e-9) <= feed <= most * (1 + 1e-9):
-        text = out_of_range(modal, feed, _LEAST_FEED, most)
-        raise plane_refusal(made, "feed-range", text, "Correct F.", "F")
+        code, text, _ = out_of_range(modal, feed, _LEAST_FEED, most)
+        raise plane_refusal(made, code, text, "Correct F.", "F")

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from core.interpreter.interpretation import DEEPEST_CALL, MOST_BLOCKS, MOST_LINES
-from core.interpreter.omniturn.code_table import Acts
+from core.interpreter.omniturn.code_entry import Acts
 from core.interpreter.omniturn.loops_and_subroutines import call_target, takes_call
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import Statement

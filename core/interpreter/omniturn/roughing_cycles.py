@@ -15,14 +15,13 @@ from core.interpreter.omniturn.canned_cycles import (
     LIFT,
     Move,
     check_count,
-    left_over,
+    length,
     name,
-    positive,
 )
+from core.interpreter.omniturn.code_rules import number
 from core.interpreter.omniturn.cycle_contour import read_contour
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.omniturn.straight_moves import on_step
 
 # --- passes and the run along the contour, in depth and length as seen from the start point
 
@@ -221,11 +220,9 @@ def contour_moves(state: State, made: Statement, lines: Sequence[Statement]) -> 
 
     Raises ProgramError where words are missing, or no tool can run so.
     """
-    if "P" in made.words and made.value("P") is None:
-        text = "P does not say which subroutine describes the contour."
-        raise made.refuse("P", "word-missing", text, "Write its number after P.")
-    cut = positive(state, made, "I", "the greatest depth of cut") if made.one_shot == 75 else None
-    left = left_over(state, made)
+    number(state, made, "P")
+    cut = length(state, made, "I") if made.one_shot == 75 else None
+    left = length(state, made, "U")
     contour = read_contour(state, made, lines)
     if len(contour) > _MOST_ELEMENTS:
         text = f"The contour has {len(contour):,} lines and arcs; {_MOST_ELEMENTS:,} are the most."
@@ -288,7 +285,7 @@ def box_moves(state: State, made: Statement) -> list[Move]:
     """
     x = _corner(state, made, "X", state.x, state.dx)
     z = _corner(state, made, "Z", state.z, state.dz)
-    cut, left = positive(state, made, "I", "the greatest depth of cut"), left_over(state, made)
+    cut, left = length(state, made, "I"), length(state, made, "U")
     towards = 1.0 if x > state.x else -1.0
     depth = abs(x - state.x) - left
     if depth <= 0:
@@ -307,11 +304,7 @@ def box_moves(state: State, made: Statement) -> list[Move]:
 
 def _corner(state: State, made: Statement, letter: str, start: float, offset: float) -> float:
     """X or Z of the corner opposite to the start."""
-    value = on_step(state, made, letter)
-    if value is None:
-        text = f"{name(made)} needs {letter} of the corner opposite to the start point."
-        raise made.refuse(letter, "word-missing", text, f"Add {letter}.")
-    end = value + (offset if state.absolute else start)
+    end = length(state, made, letter) + (offset if state.absolute else start)
     if end == start:
         text = f"The box has no size along {letter}: its corner lies at the start point."
         raise made.refuse(letter, "cycle-nothing", text, f"Correct {letter} or the start point.")

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from math import ceil, copysign, radians, tan
 
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.omniturn.coarse_feeds import MOST_PER_REV
-from core.interpreter.omniturn.code_table import G_CODES
+from core.interpreter.omniturn.canned_cycles import MOST_PASSES
+from core.interpreter.omniturn.code_rules import check_when, checked, number
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import check_tool, on_step
@@ -19,9 +19,6 @@ from core.interpreter.omniturn.straight_moves import check_tool, on_step
 # --- words, and what has to be right before a thread may be cut
 
 
-MOST_ANGLE = G_CODES[33].bounds["C"][1]  # degrees
-_BARE_C = 29.0
-_MOST_PASSES = 10_000
 _ROUNDING = 1 + 1e-9
 _CLICK = 1e-6  # of a pass: what √ and decimal fractions lack
 _NEAR = 1e-6  # mm
@@ -58,17 +55,14 @@ def read_thread(state: State, made: Statement) -> Thread:
     """The cycle that a line asks for. Raises ProgramError with what is wrong."""
     if state.tool_line:
         check_tool(state, made.line, None, None)
-    _check_bare(made)
+    number(state, made, "P")
     lead = _lead(state, made)
     _check_spindle(state, made, lead)
     along, z1 = _way(state, made)
     single = made.one_shot == 34
-    first = _across(state, made, "I")
-    if not first or (first < 0 and not single):
-        text = "I, the depth of the first pass, must be above 0." if first is not None else "I is missing."
-        raise made.refuse("I", "thread-depth", text, "Write I, the depth of the first pass.")
+    first = checked(state, made, "I", _across(state, made, "I")) or 0.0
     depth, out = (0.0, copysign(1.0, first)) if single else _depth(state, made)
-    angle = _angle(made)
+    angle = radians(number(state, made, "C") or 0.0) if "C" in made.words else 0.0
     thread = Thread(
         x0=state.x,
         z0=state.z,
@@ -89,42 +83,18 @@ def read_thread(state: State, made: Statement) -> Thread:
     return thread
 
 
-def _check_bare(made: Statement) -> None:
-    for letter in ("P", "O"):
-        word = made.words.get(letter)
-        if word is not None and word.value is not None:
-            text = f"{word.text}: {letter} stands without a number here."
-            raise made.refuse(letter, "thread-word", text, f"Write {letter} alone.")
-
-
 def _lead(state: State, made: Statement) -> float:
-    lead, coarse = made.value("K"), state.modal.coarse
-    if lead is None:
-        feed = made.words.get("F")
-        text = f"K is missing, and {feed.text} is there." if feed else "K, the lead, is missing."
-        hint = f"Was K{feed.text[1:]} meant?" if feed else "Write K, the lead per revolution."
-        raise made.refuse("F", "thread-lead-missing", text, hint)
-    lead *= state.scale_z
-    if not 0 < lead <= MOST_PER_REV[coarse] * _ROUNDING:
-        most = state.modal.feed_text(MOST_PER_REV[coarse], per_rev=True)
-        text = f"{made.words['K'].text}: the lead must be above 0 and at most {most}."
-        hint = ("G35 allows more.", "G35F2 allows more.", "Correct K.")[coarse if lead > 0 else 2]
-        raise made.refuse("K", "thread-lead-range", text, hint)
-    return lead
+    lead, feed = made.value("K"), made.words.get("F")
+    if lead is None and feed is not None:
+        text = f"K is missing, and {feed.text} is there."
+        raise made.refuse("F", "thread-lead-missing", text, f"Was K{feed.text[1:]} meant?")
+    coarser = ("G35 allows more.", "G35F2 allows more.", "Correct K.")[state.modal.coarse]
+    return checked(state, made, "K", lead and lead * state.scale_z, more=coarser) or 0.0
 
 
 def _check_spindle(state: State, made: Statement, lead: float) -> None:
-    modal = state.modal
-    if modal.css:
-        text = "G96 is active, and a thread needs one speed from first pass to last."
-        raise made.refuse("", "thread-under-css", text, "Write G97S before it.")
-    if modal.nose_comp != 40:
-        text = f"G{modal.nose_comp} is active, and a thread is cut without nose compensation."
-        raise made.refuse("", "thread-under-comp", text, "Write G40 before it.")
-    rpm = abs(state.rpm_at(state.x))
-    if not rpm:
-        text = "The spindle stands, and a thread is cut by its turns."
-        raise made.refuse("", "spindle-stopped", text, "Start it with M03 or M04.")
+    check_when(state, made, made.entry)
+    modal, rpm = state.modal, abs(state.rpm_at(state.x))
     speed, most = lead * rpm / 60, state.setup.limits.max_feed
     if speed > most * _ROUNDING:
         shown = modal.feed_text(speed, per_rev=False)
@@ -135,9 +105,7 @@ def _check_spindle(state: State, made: Statement, lead: float) -> None:
 
 def _way(state: State, made: Statement) -> tuple[float, float]:
     """Sign of the cutting direction, and Z of the end."""
-    z = on_step(state, made, "Z")
-    if z is None:
-        raise made.refuse("", "word-missing", "Z, the end of the thread, is missing.", "Write Z.")
+    z = checked(state, made, "Z", on_step(state, made, "Z")) or 0.0
     z1 = (z if state.absolute else state.pz + z) + state.dz
     if abs(z1 - state.z) <= _NEAR:
         text = "The thread ends at the Z where it starts."
@@ -147,9 +115,7 @@ def _way(state: State, made: Statement) -> tuple[float, float]:
 
 def _depth(state: State, made: Statement) -> tuple[float, float]:
     """Depth of the last pass below S, and the sign of X away from the work."""
-    x = on_step(state, made, "X")
-    if x is None:
-        raise made.refuse("", "word-missing", "X of the last pass is missing.", "Write X.")
+    x = checked(state, made, "X", on_step(state, made, "X")) or 0.0
     x1 = (x if state.absolute else state.px + x) + state.dx
     here = f"the tool stands at radius {state.modal.length_text(state.x)}"
     if abs(x1 - state.x) <= _NEAR:
@@ -161,21 +127,10 @@ def _depth(state: State, made: Statement) -> tuple[float, float]:
     return abs(x1 - state.x), copysign(1.0, state.x - x1)
 
 
-def _angle(made: Statement) -> float:
-    word = made.words.get("C")
-    if word is None:
-        return 0.0
-    angle = _BARE_C if word.value is None else word.value
-    if not 0.0 <= angle <= MOST_ANGLE:
-        text = f"{word.text}: the angle of infeed goes from 0 to 30 degrees."
-        raise made.refuse("C", "thread-angle", text, "Correct C; bare C is 29 degrees.")
-    return radians(angle)
-
-
 def _count(made: Statement, depth: float, first: float) -> int:
     count = max(ceil((depth / first + 1.0) ** 2 - _CLICK), 1)
-    if count > _MOST_PASSES:
-        text = f"The thread would take {count:,} passes; {_MOST_PASSES:,} are the most."
+    if count > MOST_PASSES:
+        text = f"The thread would take {count:,} passes; {MOST_PASSES:,} are the most."
         raise made.refuse("I", "thread-passes", text, "Correct I.")
     return count
 

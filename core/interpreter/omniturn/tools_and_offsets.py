@@ -8,6 +8,7 @@ from core.interpreter.actions import Preset, ToolChange, WorkShift
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.interpretation import ToolUse
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.omniturn.code_rules import check_together
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import on_step
@@ -69,15 +70,9 @@ def secondary(state: State, made: Statement) -> None:
     state.adopt(state.modal._replace(secondary=int(number), secondary_x=offset.x, secondary_z=offset.z))
 
 
-def _demand_place(made: Statement) -> None:
-    if "X" not in made.words and "Z" not in made.words:
-        text = f"G{made.one_shot} needs X or Z."
-        raise made.refuse("", "word-missing", text, "Write the coordinates.")
-
-
 def work_shift(state: State, made: Statement) -> Iterator[Block]:
     """G10: X and Z add to the shift that the next T takes. Raises ProgramError without either."""
-    _demand_place(made)
+    check_together(made, made.entry)
     x, z = on_step(state, made, "X") or 0.0, on_step(state, made, "Z") or 0.0
     modal = state.modal
     state.adopt(
@@ -89,7 +84,7 @@ def work_shift(state: State, made: Statement) -> Iterator[Block]:
 
 def preset(state: State, made: Statement) -> Iterator[Block]:
     """G92: the current point gets these coordinates. Raises ProgramError without any."""
-    _demand_place(made)
+    check_together(made, made.entry)
     x, z = on_step(state, made, "X"), on_step(state, made, "Z")
     x, z = state.x if x is None else x, state.z if z is None else z
     modal = state.modal

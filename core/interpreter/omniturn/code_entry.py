@@ -1,0 +1,216 @@
+"""What an entry of the code table can state: words, what F and S mean, bounds, when a code is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum, auto
+from math import inf
+from typing import NamedTuple
+
+from core.interpreter import units
+
+HEAD = "G90G94F300\nT1\nM03S1000\nX.6Z.1\nG95F.004\n"
+"""Before every example: radius mode, the tool at X.6 Z.1, .004 in/rev at 1000 rpm."""
+
+TAIL = "G94F300X.6Z1\nM30\n"
+
+
+class Acts(Enum):
+    """What a code does on its line, and so when: see ``block_execution``."""
+
+    PLAIN = auto()  # no code of its own: a straight move, or none
+    WORD = auto()  # a letter
+    MODE = auto()  # in force until another of its group
+    FRAME = auto()  # its X and Z are no motion
+    LOCK = auto()  # the spindle becomes the axis C; before the motion
+    SPINDLE = auto()  # starts the spindle; before the motion
+    START = auto()  # an M function before the motion
+    ARC = auto()
+    MOTION = auto()  # motion or rest of a kind of its own
+    CYCLE = auto()  # a line that stands for many motions
+    CONTOUR = auto()  # a cycle along the lines that follow it, or along a subroutine
+    STOP = auto()  # an M function after the motion
+    FLOW = auto()  # steers the order of execution
+
+
+class FWord(Enum):
+    """What F means on the line of a code."""
+
+    NONE = auto()  # no F may stand there
+    FEED = auto()  # the feed from here on
+    SECONDS = auto()
+    LEADS = auto()  # how coarse leads may be
+
+
+class SWord(Enum):
+    """What S means on the line of a code."""
+
+    SPEED = auto()  # of the spindle, from here on
+    LIMIT = auto()  # of constant surface speed, rpm
+    C_SPEED = auto()  # rpm at which C turns
+
+
+class Limit(Enum):
+    """A bound that the machine file sets, or what is in force; its value is what the page calls it."""
+
+    FEED = "the machine's greatest feed"
+    FEED_IN_FORCE = "the machine's greatest feed under G94, under G95 .2 in, 1 after G35, 2 after G35F2"
+    LEAD = ".2 in, 1 after G35, 2 after G35F2"
+    RPM = "the greatest speed of the spindle"
+    C_RPM = "the greatest speed of C"
+    SURFACE = "6000 m/min"  # ten times what any tool stands
+
+
+MOST_PER_REV = tuple(inches * units.MM_PER_INCH for inches in (0.2, 1.0, 2.0))
+"""The greatest feed and lead, mm/rev, by G36, G35 and G35F2."""
+
+
+class When(Enum):
+    """What may be so when a code comes; its value is what the page calls it."""
+
+    WITH_OTHERS = "anything else stands on its line"
+    WITH_FEED = "F, G94 or G95 stands on its line, the first of the program apart"
+    WITH_M = "an M code stands on its line"
+    NOSE_COMPENSATION = "G41 or G42 is on"
+    COARSE = "G35 is in force"
+    NOT_COARSE = "no G35 is in force"
+    INCREMENTAL_DIAMETERS = "G72 and G91 are in force"
+    SURFACE_SPEED = "G96 is in force"
+    PER_REV = "G95 is in force"
+    NO_FEED = "it has no F and no feed for cutting is in force"
+    NO_CUT_FEED = "there has been no feed for cutting to go back to"
+    TOOL_NOT_MOVED = "X and Z of the first move after a T are still to come"
+    NO_SPEED = "no S has said how fast"
+    STANDING = "the spindle stands"
+    TURNING = "the spindle turns, and the machine file does not allow it"
+    COLLET_OPEN = "the collet is open, and the machine file does not allow it"
+    C_LOCKED = "the spindle is locked as C"
+    C_FREE = "the spindle is not locked as C"
+    NO_C = "the machine file switches C off"
+    NO_STRAIGHT_MOVE = "no straight move of X or Z stands on its line"
+
+
+class Refusal(NamedTuple):
+    """A diagnostic: its code, sentence and remedy, and where it is: a letter, a column, "" at the code.
+
+    In braces stand ``code``, its ``number``, the ``letter`` and ``what`` of a word, the ``word`` as written,
+    and what whoever refuses has to tell besides.
+    """
+
+    code: str
+    text: str
+    hint: str = ""
+    at: str | int = ""
+
+
+@dataclass(frozen=True, slots=True)
+class WordRule:
+    """What a word means beside a code, and what its number must be: from ``least`` to ``most``.
+
+    ``over``: ``least`` itself is too small. ``missing``: refused without the word; ``wrong``: with a number
+    that is none, ``too_great`` where that is told in other words. ``bare`` is what the letter alone means.
+    """
+
+    what: str
+    least: float = -inf
+    most: float | Limit = inf
+    over: bool = False
+    nonzero: bool = False
+    whole: bool = False
+    bare: float | None = None
+    missing: Refusal | None = None
+    wrong: Refusal | None = None
+    too_great: Refusal | None = None
+    numberless: Refusal | None = None  # the letter is there and has no number
+    numbered: Refusal | None = None  # it has one, and stands alone here
+
+    def refusal_of(self, number: float, most: float = inf) -> Refusal | None:
+        """What is said of a number, None where it may be; ``most``: what a limit is now."""
+        too_small = number < self.least or (self.over and number == self.least)
+        if too_small or (self.nonzero and number == 0) or (self.whole and number % 1):
+            return self.wrong
+        greatest = most if isinstance(self.most, Limit) else self.most
+        return (self.too_great or self.wrong) if number > greatest else None
+
+    @property
+    def refusals(self) -> tuple[Refusal, ...]:
+        """All that it can say."""
+        said = (self.missing, self.numberless, self.numbered, self.wrong, self.too_great)
+        return tuple(each for each in said if each is not None)
+
+
+class Together(NamedTuple):
+    """Words of which a line holds one at most, or one at least, and what is said otherwise."""
+
+    letters: tuple[str, ...]
+    refusal: Refusal
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """One code. ``example``: lines that use it between ``HEAD`` and ``TAIL``; ``subroutine`` follows the end.
+
+    ``words`` may stand beside it, G and M apart; ``rules`` say what their numbers must be, ``one_of`` and
+    ``apart`` which must stand together or must not, ``not_when`` in what state it is refused, in the order in
+    which it is looked at. ``further`` are the diagnostic codes that need geometry, the lines around or the
+    structure of the program, and are told where that is computed. Raises ValueError where words, rules and
+    the meaning of F contradict each other.
+    """
+
+    name: str
+    form: str
+    what: str
+    example: str
+    subroutine: str = ""
+    acts: Acts = field(kw_only=True)
+    handler: str = field(kw_only=True)
+    f: FWord = field(kw_only=True)
+    s: SWord = SWord.SPEED
+    words: frozenset[str] = frozenset()
+    group: str = ""  # one line may hold one mode of a group
+    rules: Mapping[str, WordRule] = field(default_factory=dict)
+    one_of: Together | None = None
+    apart: tuple[Together, ...] = ()
+    not_when: Mapping[When, Refusal] = field(default_factory=dict)
+    terminal: tuple[str, bool] = ("", False)  # the input that it waits for or asks, and its wanted state
+    least_blocks: int = 0  # elementary blocks that it makes at least
+    ends_program: bool = False
+    calls: bool = False  # a subroutine
+    asks: bool = False  # calls only as an input says
+    deletable: bool = True  # "/" may stand before it
+    under_nose: bool = False  # may stand under G41 and G42 where it moves
+    before_corner: bool = False  # may stand between a move with C or R and the next
+    in_contour: bool = False  # may stand in the contour of G75 and G78
+    not_in_mdi: str = ""  # why it means nothing on a line of its own
+    further: frozenset[str] = frozenset()
+
+    def __post_init__(self) -> None:
+        if ("F" in self.words) is not (self.f is not FWord.NONE):
+            raise ValueError(f"{self.name}: its words and what F means there contradict each other")
+        if self.acts is Acts.MODE and not self.group:
+            raise ValueError(f"{self.name}: a mode needs its group")
+        if self.acts is not Acts.WORD and self.rules.keys() - self.words:
+            raise ValueError(f"{self.name}: a rule for a word that may not stand there")
+
+    @property
+    def plain_refusals(self) -> tuple[Refusal, ...]:
+        """Those that stand in the entry with their sentences."""
+        together = (*self.apart, *((self.one_of,) if self.one_of else ()))
+        of_words = (each for rule in self.rules.values() for each in rule.refusals)
+        return (*self.not_when.values(), *of_words, *(each.refusal for each in together))
+
+    @property
+    def refusals(self) -> frozenset[str]:
+        """All diagnostic codes by which it is refused or warned of."""
+        return self.further | {each.code for each in self.plain_refusals}
+
+    @property
+    def program(self) -> str:
+        """The example as a whole program."""
+        return f"{HEAD}{self.example}\n{TAIL}{self.subroutine}"
+
+
+def names(text: str) -> frozenset[str]:
+    """Names with blanks between them, as a set."""
+    return frozenset(text.split())
