@@ -14,9 +14,9 @@ from app.desk.arithmetic import EntryError, value_of
 from app.desk.command_errors import EXIT_OK, CommandError
 from app.desk.toml_file import unknown
 from app.offsets.offsets_file import ALIASES, TOOL_KEYS, out_of_range, shown
-from core.store.offset_fields import FIELDS, Field, Sort
+from core.store.offset_fields import MM_PER_INCH, Field, Sort
 from core.store.store_rows import (
-    MM_PER_INCH,
+    FIELDS,
     OFFSETS,
     ZERO_CODES,
     Change,

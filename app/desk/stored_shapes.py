@@ -13,24 +13,12 @@ from core.store.store_rows import ShapeRow, ToolRow
 def shape_of(row: ShapeRow, tool: ToolRow | None) -> ToolShape:
     """The shape of a tool; nose radius and tip quadrant are those of its offset, 0 where it has none."""
     offset = tool or ToolRow()
-    return ToolShape(
-        kind=ToolKind(row.kind),
-        hand=Hand(row.hand),
-        tip=offset.quadrant,
-        nose_radius=offset.nose_radius,
-        insert=row.insert,
-        holder=row.holder,
-        width=row.width,
-        diameter=row.diameter,
-        point=row.point,
-        stick_out=row.stick_out,
-        length=row.length,
-        pitch=row.pitch,
-        flutes=row.flutes,
-        entry=row.entry,
-        rear=row.rear,
-        profile=outline_points(row.profile) or (),
-    )
+    read = {
+        "kind": ToolKind(row.kind),
+        "hand": Hand(row.hand),
+        "profile": outline_points(row.profile) or (),
+    }
+    return ToolShape(**row._asdict() | read, tip=offset.quadrant, nose_radius=offset.nose_radius)
 
 
 def tool_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -> dict[int, ToolShape]:

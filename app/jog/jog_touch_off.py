@@ -12,7 +12,7 @@ from app.desk.arithmetic import EntryError, value_of
 from app.desk.translation import tr
 from app.offsets.offset_history import OffsetHistory
 from app.offsets.offset_values import TOOL_FIELDS, Mode, to_mm, word
-from app.offsets.tool_offsets import NewTool
+from app.offsets.tool_fields import NewTool
 from core.executor.snapshot import Snapshot, State
 from core.store.touch_off import Touch
 

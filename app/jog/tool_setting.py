@@ -13,10 +13,10 @@ from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_history import CORRECTIONS, OffsetHistory, refusal
 from app.offsets.offset_values import TOOL_FIELDS, Mode, heading, not_set, shown_value, value_typed, word
-from app.offsets.tool_offsets import ToolFields
+from app.offsets.tool_fields import ToolFields
 from core.executor.snapshot import Snapshot
-from core.store.offset_fields import Sort
-from core.store.store_rows import OFFSETS, REMARK_LONGEST, Kind, ToolRow
+from core.store.offset_fields import REMARK_LONGEST, Sort
+from core.store.store_rows import OFFSETS, Kind, ToolRow
 
 TOOL = "tool"  # asked: its number
 Pair = tuple[float, float]

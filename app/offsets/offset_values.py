@@ -11,8 +11,8 @@ from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.formats import MINUS, MM_PER_INCH
 from app.desk.translation import tr
-from core.store.offset_fields import FIELDS, Field, Sort
-from core.store.store_rows import Kind, Row, SecondaryRow, ShapeRow, ToolRow, Value
+from core.store.offset_fields import Field, Sort
+from core.store.store_rows import FIELDS, Kind, Row, SecondaryRow, ShapeRow, ToolRow, Value
 
 TOOL_FIELDS = {**FIELDS[Kind.TOOL], **FIELDS[Kind.SHAPE]}  # of a tool: of its offset and of its shape
 ZERO_PLACES = 3

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from app.desk.toml_file import read_toml, refuse, unknown
-from core.store.offset_fields import FIELDS, Field, Sort
+from core.store.offset_fields import MM_PER_INCH, Field, Sort
 from core.store.store_rows import (
-    MM_PER_INCH,
+    FIELDS,
     OFFSETS,
     ZERO_CODES,
     Kind,

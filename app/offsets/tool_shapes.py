@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError
+from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
 from app.desk.stored_shapes import row_mistakes, shape_of
 from app.desk.translation import tr
-from app.offsets.offset_table import OffsetTable
-from app.offsets.offset_values import TOOL_FIELDS, choice_word, heading, shown_value, value_typed, word
-from app.offsets.tool_offsets import ToolFields
+from app.offsets.offset_values import TOOL_FIELDS, choice_word, shown_value, value_typed, word
+from app.offsets.tool_fields import ToolEntry, ToolFields
 from core.executor.snapshot import Snapshot
 from core.part.shape_rules import FIELDS_OF, ShapeMistake
 from core.part.tool_outline import ToolOutline, outline
@@ -21,32 +20,22 @@ _MOVES = {"Up": -1, "Down": 1, "Tab": 1}
 _TURNS = {"Left": -1, "Right": 1}
 
 
-class ToolShapes(OffsetTable):
+class ToolShapes(ToolEntry):
     """One tool, and the field under the cursor. Left and Right turn through what a field may be."""
 
     kind = Kind.SHAPE
+    to_write = "PRESS RETURN TO WRITE IT"
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
         self.place = 0
-        self.writing = False  # a text is open: every character is part of it
 
     # --- what is shown -------------------------------------------------------------------------------
-
-    @property
-    def number(self) -> int:
-        """The tool that the pages of tools stand at."""
-        return self.book.at
 
     @property
     def row(self) -> ShapeRow | None:
         """Its shape; None: it has none yet."""
         return self.book.shapes.get(self.number)
-
-    @property
-    def tool(self) -> ToolRow | None:
-        """Its offset; None: it was never set."""
-        return self.book.tools.get(self.number)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -86,9 +75,9 @@ class ToolShapes(OffsetTable):
         return None if self.row is None or self.mistakes else outline(shape_of(self.row, self.tool))
 
     @property
-    def question(self) -> str:
-        """The tool and the field under the cursor."""
-        return f"T{self.number}  {heading(self.name, self.mode)}?"
+    def before(self) -> str:
+        """The field as it is, without what is typed."""
+        return self.cell(self.name)
 
     @property
     def entered(self) -> str:
@@ -97,17 +86,6 @@ class ToolShapes(OffsetTable):
 
     def _said(self, choice: str) -> str:
         return {"yes": tr("YES"), "no": tr("NO")}.get(choice) or choice_word(choice)
-
-    @property
-    def old_to_new(self) -> str:
-        """The field before and after what is typed, or else the last change."""
-        if not (self.text or self.writing):
-            return self.history.last_in_words
-        try:
-            new = shown_value(self.name, value_typed(self.name, self.text, self.mode), self.mode)
-        except EntryError:
-            new = "…"  # half a sum is no mistake yet
-        return f"{self.cell(self.name)}  →  {new}"
 
     @property
     def foot(self) -> str:
@@ -122,8 +100,8 @@ class ToolShapes(OffsetTable):
             return tr("TYPE IT; RETURN KEEPS IT, ESC LEAVES IT AS IT WAS; F-KEYS STILL WORK")
         if self.chosen_from:
             return tr("LEFT AND RIGHT, OR A FINGER, TURN THROUGH WHAT THERE IS; RETURN SETS IT")
-        if TOOL_FIELDS[self.name].sort is Sort.TEXT:
-            return tr("PRESS RETURN TO WRITE IT")
+        if self.is_text:
+            return tr(self.to_write)
         return tr("UP AND DOWN CHOOSE A FIELD; TYPE A VALUE OR A SUM, RETURN SETS IT; 0: NOT STATED")
 
     @property
@@ -139,26 +117,18 @@ class ToolShapes(OffsetTable):
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def takes(self, key: str) -> bool:
-        """Figures and signs; every character while a text is written."""
-        return self.writing or key in CHARACTERS
-
     def enter_key(self, key: str) -> bool:
         """Up and Down go from field to field, Return sets what is typed or chosen."""
-        if key == "Enter":
-            self._enter()
-        elif key in _MOVES:
+        if key in _MOVES:
             self.go(self.names.index(self.name) + _MOVES[key])
         elif key in _TURNS:
             self.turn(_TURNS[key])
         elif key in {"Page up", "Page down"}:
             self.go_to_tool(self.number + (1 if key == "Page down" else -1))
-        elif key in {"Back", "Delete"}:
-            self.type_text(key)
-        elif len(key) == 1 and self.takes(key):
-            self._add(key)
+        elif len(key) == 1 and self.takes(key) and self.chosen_from:
+            self.desk.say(tr("LEFT AND RIGHT TURN THROUGH WHAT THERE IS"))
         else:
-            return False
+            return super().enter_key(key)
         return True
 
     def choose(self, place: int) -> None:
@@ -168,17 +138,17 @@ class ToolShapes(OffsetTable):
             self.go(place)
         elif self.chosen_from:
             self.turn(1)
-        elif TOOL_FIELDS[self.name].sort is Sort.TEXT and not self.writing:
-            self._enter()
+        elif self.is_text and not self.writing:
+            self.enter()
 
     def go(self, place: int) -> None:
         """The cursor there; what was typed and not entered stays, and that is said."""
-        if not self._left_open():
+        if not self.left_open():
             self.place = max(0, min(len(self.names) - 1, place))
 
     def go_to_tool(self, number: int) -> None:
         """Another tool, at its first field."""
-        if not self._left_open():
+        if not self.left_open():
             self.book.at, self.place = max(OFFSETS[0], min(OFFSETS[-1], number)), 0
 
     def turn(self, step: int) -> None:
@@ -186,7 +156,7 @@ class ToolShapes(OffsetTable):
         choices = self.chosen_from
         if not choices:
             return
-        if why := self._barred():
+        if why := self.cell_barred():
             self.desk.say(why)
             return
         now = self.text or self._choice()
@@ -197,49 +167,20 @@ class ToolShapes(OffsetTable):
         value = self.value(self.name)
         return ("yes" if value else "no") if isinstance(value, bool) else str(value)
 
-    def _left_open(self) -> bool:
-        if self.text or self.writing:
-            self.desk.say(tr("PRESS RETURN TO SET IT, OR ESC TO LEAVE IT AS IT WAS"))
-        return bool(self.text or self.writing)
-
-    def _add(self, key: str) -> None:
-        if self.chosen_from:
-            self.desk.say(tr("LEFT AND RIGHT TURN THROUGH WHAT THERE IS"))
-        elif TOOL_FIELDS[self.name].sort is Sort.TEXT and not self.writing:
-            self.desk.say(tr("PRESS RETURN TO WRITE IT"))
-        else:
-            if not self.text:
-                self.desk.clear()
-            self.type_text(key, int(TOOL_FIELDS[self.name].high) if self.writing else LONGEST)
-
-    def _enter(self) -> None:
+    def enter(self) -> None:
+        """Return sets what is typed or chosen, opens a text, or goes on."""
         if self.text.strip() or self.writing:
-            self._store()
-        elif TOOL_FIELDS[self.name].sort is Sort.TEXT and not self.chosen_from:
+            self.store(lambda: self._save(self.name, value_typed(self.name, self.text, self.mode)))
+        elif self.is_text:
             self._open()
         else:
             self.go(self.names.index(self.name) + 1)
 
-    def _barred(self) -> str:
-        return self.barred(self.desk.snapshot(), correction=False)
-
     def _open(self) -> None:
-        if why := self._barred():
+        if why := self.cell_barred():
             self.desk.say(why)
         else:
             self.writing, self.text = True, str(self.value(self.name))
-
-    def _store(self) -> None:
-        """Save the field; what is refused is said, and the text stays to be mended."""
-        why = self._barred()
-        try:
-            why = why or self._save(self.name, value_typed(self.name, self.text, self.mode))
-        except EntryError as error:
-            why = tr("REFUSED: {why}").format(why=error)
-        if why:
-            self.desk.say(why)
-        else:
-            self.text, self.writing = "", False
 
     def _save(self, name: str, value: Value) -> str:
         """Raises EntryError where this field would mean nothing."""
@@ -270,7 +211,7 @@ class ToolShapes(OffsetTable):
         """F3: the tool has no shape any more, after asking."""
         if self.row is None:
             self.desk.say(tr("T{number} HAS NO SHAPE").format(number=self.number))
-        elif why := self._barred():
+        elif why := self.cell_barred():
             self.desk.say(why)
         else:
             number = self.number
@@ -279,16 +220,4 @@ class ToolShapes(OffsetTable):
 
     def _remove(self, number: int) -> None:
         self.drop()
-        self.history.answer(self._barred() or self.book.remove_shape(number, tr("no shape")))
-
-    def take_back(self) -> bool:
-        """What is typed or chosen, or an open text."""
-        if not (self.text or self.writing):
-            return False
-        self.drop()
-        self.desk.say(tr("T{number} IS AS IT WAS").format(number=self.number))
-        return True
-
-    def drop(self) -> None:
-        """Forget what is typed or chosen."""
-        self.text, self.writing = "", False
+        self.history.answer(self.cell_barred() or self.book.remove_shape(number, tr("no shape")))

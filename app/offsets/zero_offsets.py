@@ -13,8 +13,7 @@ from app.offsets.offset_history import refusal
 from app.offsets.offset_table import OffsetTable
 from app.offsets.offset_values import out_of_range, signed_zero_offset
 from core.executor.snapshot import Snapshot, State
-from core.store.offset_fields import FIELDS
-from core.store.store_rows import ZERO_CODES, Kind, ZeroRow
+from core.store.store_rows import FIELDS, ZERO_CODES, Kind, ZeroRow
 
 ZERO_FIELDS = tuple(FIELDS[Kind.ZERO])
 _KEYS = CHARACTERS | {"Back", "Delete", "Enter", "Tab", "Up", "Down", "Left", "Right"}

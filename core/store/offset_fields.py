@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from math import isfinite
+from typing import get_args, get_type_hints
 
-from core.store.store_rows import (
-    ANGLE_REACH,
-    MM_PER_INCH,
-    OUTLINE_LONGEST,
-    RADIUS_MAX,
-    REMARK_LONGEST,
-    SECONDARY_REACH,
-    SHAPE_REACH,
-    TOOL_REACH,
-    WEAR_REACH,
-    ZERO_REACH,
-    Kind,
+MM_PER_INCH = 25.4
+TOOL_REACH = 1270.0  # mm: 50 in, more than any such lathe travels
+SECONDARY_REACH = 254.0  # mm: 10 in, what the control's display has digits for
+RADIUS_MAX = 50.8  # mm: 2 in
+WEAR_REACH = 2.54  # mm: .1 in; a tool that is off by more has to be touched off
+REMARK_LONGEST = 40  # characters
+SHAPE_REACH = 508.0  # mm: 20 in, longer than any tool of such a lathe sticks out
+OUTLINE_LONGEST = 600  # characters
+ZERO_REACH = 5000.0  # mm, more than any such lathe travels
+ANGLE_REACH = 360.0  # degrees: further is the same place
+TOOL_KINDS = (
+    *("turning", "boring", "grooving", "parting", "threading", "drill"),
+    *("centre-drill", "reamer", "tap", "end-mill", "form"),
 )
-
+HANDS = ("right", "left", "neutral")
 _ROUNDING = 1e-9  # in
 
 
@@ -40,15 +42,18 @@ _UNITS = {Sort.METRIC: "mm", Sort.ANGLE: "degrees"}
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """One field: ``low`` and ``high`` are mm for a length, characters for a text."""
+    """One field: ``low`` and ``high`` are mm for a length, characters for a text.
 
-    name: str  # as commands and files call it
-    column: str
+    It stands at its place in a row (``store_rows``), whose name is what commands and files call it.
+    """
+
     word: str  # as a sentence calls it
-    low: float
-    high: float
+    low: float = 0.0
+    high: float = 0.0
     sort: Sort = Sort.LENGTH
     choices: tuple[str, ...] = ()  # of a text that is one of these
+    column: str = ""  # of the database, where it is not the name
+    name: str = ""
 
     @property
     def range(self) -> str:
@@ -77,50 +82,7 @@ class Field:
         return self.low - rounding <= value <= self.high + rounding
 
 
-_TOOL = (
-    Field("x", "x", "X", -TOOL_REACH, TOOL_REACH),
-    Field("z", "z", "Z", -TOOL_REACH, TOOL_REACH),
-    Field("nose_radius", "r", "nose radius", 0.0, RADIUS_MAX),
-    Field("wear_x", "wear_x", "wear X", -WEAR_REACH, WEAR_REACH),
-    Field("wear_z", "wear_z", "wear Z", -WEAR_REACH, WEAR_REACH),
-    Field("quadrant", "quadrant", "tip quadrant", 0, 9, Sort.WHOLE),
-    Field("remark", "remark", "remark", 0, REMARK_LONGEST, Sort.TEXT),
-    Field("master", "master", "master", 0, 1, Sort.FLAG),
-)
-_SECONDARY = (
-    Field("x", "x", "X", -SECONDARY_REACH, SECONDARY_REACH),
-    Field("z", "z", "Z", -SECONDARY_REACH, SECONDARY_REACH),
-    Field("r", "r", "nose radius", 0.0, RADIUS_MAX),
-)
-_ZERO = (
-    Field("x", "x", "X", -ZERO_REACH, ZERO_REACH, Sort.METRIC),
-    Field("z", "z", "Z", -ZERO_REACH, ZERO_REACH, Sort.METRIC),
-    Field("c", "c", "C", -ANGLE_REACH, ANGLE_REACH, Sort.ANGLE),
-)
-TOOL_KINDS = (
-    *("turning", "boring", "grooving", "parting", "threading", "drill"),
-    *("centre-drill", "reamer", "tap", "end-mill", "form"),
-)
-HANDS = ("right", "left", "neutral")
-_SHAPE = (
-    Field("kind", "kind", "kind", 0, 0, Sort.TEXT, TOOL_KINDS),
-    Field("hand", "hand", "hand", 0, 0, Sort.TEXT, HANDS),
-    Field("insert", "insert_code", "insert", 0, REMARK_LONGEST, Sort.TEXT),
-    Field("holder", "holder", "holder", 0, OUTLINE_LONGEST, Sort.TEXT),
-    Field("width", "width", "width", 0.0, SHAPE_REACH, Sort.LENGTH),
-    Field("diameter", "diameter", "diameter", 0.0, SHAPE_REACH, Sort.LENGTH),
-    Field("point", "point", "point angle", 0.0, 180.0, Sort.ANGLE),
-    Field("stick_out", "stick_out", "stick-out", 0.0, SHAPE_REACH, Sort.LENGTH),
-    Field("length", "length", "cutting length", 0.0, SHAPE_REACH, Sort.LENGTH),
-    Field("pitch", "pitch", "pitch", 0.0, MM_PER_INCH, Sort.LENGTH),
-    Field("flutes", "flutes", "flutes", 0, 20, Sort.WHOLE),
-    Field("entry", "entry", "entering angle", 0.0, 150.0, Sort.ANGLE),
-    Field("rear", "rear", "behind the spindle", 0, 1, Sort.FLAG),
-    Field("profile", "profile", "profile", 0, OUTLINE_LONGEST, Sort.TEXT),
-)
-FIELDS: Mapping[Kind, Mapping[str, Field]] = {
-    Kind.TOOL: {field.name: field for field in _TOOL},
-    Kind.SECONDARY: {field.name: field for field in _SECONDARY},
-    Kind.ZERO: {field.name: field for field in _ZERO},
-    Kind.SHAPE: {field.name: field for field in _SHAPE},
-}
+def fields_of(row: type) -> Mapping[str, Field]:
+    """The fields of a row by name, in their order; each stands beside its type."""
+    fields = {name: get_args(hint)[1] for name, hint in get_type_hints(row, include_extras=True).items()}
+    return {name: replace(field, name=name, column=field.column or name) for name, field in fields.items()}

@@ -11,9 +11,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
 
-from core.store.offset_fields import FIELDS, Field, Sort
+from core.store.offset_fields import Field, Sort
 from core.store.store_errors import StoreError
 from core.store.store_rows import (
+    FIELDS,
     OFFSETS,
     ZERO_CODES,
     Change,

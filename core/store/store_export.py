@@ -8,10 +8,10 @@ import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from core.store.offset_fields import FIELDS, Field, Sort
+from core.store.offset_fields import Field, Sort
 from core.store.store import Store
 from core.store.store_errors import Cause, StoreError, cause_of, why
-from core.store.store_rows import EventRow, Kind, Row, RunRow, Value, inches
+from core.store.store_rows import FIELDS, EventRow, Kind, Row, RunRow, Value, inches
 
 PROGRAMS, OFFSETS, EVENTS, RUNS = "programs", "offsets.toml", "events.csv", "runs.csv"
 TABLES = {  # of measured parts: whole tables, mm and seconds as the store has them

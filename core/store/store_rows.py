@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from enum import StrEnum
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-MM_PER_INCH = 25.4
+from core.store.offset_fields import (
+    ANGLE_REACH,
+    HANDS,
+    MM_PER_INCH,
+    OUTLINE_LONGEST,
+    RADIUS_MAX,
+    REMARK_LONGEST,
+    SECONDARY_REACH,
+    SHAPE_REACH,
+    TOOL_KINDS,
+    TOOL_REACH,
+    WEAR_REACH,
+    ZERO_REACH,
+    Field,
+    Sort,
+    fields_of,
+)
+
 OFFSETS = range(1, 33)
 ZERO_CODES = range(54, 60)
-TOOL_REACH = 1270.0  # mm: 50 in, more than any such lathe travels
-SECONDARY_REACH = 254.0  # mm: 10 in, what the control's display has digits for
-RADIUS_MAX = 50.8  # mm: 2 in
-WEAR_REACH = 2.54  # mm: .1 in; a tool that is off by more has to be touched off
-REMARK_LONGEST = 40  # characters
-SHAPE_REACH = 508.0  # mm: 20 in, longer than any tool of such a lathe sticks out
-OUTLINE_LONGEST = 600  # characters
-ZERO_REACH = 5000.0  # mm, more than any such lathe travels
-ANGLE_REACH = 360.0  # degrees: further is the same place
 Value = float | int | str | bool
 
 
@@ -30,20 +39,28 @@ class Kind(StrEnum):
     SHAPE = "shape"
 
 
+def _reach(word: str, most: float, sort: Sort = Sort.LENGTH) -> Field:
+    return Field(word, -most, most, sort)
+
+
+def _size(word: str) -> Field:
+    return Field(word, 0.0, SHAPE_REACH)
+
+
 class ToolRow(NamedTuple):
     """Machine position at which the tip stood on part zero when it was touched off, and its wear since.
 
     ``quadrant`` is where the tip lies as seen from the nose centre, 0…9; one tool at most is the master.
     """
 
-    x: float = 0.0
-    z: float = 0.0
-    nose_radius: float = 0.0
-    wear_x: float = 0.0
-    wear_z: float = 0.0
-    quadrant: int = 0
-    remark: str = ""
-    master: bool = False
+    x: Annotated[float, _reach("X", TOOL_REACH)] = 0.0
+    z: Annotated[float, _reach("Z", TOOL_REACH)] = 0.0
+    nose_radius: Annotated[float, Field("nose radius", 0.0, RADIUS_MAX, column="r")] = 0.0
+    wear_x: Annotated[float, _reach("wear X", WEAR_REACH)] = 0.0
+    wear_z: Annotated[float, _reach("wear Z", WEAR_REACH)] = 0.0
+    quadrant: Annotated[int, Field("tip quadrant", 0, 9, Sort.WHOLE)] = 0
+    remark: Annotated[str, Field("remark", 0, REMARK_LONGEST, Sort.TEXT)] = ""
+    master: Annotated[bool, Field("master", 0, 1, Sort.FLAG)] = False
 
     @property
     def offset(self) -> tuple[float, float]:
@@ -54,17 +71,17 @@ class ToolRow(NamedTuple):
 class SecondaryRow(NamedTuple):
     """D offset as stored: X a radius, R the nose radius."""
 
-    x: float = 0.0
-    z: float = 0.0
-    r: float = 0.0
+    x: Annotated[float, _reach("X", SECONDARY_REACH)] = 0.0
+    z: Annotated[float, _reach("Z", SECONDARY_REACH)] = 0.0
+    r: Annotated[float, Field("nose radius", 0.0, RADIUS_MAX)] = 0.0
 
 
 class ZeroRow(NamedTuple):
     """Zero offset: machine position of the program's zero, X a radius, C in degrees."""
 
-    x: float = 0.0
-    z: float = 0.0
-    c: float = 0.0
+    x: Annotated[float, _reach("X", ZERO_REACH, Sort.METRIC)] = 0.0
+    z: Annotated[float, _reach("Z", ZERO_REACH, Sort.METRIC)] = 0.0
+    c: Annotated[float, _reach("C", ANGLE_REACH, Sort.ANGLE)] = 0.0
 
 
 class ShapeRow(NamedTuple):
@@ -74,22 +91,28 @@ class ShapeRow(NamedTuple):
     edge; ``rear``: it works at X negative; ``profile`` is an outline, ``z,x z,x z,x`` in mm.
     """
 
-    kind: str = ""
-    hand: str = "right"
-    insert: str = ""
-    holder: str = ""
-    width: float = 0.0
-    diameter: float = 0.0
-    point: float = 0.0
-    stick_out: float = 0.0
-    length: float = 0.0
-    pitch: float = 0.0
-    flutes: int = 0
-    entry: float = 0.0
-    rear: bool = False
-    profile: str = ""
+    kind: Annotated[str, Field("kind", sort=Sort.TEXT, choices=TOOL_KINDS)] = ""
+    hand: Annotated[str, Field("hand", sort=Sort.TEXT, choices=HANDS)] = "right"
+    insert: Annotated[str, Field("insert", 0, REMARK_LONGEST, Sort.TEXT, column="insert_code")] = ""
+    holder: Annotated[str, Field("holder", 0, OUTLINE_LONGEST, Sort.TEXT)] = ""
+    width: Annotated[float, _size("width")] = 0.0
+    diameter: Annotated[float, _size("diameter")] = 0.0
+    point: Annotated[float, Field("point angle", 0.0, 180.0, Sort.ANGLE)] = 0.0
+    stick_out: Annotated[float, _size("stick-out")] = 0.0
+    length: Annotated[float, _size("cutting length")] = 0.0
+    pitch: Annotated[float, Field("pitch", 0.0, MM_PER_INCH)] = 0.0
+    flutes: Annotated[int, Field("flutes", 0, 20, Sort.WHOLE)] = 0
+    entry: Annotated[float, Field("entering angle", 0.0, 150.0, Sort.ANGLE)] = 0.0
+    rear: Annotated[bool, Field("behind the spindle", 0, 1, Sort.FLAG)] = False
+    profile: Annotated[str, Field("profile", 0, OUTLINE_LONGEST, Sort.TEXT)] = ""
 
 
+FIELDS: Mapping[Kind, Mapping[str, Field]] = {
+    Kind.TOOL: fields_of(ToolRow),
+    Kind.SECONDARY: fields_of(SecondaryRow),
+    Kind.ZERO: fields_of(ZeroRow),
+    Kind.SHAPE: fields_of(ShapeRow),
+}
 Row = ToolRow | SecondaryRow | ZeroRow | ShapeRow
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import pytest
@@ -80,6 +80,13 @@ def refused(capsys: Captured, *argv: str) -> str:
 def test_words_of_the_store_are_those_of_the_part() -> None:
     assert tuple(ToolKind) == TOOL_KINDS
     assert tuple(Hand) == HANDS
+    stated = {each.name: each.default for each in fields(ToolShape)}
+    assert stated == ShapeRow()._asdict() | {
+        "kind": ToolKind.TURNING,  # a row without a kind is no shape yet
+        "tip": 0,
+        "nose_radius": 0.0,
+        "profile": (),
+    }
 
 
 def test_file_of_tools_is_read_in_inches(sheet: Path) -> None:

@@ -1,0 +1,203 @@
+"""Fields of a tool, typed into one by one: what the table of tool offsets and the shape of a tool share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError
+from app.desk.translation import tr
+from app.offsets.offset_history import OffsetHistory
+from app.offsets.offset_table import OffsetTable
+from app.offsets.offset_values import TOOL_FIELDS, heading, shown_value, value_added, value_typed, word
+from core.store.offset_fields import Sort
+from core.store.store_rows import Kind, ToolRow, Value
+
+
+@dataclass(slots=True)
+class NewTool:
+    """X or Z alone of a tool that was never set: half an offset would run into the part, so it waits."""
+
+    number: int = 0
+    values: dict[str, Value] = field(default_factory=dict)
+
+    def add(self, number: int, name: str, value: Value) -> dict[str, Value]:
+        """One of the two; answers what there is of this tool now."""
+        self.values = {**(self.values if number == self.number else {}), name: value}
+        self.number = number
+        return self.values
+
+    def drop(self) -> None:
+        """It is not to be set after all."""
+        self.number, self.values = 0, {}
+
+    @property
+    def missing(self) -> str:
+        """The axis that is still to come."""
+        return "x" if "z" in self.values else "z"
+
+
+@dataclass(slots=True)
+class ToolFields:
+    """Saves single fields of tools, for F8 and the Jog page. Each answer is why not, or nothing."""
+
+    history: OffsetHistory
+    new: NewTool = field(default_factory=NewTool)
+
+    def never_set(self, number: int) -> str:
+        """Why a tool that nobody has set has no fields."""
+        text = tr("T{number} WAS NEVER SET: TYPE X AND Z FIRST, OR TOUCH IT OFF ON THE JOG PAGE")
+        return text.format(number=number)
+
+    def save(self, number: int, name: str, text: str, *, adding: bool = False) -> str:
+        """Set a field to what is typed, or add that to it. Raises EntryError for a text that is no value."""
+        mode, row = self.history.mode, self.history.book.tools.get(number)
+        if row is None:
+            return self._first(number, name, value_typed(name, text, mode))
+        value = value_added(name, row, text, mode) if adding else value_typed(name, text, mode)
+        if value == getattr(row, name):
+            self.history.desk.say(tr("T{number} IS AS IT WAS").format(number=number))
+            return ""
+        typed = f"{'MM ' if mode.metric else ''}{word(name)} {'+ ' if adding else ''}{text.strip()}"
+        return self.history.book.change(Kind.TOOL, number, {name: value}, typed)
+
+    def _first(self, number: int, name: str, value: Value) -> str:
+        """X and Z of a tool that was never set are saved together."""
+        if name not in {"x", "z"}:
+            return self.never_set(number)
+        values = self.new.add(number, name, value)
+        if len(values) < 2:
+            text = tr("NOW {axis}: T{number} IS SET WHEN BOTH ARE THERE")
+            self.history.desk.say(text.format(axis=word(self.new.missing), number=number))
+            return ""
+        why = self.history.book.change(Kind.TOOL, number, values, tr("entered by hand"))
+        if not why:
+            self.new.drop()
+        return why
+
+    def master(self, number: int) -> str:
+        """A tool becomes the one that the others are relative to; being it already, none is."""
+        row = self.history.book.tools.get(number)
+        if row is None:
+            return self.never_set(number)
+        if row.master:
+            return self.history.book.choose_master(0, tr("no master"))
+        return self.history.book.choose_master(number, tr("chosen as master"))
+
+
+class ToolEntry(OffsetTable):
+    """One field under the cursor, and what is typed there. A text takes letters once Return has opened it."""
+
+    to_write: ClassVar[str]  # what a letter is answered with before
+    writing = False  # a text is open
+
+    @property
+    def number(self) -> int:
+        """The tool at which the pages of tools stand."""
+        return self.book.at
+
+    @property
+    def tool(self) -> ToolRow | None:
+        """Its offset; None when it was never set."""
+        return self.book.tools.get(self.number)
+
+    @property
+    def name(self) -> str:
+        """The field under the cursor."""
+        raise NotImplementedError
+
+    @property
+    def before(self) -> str:
+        """The field as it is, without what is typed."""
+        raise NotImplementedError
+
+    def cell_barred(self) -> str:
+        """Why the field under the cursor may not be changed now; empty when it may."""
+        return self.barred(self.desk.snapshot(), correction=self.corrects)
+
+    @property
+    def is_text(self) -> bool:
+        """Whether the field takes any text, which Return opens."""
+        field = TOOL_FIELDS[self.name]
+        return field.sort is Sort.TEXT and not field.choices
+
+    @property
+    def question(self) -> str:
+        """The tool and the field under the cursor."""
+        return f"T{self.number}  {heading(self.name, self.mode)}?"
+
+    @property
+    def old_to_new(self) -> str:
+        """The field before and after what is typed, or else the last change."""
+        if not (self.text or self.writing):
+            return self.history.last_in_words
+        try:
+            new = shown_value(self.name, value_typed(self.name, self.text, self.mode), self.mode)
+        except EntryError:
+            new = "…"  # half a sum is no mistake yet
+        return f"{self.before}  →  {new}"
+
+    def takes(self, key: str) -> bool:
+        """Figures and signs; every character while a text is written."""
+        return self.writing or key in CHARACTERS
+
+    def enter_key(self, key: str) -> bool:
+        """Return sets what is typed; the page goes from field to field before."""
+        if key == "Enter":
+            self.enter()
+        elif key in {"Back", "Delete"}:
+            self.type_text(key)
+        elif len(key) == 1 and self.takes(key):
+            self._add(key)
+        else:
+            return False
+        return True
+
+    def enter(self) -> None:
+        """Return on the field."""
+        raise NotImplementedError
+
+    def _add(self, key: str) -> None:
+        if self.is_text and not self.writing:
+            self.desk.say(tr(self.to_write))
+            return
+        if not self.text:
+            self.desk.clear()
+        self.type_text(key, int(TOOL_FIELDS[self.name].high) if self.writing else LONGEST)
+
+    def left_open(self) -> bool:
+        """Whether something is typed and not entered, which keeps the cursor where it is; that is said."""
+        if self.text or self.writing:
+            self.desk.say(tr("PRESS RETURN TO SET IT, OR ESC TO LEAVE IT AS IT WAS"))
+        return bool(self.text or self.writing)
+
+    def store(self, save: Callable[[], str]) -> bool:
+        """Save the field; what is refused is said, and the text stays to be mended."""
+        why = self.cell_barred()
+        try:
+            why = why or save()
+        except EntryError as error:
+            why = tr("REFUSED: {why}").format(why=error)
+        if why:
+            self.desk.say(why)
+            return False
+        self.text, self.writing = "", False
+        return True
+
+    @property
+    def entering(self) -> bool:
+        """Whether there is anything that Esc takes back."""
+        return bool(self.text or self.writing)
+
+    def take_back(self) -> bool:
+        """What is typed or chosen, or an open text."""
+        if not self.entering:
+            return False
+        self.drop()
+        self.desk.say(tr("T{number} IS AS IT WAS").format(number=self.number))
+        return True
+
+    def drop(self) -> None:
+        """Forget what is typed or chosen."""
+        self.text, self.writing = "", False
