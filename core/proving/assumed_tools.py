@@ -22,6 +22,7 @@ _USUAL, _SMALLEST, _ALLOWANCE = 6.35, 1.0, 0.5  # mm; diameter of a drill that n
 _BAR = 5.0  # mm; the bar of a grooving or threading tool in a bore
 _SLIM = "VNMG160404"  # reaches into contours that a stouter insert would not: a doubt speaks for the program
 _MILL = 3.175  # mm; diameter of a mill that nobody has given
+_WIDTH = re.compile(r"(\d+\.\d*|\.\d+|\d{3}|\d+(?=\s*MM))\s*(MM)?\s*(?:IN\b\.?|INCH)?\s*WIDE\b")
 _WIDE = 1.6  # widths; what feeds further along Z than that turns
 
 _OPENS = frozenset({ToolKind.DRILL, ToolKind.REAMER})
@@ -66,7 +67,9 @@ class ToolUse:
 
     @property
     def across(self) -> bool:
-        """Whether a live tool goes into the part along X, and not along Z."""
+        """Whether a live tool goes into the part along X, and not along Z; in the plane ZC it does."""
+        if any(b.plane is not None and b.plane.on_side for b, _ in self.live):
+            return True
         feeds = [b for b, _ in self.live if b.plane is None and not b.rapid and b.feed < QUICK]
         along = sum(max(b.z0 - b.z, 0.0) for b in feeds)
         return sum(max(abs(b.x0) - abs(b.x), 0.0) for b in feeds) > along
@@ -179,9 +182,21 @@ def _shape(kind: ToolKind, use: ToolUse) -> ToolShape:
 
 
 def _groover(kind: ToolKind, use: ToolUse, *, rear: bool) -> ToolShape:
+    width = edge_width(" ".join(use.comments)) or _GROOVE
     if kind is ToolKind.GROOVING and _plunges_outwards(use.moves):
-        return ToolShape(kind, tip=3 if rear else 2, width=_GROOVE, diameter=_BAR, rear=rear)
-    return ToolShape(kind, tip=_edge(use, rear=rear), width=_GROOVE, rear=rear)
+        return ToolShape(kind, tip=3 if rear else 2, width=width, diameter=_BAR, rear=rear)
+    return ToolShape(kind, tip=_edge(use, rear=rear), width=width, rear=rear)
+
+
+def edge_width(comment: str) -> float:
+    """mm, as a comment gives it: .045 WIDE, 045 WIDE (thousandths), 3MM WIDE; 0 where none does."""
+    found = _WIDTH.search(comment.upper())
+    if found is None:
+        return 0.0
+    figure = float(found[1])
+    if found[2]:
+        return figure
+    return (figure if "." in found[1] else figure / 1000.0) * 25.4
 
 
 def _round_tool(kind: ToolKind, use: ToolUse) -> ToolShape:
@@ -260,4 +275,6 @@ def _diameter(comment: str) -> float:
 def _names(kind: ToolKind, shape: ToolShape) -> str:
     name = {ToolKind.END_MILL: "an end mill"}.get(kind, f"a {kind.replace('-', ' ')}")
     size = f", {shape.diameter / 25.4:.3f} in" if shape.diameter and shape.turns_itself else ""
+    if shape.width and shape.width != _GROOVE:
+        size = f", {shape.width / 25.4:.3f} in wide"
     return f"{name}{'' if shape.turns_itself else ' tool'}{size}"

@@ -8,6 +8,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 from core.interpreter.actions import Collet, ToolChange
 from core.interpreter.dialects import ReadProgram
@@ -298,6 +299,9 @@ class Making:
         self._unchecked = unchecked(tools.uses, setting.shapes, setting.clamping, setting.gang)
         self.milling: Milling | None = None  # from the first cut of a live tool on
         self.met = NOTHING  # by the last block of a live tool
+        self._turned = False  # the spindle has
+        self._in_cut = False  # of a spindle that stands
+        self._standing: dict[int, int] = {}  # by T: the first line that cuts while it stands again
         self.part = TurnedPart(stock, self._step) if stock is not None and not tools.feeds_first else None
 
     @property
@@ -340,6 +344,7 @@ class Making:
         if isinstance(step, TipMove):
             if not self._begun:  # from wherever the slides stand
                 step, self._begun = step._replace(points=step.points[-1:] * 2), True
+            self._turned = self._turned or step.rpm != 0.0
             if self.part is not None and not self._is_open:
                 self._move(step, self.part)
             return
@@ -393,12 +398,30 @@ class Making:
         cutter = self._cutter()
         if cutter is None:
             return
+        if self._stands(move, cutter, part):
+            return
         before = len(part.pieces)
         self.findings.look(move, cutter, part, self._tool)
         if self.milling is not None:
             part.pieces[before:] = [self.milling.fallen(piece) for piece in part.pieces[before:]]
         for piece in part.pieces[before:]:
             self.findings.parted(move, piece)
+
+    def _stands(self, move: TipMove, cutter: Cutter, part: TurnedPart) -> bool:
+        """Whether metal is met while the spindle stands again, or left behind such a cut: that turns nothing.
+
+        A spindle that never turns is one that is switched by hand.
+        """
+        behind, self._in_cut = self._in_cut, False
+        shape = self._tools.shape(self._tool)
+        if not self._turned or move.rpm or (shape is not None and shape.turns_itself):
+            return False
+        if move.quick:
+            return behind
+        self._in_cut = any(cutter.meets(part, start, end) for start, end in pairwise(move.points))
+        if self._in_cut:
+            self._standing.setdefault(self._tool, move.line)
+        return self._in_cut
 
     def _finish(self) -> None:
         part = self.part
@@ -433,6 +456,10 @@ class Making:
             pieces=tuple(self._pieces),
             assumed=tuple(assumed),
             findings=self.findings.found,
-            unchecked=self._unchecked,
+            unchecked=(*self._unchecked, *_cut_standing(self._standing)),
             shapes={n: self._tools.shape(n) for n, use in self._tools.uses.items() if use.moves},
         )
+
+
+def _cut_standing(lines: Mapping[int, int]) -> list[str]:
+    return [f"what T{tool} cuts from line {line} on while the spindle stands" for tool, line in lines.items()]

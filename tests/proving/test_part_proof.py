@@ -20,6 +20,7 @@ from core.part.clamping import Clamping
 from core.part.stock import Stock, bar, tube
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving import part_proof
+from core.proving.assumed_tools import edge_width
 from core.proving.part_proof import PartReport, PartSetting, prove_with_part
 from core.proving.proof_report import Report
 from tests.worked import FOLDER, worked
@@ -351,3 +352,41 @@ def test_a_slot_that_is_turned_away_again_counts_once() -> None:
     assert slotted.milled
     assert slotted.removed == pytest.approx(plain.removed, rel=2e-3)
     assert slotted.left == pytest.approx(plain.left, rel=2e-3)
+
+
+# --- what an assumed tool is taken for, and what stands still
+
+
+@pytest.mark.parametrize(
+    ("comment", "width"),
+    [
+        ("NOTCH TOOL 045 WIDE", 0.045 * INCH), ("GROOVE .062 WIDE", 0.062 * INCH), ("PART OFF 3MM WIDE", 3.0),
+        ("GROOVE 2.5 MM WIDE", 2.5), ("GROOVE TOOL", 0.0), ("45 WIDE", 0.0), ("WIDE GROOVE 125", 0.0),
+    ],
+)  # fmt: skip
+def test_the_width_of_an_edge_by_its_comment(comment: str, width: float) -> None:
+    assert edge_width(comment) == pytest.approx(width)
+
+
+def test_a_spindle_that_stands_again_turns_nothing() -> None:
+    """Turned to r .4, then fed in at r .2 with the spindle stopped: there is no groove, and that is told."""
+    turned = "T1\nX[.55]Z[.1]\nX[.4]\nG95F.004Z[-.3]\nG94F300X[.55]\nZ[.1]\n"
+    still = text(turned + "M05\nX[.2]\nG94F10Z[-.2]\nG00Z[.1]\nG01F300X[.6]\n")
+    stock = bar(INCH, 0.0, -2 * INCH)
+    (_, alone), (report, part) = proved(text(turned), stock), proved(still, stock)
+    assert part.removed == pytest.approx(alone.removed)
+    assert "what T1 cuts from line 11 on while the spindle stands" in part.unchecked
+    assert [each for each in report.errors if each.check] == []
+    _, running = proved(still.replace("M05\n", ""), stock)
+    assert running.removed > 1.5 * alone.removed
+    assert not any("stands" in words for words in running.unchecked)
+
+
+def test_a_live_tool_in_the_plane_zc_works_across() -> None:
+    """A tool along the axis would cut a slot with its flank on the way out."""
+    worked("plane-zc-figure-eight")
+    path = FOLDER / "plane-zc-figure-eight.nc"
+    _, part = proved(path.read_text(), bar(0.98 * INCH, 0.0, -1.5 * INCH), {})
+    assert part.last is not None
+    (shape,) = (each for each in part.shapes.values() if each is not None)
+    assert shape.direction[0] == 0

@@ -288,11 +288,11 @@ def _settle(window: MainWindow, seconds: float) -> None:
 def _grab(window: MainWindow, path: Path) -> None:
     window.show()
     _settle(window, SETTLE)
-    if not _lean(window.grab().toImage()).save(str(path), "PNG", 1):  # type: ignore[call-overload]
+    if not lean(window.grab().toImage()).save(str(path), "PNG", 1):  # type: ignore[call-overload]
         raise OSError(f"{path} cannot be written")
 
 
-def _lean(image: QImage) -> QImage:
+def lean(image: QImage) -> QImage:
     """The same with its 256 most frequent colours: a third of the file, and no difference to be seen."""
     image = image.convertToFormat(QImage.Format.Format_RGB32)
     pixels = np.frombuffer(image.constBits(), dtype=np.uint32)
