@@ -1,13 +1,10 @@
 """``prove --compare OFFSETS``: what other offsets make of the same program: part, times, findings.
 
-Tools stand where the offsets of the proof say that they do; with the others in force the slides bring them
-elsewhere, and the part comes out as much larger, smaller, longer or shorter.
+How the parts are compared stands in ``core/proving/other_offsets.py``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from app.cli.figures import MM_PER_INCH, Json, length_of, seconds
@@ -16,64 +13,35 @@ from core.language.source import Dialect
 
 if TYPE_CHECKING:
     from app.cli.proof_job import ProofJob
-    from core.language.diagnostics import Diagnostic
     from core.language.source import Source
     from core.proving.part_features import Pair
     from core.proving.part_proof import PartReport
     from core.proving.proof_report import Report
 
-FINE = 0.001
-"""Width of a column of the part, mm, where parts are compared: a shoulder is off by .00002 in at most."""
-
 _NOUGHT = 5e-5  # in or mm
-_SAME = 0.0012  # mm; less is no difference
 
 
 def compared(job: ProofJob, source: Source, report: Report, part: PartReport | None) -> Json:
     """The object ``compare``. Lengths are inches for OmniTurn programs, mm for the others."""
-    from core.proving.part_features import features, matched
-    from core.proving.part_proof import prove_with_part
+    from core.proving.other_offsets import ThisPart, other_part
 
     assert job.other is not None
-    setting = job.setting if part is None else replace(job.setting, stock=part.stock, tips=_tips(job))
-    setup = job.other.setup
-    there, its_part = prove_with_part(source, setup, job.machine, setting, ideal=job.ideal)
-    pairs: list[Pair] = []
-    if part is not None and its_part is not None:
-        parts = [each.last for each in (part, its_part)]
-        pairs = matched(*([] if each is None else features(each) for each in parts))
-    here_only, there_only = _only(report.diagnostics, there.diagnostics)
-    length = length_of(report.dialect)
+    this = ThisPart(job.setup, job.setting, report, part)
+    found = other_part(source, this, job.other.setup, job.machine, ideal=job.ideal)
+    there, length = found.report, length_of(report.dialect)
+    furthest = max((abs(p.difference) for p in found.pairs if p.difference is not None), default=0.0)
     return {
         "offsets": job.other.name,
-        "features": [_pair_json(pair, report.dialect) for pair in pairs],
-        "differing": sum(pair.difference is None or abs(pair.difference) > _SAME for pair in pairs),
-        "largest": length(max((abs(p.difference) for p in pairs if p.difference is not None), default=0.0)),
-        "removed_volume": [_volume(each, report.dialect) for each in (part, its_part)],
+        "features": [_pair_json(pair, report.dialect) for pair in found.pairs],
+        "differing": found.differing,
+        "largest": length(furthest),
+        "removed_volume": [_volume(each, report.dialect) for each in (part, found.part)],
         "cycle_time_s": [seconds(report.times.cycle), seconds(there.times.cycle)],
         "cutting_time_s": [seconds(report.times.cutting), seconds(there.times.cutting)],
         "rapid_time_s": [seconds(report.times.rapid), seconds(there.times.rapid)],
-        "gone": [diagnostic_json(each) for each in here_only],
-        "added": [diagnostic_json(each) for each in there_only],
+        "gone": [diagnostic_json(each) for each in found.gone],
+        "added": [diagnostic_json(each) for each in found.added],
     }
-
-
-def _tips(job: ProofJob) -> dict[int, tuple[float, float]]:
-    """Where the tips stand on part zero, by T and by G54 to G59."""
-    own = {n: (tool.x, tool.z) for n, tool in job.setup.tools.items()}
-    return own | {n: (zero.x, zero.z) for n, zero in job.setup.zero.items()}
-
-
-def _only(
-    here: Iterable[Diagnostic], there: Iterable[Diagnostic]
-) -> tuple[list[Diagnostic], list[Diagnostic]]:
-    """The findings that only one of them has: figures in a sentence may differ, place and code may not."""
-
-    def key(each: Diagnostic) -> tuple[int, str]:
-        return each.line, each.code
-
-    ours, theirs = {key(each) for each in here}, {key(each) for each in there}
-    return [d for d in here if key(d) not in theirs], [d for d in there if key(d) not in ours]
 
 
 def _pair_json(pair: Pair, dialect: Dialect) -> Json:

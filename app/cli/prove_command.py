@@ -111,7 +111,7 @@ def _job(args: argparse.Namespace) -> ProofJob:
     setting = part_setting(args, around)
     reported, other = args.report is not None, _other(args, around.setup)
     if other is not None:
-        from app.cli.compare_figures import FINE
+        from core.proving.other_offsets import FINE
 
         setting = replace(setting, step=FINE)
     return ProofJob(around.machine, around.setup, setting, args.ideal, args.optional_stop, reported, other)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from core.language.source import Source
     from core.machine.machine_model import Machine
     from core.part.tool_shape import ToolShape
+    from core.proving.other_offsets import OtherPart
     from core.proving.part_history import PartMoves
     from core.proving.part_proof import PartReport, PartSetting
 
@@ -65,6 +66,19 @@ class PartDesk:
             return replace(setting, stock=said_stock(kept.stock, around)), None
         except ValueError as error:  # of the words, or of a program that cannot be read
             return setting, _unusable(str(error))
+
+    def compared(self, before: Job, after: Job, watch: Watch) -> OtherPart | None:
+        """What other offsets of a job make of its part; None: it has none."""
+        from core.proving.other_offsets import FINE, ThisPart, other_part
+        from core.proving.part_proof import prove_with_part
+
+        setting = replace(self.setting(before, watch)[0], step=FINE)
+        around = before.setup, self.machine, setting
+        report, part = prove_with_part(before.reading, *around, watch, watch=watch)
+        if part is None or part.last is None:
+            return None
+        this = ThisPart(before.setup, setting, report, part)
+        return other_part(before.reading, this, after.setup, self.machine, watch)
 
     def proved(self, moves: PartMoves, trouble: Diagnostic | None, watch: Watch) -> PartProved:
         """The part, as far as the setting of the moves says it. A proof that fails is told as a warning."""

@@ -33,7 +33,7 @@ from core.proving.proof_report import Report
 
 if TYPE_CHECKING:
     from app.desk.latest import Watch
-    from app.offsets.offset_effect import Draw
+    from app.offsets.offset_effect import ComparePart, Draw
     from app.path.path_picture import Picture, Timed
     from core.interpreter.restart.state_rebuild import StateRebuild
     from core.proving.program_timeline import MotionSpan, RestSpan
@@ -159,6 +159,11 @@ def proof_of(job: Job, report: Report) -> Proof:
 
 
 # --- Drawing a program in the frame of other offsets than its own: what a change of offsets does to its path.
+
+
+def part_comparer(machine: Machine, shapes: Shapes = dict, kept: Kept = nothing_kept) -> ComparePart:
+    """Compares the parts that two offsets make of a job on this machine."""
+    return PartDesk(machine, shapes, kept, _read).compared
 
 
 def drawer(machine: Machine) -> Draw:

@@ -65,8 +65,10 @@ class PartProved:
         return replace(proof, errors=(*proof.errors, *errors), warned=self.warned)
 
     def among(self, diagnostics: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
-        """All findings, in the order of lines and columns."""
-        return tuple(sorted((*diagnostics, *self.diagnostics), key=lambda each: (each.line, each.column)))
+        """All findings, in the order of lines and columns; one that reading has told already is told once."""
+        known = {(each.line, each.code) for each in diagnostics}
+        own = (each for each in self.diagnostics if (each.line, each.code) not in known)
+        return tuple(sorted((*diagnostics, *own), key=lambda each: (each.line, each.column)))
 
 
 def _no_part(_picture: Picture, _watch: Watch) -> PartProved | None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
@@ -23,6 +24,7 @@ from core.store.store_rows import Change, Kind, SecondaryRow, ToolRow
 
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
+    from core.proving.other_offsets import OtherPart
 
 NOUGHT = 1e-9  # mm
 R = TypeVar("R", ToolRow, SecondaryRow)
@@ -38,6 +40,8 @@ class Tables:
 
 # Job, the tools in whose frame it is drawn, and whether anybody still wants it.
 Draw = Callable[[Job, Mapping[int, ToolOffset], Watch], "Picture"]
+# The job with the offsets before and after; None: the program makes no part.
+ComparePart = Callable[[Job, Job, Watch], "OtherPart | None"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +73,9 @@ class Effect:
     """Draws on a worker; the screen only looks at ``now``, ``busy`` and ``trouble``."""
 
     draw: Draw
+    compare: ComparePart | None = None  # None: nobody compares parts here
     now: Compared | None = None
+    part: OtherPart | None = None
     trouble: str = ""
     worker: Latest = field(default_factory=lambda: Latest("effect"))
 
@@ -85,8 +91,18 @@ class Effect:
         def pair(watch: Watch) -> Compared:
             return compared(*(self.draw(_with(job, each), before.tools, watch) for each in (before, after)))
 
-        self.now, self.trouble = None, ""
+        self.now, self.part, self.trouble = None, None, ""
         self.worker.ask(pair, self._drawn, self._failed)
+
+    def ask_part(self, compare: ComparePart, job: Job, before: Tables, after: Tables) -> None:
+        """Compare the part both ways; what was being made before is given up."""
+        self.part, self.trouble = None, ""
+        work = partial(compare, _with(job, before), _with(job, after))
+        self.worker.ask(work, self._compared, self._failed)
+
+    def _compared(self, part: OtherPart | None) -> None:
+        self.part = part
+        self.trouble = "" if part is not None else tr("THIS PROGRAM MAKES NO PART")
 
     def _drawn(self, pair: Compared) -> None:
         self.now = pair
@@ -97,7 +113,7 @@ class Effect:
     def forget(self) -> None:
         """Give up what is being drawn, and forget what was drawn."""
         self.worker.give_up()
-        self.now, self.trouble = None, ""
+        self.now, self.part, self.trouble = None, None, ""
 
     def close(self) -> None:
         """Give up whatever is being drawn and end the worker."""
@@ -113,11 +129,13 @@ def _with(job: Job, tables: Tables) -> Job:
 
 @dataclass(slots=True)
 class EffectDisplay:
-    """The whole path with the place of the greatest change, then that place, then the table again."""
+    """The whole path with the place of the greatest change, that place, the part, then the table again."""
 
     table: OffsetTable
     open: bool = False
     near: bool = False  # the place of the greatest change, so near that it is seen
+    of_part: bool = False  # what it does to the part, feature by feature
+    _asked: tuple[Tables, Tables] | None = None
 
     @property
     def effect(self) -> Effect | None:
@@ -125,13 +143,26 @@ class EffectDisplay:
         return self.table.desk.attached(Effect)
 
     def turn(self) -> None:
-        """F6: the next of whole path, greatest change, table."""
+        """F6: the next of whole path, greatest change, part, table."""
         if not self.open:
             self._open()
-        elif not self.near and self.pictures is not None and not self.pictures.same:
+        elif self.of_part or self.pictures is None or self.pictures.same:
+            self.close()
+        elif not self.near:
             self.near = True
         else:
+            self._open_part()
+
+    def _open_part(self) -> None:
+        effect, now = self.effect, self.table.desk.session.now
+        if effect is None or effect.compare is None or now.job is None or self._asked is None:
             self.close()
+        elif now.picture is not None and now.picture.no_part:
+            self.close()
+            self.table.desk.say(tr(now.picture.no_part))
+        else:
+            effect.ask_part(effect.compare, now.job, *self._asked)
+            self.of_part = True
 
     def _open(self) -> None:
         effect, job = self.effect, self.table.desk.session.now.job
@@ -144,7 +175,7 @@ class EffectDisplay:
             return
         self.table.desk.clear()
         effect.ask(job, *pair)
-        self.open, self.near = True, False
+        self.open, self.near, self.of_part, self._asked = True, False, False, pair
 
     def _pair(self) -> tuple[Tables, Tables] | None:
         """Before and after: of the entry, where it would change something, else of the last change."""
@@ -162,7 +193,7 @@ class EffectDisplay:
 
     def close(self) -> None:
         """Show the table again."""
-        self.open = self.near = False
+        self.open = self.near = self.of_part = False
         if self.effect is not None:
             self.effect.forget()
 
@@ -173,8 +204,29 @@ class EffectDisplay:
         return None if not self.open or effect is None or effect.busy else effect.now
 
     @property
+    def part(self) -> OtherPart | None:
+        """The part with the offsets before and after; None while the worker is at it."""
+        effect = self.effect
+        return None if not self.of_part or effect is None or effect.busy else effect.part
+
+    def _words_of_part(self, effect: Effect) -> str:
+        part = self.part
+        if effect.trouble:
+            return tr("THE PART CANNOT BE COMPARED: {why}; F6 SHOWS THE TABLE").format(why=effect.trouble)
+        if part is None:
+            return tr("MAKING THE PART WITH THE OFFSETS BEFORE AND AFTER")
+        if not part.differing:
+            return tr("NO DIAMETER OR SHOULDER OF THE PART CHANGES; F6 SHOWS THE TABLE")
+        words = tr("{count} FEATURES OF THE PART CHANGE; F6 SHOWS THE TABLE")
+        return words.format(count=part.differing)
+
+    @property
     def words(self) -> str:
         """What the picture is, for the prompt line."""
+        effect = self.effect
+        return self._words_of_part(effect) if self.of_part and effect is not None else self._words_of_path()
+
+    def _words_of_path(self) -> str:
         effect, pair = self.effect, self.pictures
         if effect is not None and effect.trouble:
             return tr("THE EFFECT CANNOT BE DRAWN: {why}").format(why=effect.trouble)
@@ -189,7 +241,10 @@ class EffectDisplay:
         if not self.near:
             text = tr("UP TO {far} APART, AT THE CIRCLE; F6 GOES NEAR, Z ZOOMS, ESC SHOWS THE TABLE")
             return text.format(far=far)
-        return tr("UP TO {far} APART; Z ZOOMS, F6 SHOWS THE TABLE").format(far=far)
+        text = tr("UP TO {far} APART; Z ZOOMS, F6 SHOWS THE TABLE")
+        if effect is not None and effect.compare is not None:
+            text = tr("UP TO {far} APART; Z ZOOMS, F6: WHAT IT DOES TO THE PART")
+        return text.format(far=far)
 
 
 def _tables(tools: Mapping[int, ToolRow], secondary: Mapping[int, SecondaryRow]) -> Tables:

@@ -17,6 +17,7 @@ from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.offsets.offset_effect import EffectDisplay
 from app.offsets.offset_table import OffsetTable
+from app.offsets.part_effect import part_table
 from app.path.path_pane_view import ZOOM_STEP
 from app.path.path_view import PathView
 from app.screen import page_table
@@ -24,6 +25,7 @@ from app.screen.entry_panel import EntryPanel, EntryWords, KeyPad
 from app.screen.look import Look, Painter
 from app.screen.page_base import Host, KeyActions, ModelPage
 from app.screen.panel import Panel, Shown
+from app.screen.sheet_panel import SheetPanel
 from core.executor.snapshot import Snapshot
 
 PAD, ASKED = 28.4, 12.4  # units: width of the pad, height of the line that is typed
@@ -132,6 +134,8 @@ class OffsetPage(ModelPage):
         self.asked = EntryPanel(self.look, self)
         self.effect_model = EffectDisplay(model)
         self.effect = EffectView(self.look, self.effect_model, self)
+        self.features = SheetPanel(self.look, lambda _row: None, self)
+        self.features.hide()
         own = ("C", "C") if model.clears else None
         self.pad = KeyPad(self.look, self.touched, own=own, parent=self)
 
@@ -206,8 +210,12 @@ class OffsetPage(ModelPage):
         changes = model.history.shown
         self.history.setVisible(changes is not None)
         self.table.setVisible(changes is None and not effect.open)
-        self.effect.setVisible(effect.open)
-        if effect.open:
+        part = effect.part
+        self.effect.setVisible(effect.open and part is None)
+        self.features.setVisible(part is not None)
+        if part is not None:
+            self.features.show_sheet(part_table(part, model.mode))
+        elif effect.open:
             self.effect.show_effect()
         if changes is not None:
             self.history.show_entries(tuple(model.history.in_words(change) for change in changes))
@@ -220,7 +228,7 @@ class OffsetPage(ModelPage):
         u = self.look.u
         pad, high, gap = round(PAD * u), round(ASKED * u), max(4, round(0.7 * u))
         wide, table = self.width() - pad - gap, self.height() - high - gap
-        for part in (self.table, self.history, self.effect):
+        for part in (self.table, self.history, self.effect, self.features):
             part.setGeometry(0, 0, wide, table)
         self.asked.setGeometry(0, table + gap, wide, high)
         self.pad.setGeometry(wide + gap, 0, pad, self.height())

@@ -45,6 +45,13 @@ _FIELDS = {
     StockKind.PROFILE: _OF_A_FILE,
     StockKind.AFTER: _OF_A_FILE,
 }
+_KINDS = {
+    StockKind.NONE: "",
+    StockKind.BAR: "BAR",
+    StockKind.TUBE: "TUBE",
+    StockKind.PROFILE: "PROFILE",
+    StockKind.AFTER: "OF A PROGRAM",
+}
 _STICK_OUTS = (0.0, 40.0 * MM_PER_INCH)
 
 
@@ -82,7 +89,7 @@ class StockEntry:
         if name is StockField.FILE:
             return Path(self.file).name
         if name is StockField.KIND:
-            return "" if self.kind is StockKind.NONE else self.kind.name
+            return _KINDS[self.kind]
         value = float(getattr(self, name))
         return length(value, metric) if value else ""
 

@@ -208,7 +208,7 @@ class PartPlayer:
         """To the end of an elementary block."""
         if not self.bound and self._picture is not None:
             self.playing = False
-            self.seek(float(self._picture.ends[min(block, len(self._picture.ends) - 1)]))
+            self.want(float(self._picture.ends[min(block, len(self._picture.ends) - 1)]))
 
     def marks(self) -> npt.NDArray[np.float64]:
         """When errors of the part come up, s."""

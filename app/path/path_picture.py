@@ -60,6 +60,11 @@ class Picture(Polyline):
         apart = np.flatnonzero(np.diff(there) > 1)
         return int(there[apart[0]] if len(apart) else there[-1]) + 1
 
+    def blocks_before(self, line: int) -> int:
+        """How many blocks are done when a source line is reached for the first time."""
+        there = np.flatnonzero(self.line == line)
+        return int(there[0]) if len(there) else self.block_of_line(line)
+
     def blocks_of_line(self, line: int) -> list[tuple[int, int]]:
         """All blocks of a source line, as ranges of numbers from 1 with the last one in them."""
         there = np.flatnonzero(self.line == line) + 1

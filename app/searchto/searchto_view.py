@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QWidget
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.translation import tr
+from app.path.part_player import player_of
 from app.path.path_aspects import Tip, tip_of
 from app.path.path_view import PathView
 from app.screen import page_table
@@ -108,9 +109,10 @@ class SearchtoPage(ModelPage):
         self.asked = SearchEntryPanel(self.look, self)
         self.listing = Listing(self.look, self)
         self.state = StatePanel(self.look, host.press, self)
-        self.path = PathView(self.look, self)
+        self.path = PathView(self.look, self, player=player_of(host.desk))
         self.starts = StartsPanel(self.look, self)
         self._loaded: Loaded | None = None
+        self._stood: tuple[object, int] = (None, 0)  # picture and blocks that the part was shown after
 
     def key_actions(self) -> KeyActions:
         """Keys of this page alone."""
@@ -188,6 +190,7 @@ class SearchtoPage(ModelPage):
         self.listing.show_run(model.cursor.line, "", "")
         self.state.shown = self._shown()
         self._show_plan()
+        self._show_stock(loaded)
         self.path.show_tip(self._tip(snapshot))
         self.path.advance()
 
@@ -242,6 +245,17 @@ class SearchtoPage(ModelPage):
         trouble = plan.trouble or plan.warning
         starts = plan.starts or (tr("NOTHING BUT THE SLIDES"),)
         self.starts.show_starts(starts, choices, trouble, confirmed=model.stage is SearchtoStage.READY)
+
+    def _show_stock(self, loaded: Loaded) -> None:
+        """The part as the lines before leave it: of a line that was searched, in the pass that was found."""
+        plan, picture, player = self.model.plan, loaded.picture, self.path.player
+        if picture is None or player is None:
+            return
+        line = self.model.cursor.line
+        done = plan.found.checkpoint.blocks if plan is not None else picture.blocks_before(line)
+        if (picture, done) != self._stood:
+            self._stood = picture, done
+            player.to_block(done)
 
     def _show_leaving(self, leaving: WayOut) -> None:
         self.path.show_approach(leaving.legs)

@@ -93,10 +93,11 @@ def prove_with_part(
     program: Source | ReadProgram, setup: Setup, machine: Machine, setting: PartSetting,
     progress: Progress | None = None, *, ideal: bool = False,
     seen: Callable[[MotionSpan | RestSpan], None] | None = None,
+    watch: Callable[[float], None] | None = None,
 ) -> tuple[Report, PartReport | None]:  # fmt: skip
     """The proof of a program with the findings of its part among the others; no part on a mill.
 
-    ``seen`` is given each span, as ``prove`` gives it.
+    ``seen`` is given each span, as ``prove`` gives it; ``watch`` may give up while the part is made.
     """
     if machine.kind != "lathe":
         return prove(program, setup, machine, progress, ideal=ideal, seen=seen), None
@@ -108,7 +109,7 @@ def prove_with_part(
             seen(span)
 
     report = prove(program, setup, machine, progress, ideal=ideal, seen=see)
-    part = gathered.report()
+    part = gathered.report(watch)
     known = {(each.line, each.code) for each in report.diagnostics}  # of reading, which knows no stock
     found = (each for each in part.findings if (each.line, each.code) not in known)
     return replace(report, diagnostics=in_order((*report.diagnostics, *found))), part

@@ -209,3 +209,21 @@ def test_of_a_program_that_is_too_long_the_view_says_why(
     player.show(made)
     assert player.trouble.startswith("12 blocks")
     assert settled(player).shown is None
+
+
+def test_blocks_before_a_line_are_those_of_the_lines_before() -> None:
+    made = picture(SHAFT)
+    # M03S1500, T1, then one block a line: before line 6 are those of lines 2 to 5.
+    assert made.blocks_before(6) == 4
+    assert made.blocks_before(1) == 0
+
+
+def test_to_a_block(player: PartPlayer) -> None:
+    player.show(picture(SHAFT))
+    player.to_block(4)
+    player.look()
+    assert line(player) == 5
+    player.bound = True
+    player.to_block(9)
+    player.look()
+    assert line(player) == 5

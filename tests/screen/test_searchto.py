@@ -365,3 +365,23 @@ def test_a_bore_that_broke_off_is_finished_along_z(operator: Operator) -> None:
     operator.until(lambda: operator.shot.line == 38 and operator.shot.rpm_actual > 2000, 30.0)
     assert operator.shot.demand[0] == pytest.approx(x, abs=0.01)
     operator.until(lambda: operator.shot.parts == 1, 240.0)
+
+
+def test_the_stock_is_shown_as_the_line_finds_it(operator: Operator) -> None:
+    loaded(operator)
+    operator.key(Key.Key_F6)
+    page = page_of(operator)
+    player = page.path.player
+    assert player is not None
+    page.path.show_part()
+    operator.type("9")
+    found(operator)
+    plan = model_of(operator).plan
+    assert plan is not None
+    page_of(operator)
+    player.settle(30.0)
+    page_of(operator)
+    player.settle(30.0)
+    assert player.shown is not None
+    assert player.shown.instant.block == plan.found.checkpoint.blocks
+    assert 0 < plan.found.checkpoint.blocks < len(operator.stage.desk.session.now.picture.line)
