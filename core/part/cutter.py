@@ -39,16 +39,17 @@ class _Sides:
 class Cutter:
     """A tool's outlines (k, 2) of Z and r about its control point, made ready to be swept.
 
-    ``rear``: it works at X negative; its outlines are those that it has there. ``height`` is how far its
-    edges reach along r, mm.
+    ``drills``: it is round about the spindle's axis. ``rear``: it works at X negative; its outlines are those
+    that it has there. ``height`` is how far its edges reach along r, mm.
     """
 
     def __init__(
-        self, cutting: Iterable[FloatArray], body: Iterable[FloatArray], side: Side, *, rear: bool = False
-    ) -> None:
-        self.side = side
-        self._across = -1.0 if rear else 1.0
-        turned = np.array([1.0, self._across])
+        self, cutting: Iterable[FloatArray], body: Iterable[FloatArray], side: Side, *, rear: bool = False,
+        drills: bool = False,
+    ) -> None:  # fmt: skip
+        self.side, self.drills = side, drills
+        self.across = -1.0 if rear else 1.0  # sign of X where it works
+        turned = np.array([1.0, self.across])
         outlines = tuple(cutting)
         self._cutting = [_sides(outline * turned) for outline in outlines]
         self._body = [_sides(outline * turned) for outline in body]
@@ -109,7 +110,7 @@ class Cutter:
         return met
 
     def _front(self, place: Point) -> Point:
-        return place[0], place[1] * self._across
+        return place[0], place[1] * self.across
 
     def _swept(self, part: TurnedPart, start: Point, end: Point, *, cut: bool) -> Cut:
         met = NOTHING

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.elementary_blocks import Block, Kind
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.proving.tip_moves import QUICK, LiveStep, TipMove
 
@@ -23,6 +23,7 @@ _BAR = 5.0  # mm; the bar of a grooving or threading tool in a bore
 _SLIM = "VNMG160404"  # reaches into contours that a stouter insert would not: a doubt speaks for the program
 _MILL = 3.175  # mm; diameter of a mill that nobody has given
 _WIDTH = re.compile(r"(\d+\.\d*|\.\d+|\d{3}|\d+(?=\s*MM))\s*(MM)?\s*(?:IN\b\.?|INCH)?\s*WIDE\b")
+_AT_FACE = 0.1  # mm
 _WIDE = 1.6  # widths; what feeds further along Z than that turns
 
 _OPENS = frozenset({ToolKind.DRILL, ToolKind.REAMER})
@@ -63,7 +64,28 @@ class ToolUse:
     moves: list[TipMove] = field(default_factory=list)
     nose_radius: float = 0.0
     pushes_bar: bool = False  # it fed while the collet was open
+    paused: bool = False  # the program waits, or switches something, while it stands ready
     live: list[LiveStep] = field(default_factory=list)  # with C held, or in a plane of the virtual mill
+
+    @property
+    def never_fed(self) -> TipMove | Block | None:
+        """Where a tool comes to the part whose moves are all rapids, with the spindle or C in work."""
+        if self.pushes_bar:
+            return None
+        if self.live:
+            blocks = [block for block, _ in self.live]
+            fed = any(not (b.rapid or b.feed >= QUICK) for b in blocks) or not all(
+                m.quick for m in self.moves
+            )
+            return None if fed else blocks[0]
+        if self.paused:
+            return None
+        first = [m for m in self.moves if m.points[-1][0] < -_SQUARE][:1]
+        drawn = any(m.kind is Kind.ARC and not m.modal.rapid for m in self.moves)
+        if drawn and first and not first[0].modal.rapid and any(m.modal.rapid for m in self.moves):
+            return None  # it cuts at the first line's F, and has a G00 beside it
+        there = [m for m in self.moves if m.rpm and m.points[-1][0] < _AT_FACE]
+        return there[0] if there and all(m.quick for m in self.moves) else None
 
     @property
     def across(self) -> bool:

@@ -22,6 +22,9 @@ _OF_DRILL = 0.1  # of a drill's diameter
 _WRONG_SIDE = 0.5  # mm that the back of an insert may take off
 _BEHIND = 0.05  # mm of metal behind the nose
 _STEEPER = 2.0  # degrees
+_OVER_AXIS = 1.5  # mm beyond it, which a face or a part-off needs at most
+_BEHIND_FACE = 0.5  # mm
+_PAST = 12.7  # mm
 _NEAR = 1e-6
 _DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTRE_DRILL, ToolKind.REAMER, ToolKind.TAP})
 _INSERTS = frozenset({ToolKind.TURNING, ToolKind.BORING})
@@ -33,6 +36,7 @@ class EdgeChecks:
     """Goes with the moves in their order, each once it has been cut."""
 
     stock: Stock | None = None
+    parted_at: float | None = None  # Z of the deepest part-off
     _turned: dict[int, float] = field(default_factory=dict)  # T → which way its edge has been cut with
     _told: set[int] = field(default_factory=set)
 
@@ -44,6 +48,8 @@ class EdgeChecks:
             return
         yield from self._feed(move, shape, tool, held=cutter.held)
         yield from self._spindle(move, shape, tool)
+        yield from self._over_axis(move, cutter, tool)
+        yield from self._past_part_off(move, shape, cutter, tool)
         yield from self._drilled(move, shape, tool)
         if cutter.held and shape.kind in _INSERTS and move.kind is not Kind.THREAD:  # else it is assumed
             yield from _too_deep(move, met, shape, cutter, tool)
@@ -87,6 +93,25 @@ class EdgeChecks:
             self._told.add(tool)
             words = f"T{tool} cuts with the spindle turning the other way than where it has cut before."
             yield Found("wrong-spindle-direction", words)
+
+    def _over_axis(self, move: TipMove, cutter: Cutter, tool: int) -> Iterator[Found]:
+        """An outside tool that is fed through the axis, or cuts on its other side."""
+        z, r = move.points[-1]
+        behind = z < (self.stock.front if self.stock is not None else 0.0) - _BEHIND_FACE
+        if cutter.side is Side.OUTSIDE and behind and r * cutter.across < -_OVER_AXIS:
+            words = f"T{tool} cuts {move.modal.length_text(abs(r))} beyond the axis"
+            yield Found("over-axis", f"{words}, on the side where it does not stand.")
+
+    def _past_part_off(self, move: TipMove, shape: ToolShape, cutter: Cutter, tool: int) -> Iterator[Found]:
+        if self.parted_at is None or cutter.drills or shape.kind is ToolKind.PARTING:
+            return
+        z = min(z for z, _ in move.points)
+        long = (self.stock.front if self.stock is not None else 0.0) - self.parted_at
+        if z < self.parted_at - max(_PAST, long):
+            text = move.modal.length_text
+            yield Found(
+                "past-part-off", f"T{tool} cuts at Z {text(z)}; the part ends at {text(self.parted_at)}."
+            )
 
     def _drilled(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
         deep = part_depth(move, self.stock)

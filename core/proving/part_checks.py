@@ -88,7 +88,9 @@ CHECKS: Mapping[str, Check] = {
     "unmade-cut": Check(
         _ERROR,
         "A cutting move leads away from the part, and nothing is cut where the program seems to mean it.",
-        "A feed of .1 in and more leads away from the part and cuts nothing, and the next goes on there.",
+        "A feed leads away from the part, or out before its face; feeds between two rapids, or those of a "
+        "live tool, come near no metal; a rapid goes in and out beside the part with nothing cut; a tool "
+        "that comes to the part is never fed.",
         "Look for a lost minus (Z.5 for Z-.5) or a lost decimal point (X4 for X.4).",
     ),
     "part-off-unsupported": Check(
@@ -121,6 +123,24 @@ CHECKS: Mapping[str, Check] = {
         "An insert cuts with its back.",
         "Fed backwards over .02 in and two nose radii deep, or into a wall that is steeper than its back.",
         "Use a tool of the other hand, a slimmer insert, or cut from the other side.",
+    ),
+    "over-axis": Check(
+        _ERROR,
+        "An outside tool cuts beyond the axis.",
+        "Behind the face it cuts more than .06 in beyond the axis, where it does not stand.",
+        "Look at the sign of X, and for a lost decimal point (X-03 for X-.03).",
+    ),
+    "past-part-off": Check(
+        _ERROR,
+        "The bar is cut far behind where the part is parted off.",
+        "A feed along Z ends more than .5 in, and more than the part is long, behind the deepest part-off.",
+        "Look for a lost decimal point (Z-3 for Z-.3).",
+    ),
+    "part-off-left": Check(
+        _WARNING,
+        "A parting tool stops just before the axis.",
+        "It comes nearer than .04 in to the axis, not to it, and nothing falls off.",
+        "Go on to X0 or a little beyond: look for a lost minus.",
     ),
     "chip-load": Check(
         _WARNING,

@@ -16,9 +16,9 @@ from core.part.cutter import Cutter
 from core.part.neighbours import Neighbours
 from core.part.polar_field import Taken
 from core.part.stock import Stock
-from core.part.swept_edge import Point
-from core.part.tool_shape import ToolShape
+from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import NOTHING, Cut, Piece, TurnedPart
+from core.proving.air_checks import AirChecks
 from core.proving.edge_checks import EdgeChecks
 from core.proving.mill_moves import MillMove
 from core.proving.part_checks import CHECKS, Check
@@ -28,12 +28,8 @@ from core.proving.tip_moves import TipMove
 _MOST = 100
 _CHUCK_STEP = 0.05  # mm
 _RAPID = 0.0254  # mm of metal that a rapid may touch
-_NEAR = 2.0  # mm; further from all metal than that is in the air
-_AIR_TIME, _AIR_WAY = 5.0, 5.0  # s, mm
-_LONG_AIR = 20.0  # s, of moves one after the other
-_AWAY = 2.54  # mm; a move that leads away from the part
-_PLACES = (0.05, 0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95)
 _SLENDER = 5.0
+_STUB = (0.05, 1.0)  # mm of radius that a part-off leaves
 _SAFE = 0.5  # of the speed at which a bar begins to whirl
 
 
@@ -48,17 +44,17 @@ class PartFindings:
     threads: ThreadChecks = field(default_factory=ThreadChecks)
     not_said: Callable[[Check], tuple[str, ...]] = lambda _check: ()
     silenced: Mapping[str, str] = field(default_factory=dict)  # why, by check
+    parted_at: float | None = None  # Z of the deepest part-off
+    _left: tuple[int, TipMove] | None = None  # T, and its part-off that has stopped before the axis
     _edges: EdgeChecks = field(init=False)
+    _airs: AirChecks = field(init=False)
     _found: dict[tuple[str, int], Diagnostic] = field(default_factory=dict)
     _chuck: TurnedPart | None = None
     _whirls: float = 0.0  # rpm at which the stock begins to whirl; 0: not known
     _before: TipMove | None = None
-    _cut_before: bool = False  # the move before has taken metal off
-    _left_part: TipMove | None = None  # a feed that led away from the part, and met nothing
-    _air: float = 0.0  # s without metal since the last cut
 
     def __post_init__(self) -> None:
-        self._edges = EdgeChecks(self.stock)
+        self._edges, self._airs = EdgeChecks(self.stock, self.parted_at), AirChecks(self.stock)
         if self.clamping is not None and self.clamping.diameter and self.stock is not None:
             self._whirls = whirling_rpm(self.stock, self.clamping.stick_out)
             self._chuck = TurnedPart(self.clamping.around(self.stock), _CHUCK_STEP)
@@ -72,6 +68,7 @@ class PartFindings:
         """Cut, and look at what was met."""
         if move.quick and self._before is not None and self._before.kind is Kind.THREAD:
             self._found_by(move, self.threads.look(move, NOTHING, part, self.shape(tool), tool))
+            self._found_by(move, self._airs.rapid(move, NOTHING, tool))
             self._before = move  # out of its groove, wherever round the part that ends
             return
         self.threads.before(move, part)
@@ -89,11 +86,15 @@ class PartFindings:
             self._add("neighbour-tool", move, f"T{other} beside T{tool} on the plate runs into the stock.")
         if move.quick:
             self._rapid(move, met)
+            self._found_by(move, self._airs.rapid(move, met, tool))
         else:
-            self._feed(move, met, cutter, part)
+            shape = self.shape(tool)
+            self._part_off(move, met, shape, tool)
+            forward = shape.direction[0] if shape is not None else 0
+            self._found_by(move, self._airs.feed(move, met, cutter, part, tool, forward))
             self._found_by(move, self._edges.look(move, met, self.shape(tool), cutter, part, tool))
         self._found_by(move, self.threads.look(move, met, part, self.shape(tool), tool))
-        self._before, self._cut_before = move, bool(met) and not move.quick
+        self._before = move
 
     def _found_by(self, move: TipMove, found: Iterable[Found]) -> None:
         for check, text, at in found:
@@ -118,7 +119,6 @@ class PartFindings:
             self._add("stock-whips", move, f"{text} {abs(move.rpm):.0f}.")
 
     def _rapid(self, move: TipMove, met: Cut) -> None:
-        self._left_part = None
         if met.depth <= _RAPID or met.width <= _RAPID:
             return
         what = "A rapid" if move.kind is Kind.RAPID else "A feed as fast as a rapid"
@@ -128,54 +128,57 @@ class PartFindings:
         else:
             self._add("rapid-into-stock", move, f"{what} goes into metal, {_depth(met, move)}.")
 
-    def _feed(self, move: TipMove, met: Cut, cutter: Cutter, part: TurnedPart) -> None:
-        gone, self._left_part = self._left_part, None
-        if met or move.kind is Kind.THREAD:
-            self._air = 0.0
-            return
-        if self._outside_stock(move):
-            self._add("larger-than-stock", move, "This move turns a larger diameter than the stock has.")
-        if gone is not None and not _near(cutter, part, *move.points):
-            self._add(
-                "unmade-cut",
-                gone,
-                "This move leads away from the part and cuts nothing, and so does the next.",
-            )
-            return
-        if move.length < _AWAY or _near(cutter, part, move.points[-1]):
-            return
-        if _near(cutter, part, move.points[0]) and not self._cut_before:  # behind a cut it is a retract
-            self._left_part = move
-        share = _share_in_air(cutter, part, move)
-        if move.seconds * share >= _AIR_TIME and move.length * share >= _AIR_WAY:
-            text = f"This move feeds for {move.seconds * share:.0f} s where there is no metal."
-            self._add("cuts-air", move, text)
-        elif self._add_air(move, share):
-            text = f"Up to here tools have fed for {_LONG_AIR:.0f} s where there is no metal."
-            self._add("cuts-air", move, text)
+    def pause(self) -> None:
+        """The program waits, or switches something."""
+        self._airs.pause()
 
-    def _add_air(self, move: TipMove, share: float) -> bool:
-        """Whether short moves one after the other have been in the air for long; told once."""
-        before, self._air = self._air, self._air + move.seconds * share
-        return before < _LONG_AIR <= self._air
+    def finish(self) -> None:
+        """The program has ended."""
+        self._tell_left()
+        for line, n, tool in self._airs.never_milled:
+            self._tell("unmade-cut", line, n, f"The live tool T{tool} is fed, and never meets metal.")
 
-    def _outside_stock(self, move: TipMove) -> bool:
-        """Whether it cuts along Z beside the stock, and further out."""
-        stock, zs = self.stock, [z for z, _ in move.points]
-        if stock is None or max(zs) - min(zs) < _AWAY or min(zs) > stock.front - _AWAY:
-            return False
-        return min(abs(r) for _, r in move.points) > stock.radius + _NEAR
+    def nothing_cut(self, line: int, n: int, text: str) -> None:
+        """What the moves of a tool, or of a whole program, should have cut."""
+        self._tell("unmade-cut", line, n, text)
 
-    def milled(self, move: MillMove, met: Taken, shape: ToolShape, modal: Modal) -> None:
+    def milled(self, move: MillMove, met: Taken, shape: ToolShape, modal: Modal, tool: int) -> None:
         """A live tool has moved."""
+        if not move.axial and self._over_axis(move):
+            self._tell("through-part", move.line, move.n, f"T{tool} goes over the axis, through the part.")
+        if not move.quick:
+            self._airs.mill(move.line, move.n, tool, cut=met.volume > 0.0)
         if move.quick and met.volume > _RAPID * math.pi * (shape.diameter / 2.0) ** 2:
             where = f"Z {modal.length_text(met.front)} … {modal.length_text(met.back)}"
             self._tell(
                 "rapid-into-stock", move.line, move.n, f"A rapid of a live tool goes into metal at {where}."
             )
 
+    def _over_axis(self, move: MillMove) -> bool:
+        """Whether a tool on a radius goes to the other side of the axis beside the stock."""
+        ends, front = (float(move.path[0, 0]), float(move.path[-1, 0])), -math.inf
+        if self.stock is not None:
+            front = self.stock.front
+        return ends[0] * ends[1] < 0.0 and float(move.path[:, 1].min()) < front
+
+    def _part_off(self, move: TipMove, met: Cut, shape: ToolShape | None, tool: int) -> None:
+        """What a parting tool leaves at the axis, until it goes on to it."""
+        if self._left is not None and self._left[0] != tool:
+            self._tell_left()
+        r = abs(move.points[-1][1])
+        if met and shape is not None and shape.kind is ToolKind.PARTING:
+            self._left = (tool, move) if _STUB[0] < r <= _STUB[1] else None
+
+    def _tell_left(self) -> None:
+        if self._left is not None:
+            tool, move = self._left
+            thick = move.modal.length_text(2.0 * abs(move.points[-1][1]))
+            self._add("part-off-left", move, f"T{tool} parts off down to {thick}, and nothing falls.")
+        self._left = None
+
     def parted(self, move: TipMove, piece: Piece) -> None:
         """A piece has come off."""
+        self._left = None
         if not piece.outside:
             return
         length = piece.outside[0][0] - piece.outside[-1][0]
@@ -208,22 +211,6 @@ def _executed(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[Cut, Cut
             met = met.joined(cutter.cut(part, start, end))
         struck = struck.joined(cutter.strikes(part, start, end))
     return met, struck
-
-
-def _near(cutter: Cutter, part: TurnedPart, *places: Point) -> bool:
-    """Whether the edge stands near metal at one of these places at least."""
-    around = ((0.0, -_NEAR), (0.0, _NEAR), (-_NEAR, 0.0), (_NEAR, 0.0))
-    return any(cutter.meets(part, p, (p[0] + dz, p[1] + dr)) for p in places for dz, dr in around)
-
-
-def _share_in_air(cutter: Cutter, part: TurnedPart, move: TipMove) -> float:
-    """How much of a way is far from all metal, read at places along it."""
-    places = [
-        (a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share)
-        for a, b in pairwise(move.points)
-        for share in (_PLACES if len(move.points) == 2 else (0.5,))
-    ]
-    return sum(not _near(cutter, part, place) for place in places) / len(places)
 
 
 def _depth(met: Cut, move: TipMove) -> str:

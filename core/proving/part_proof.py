@@ -6,11 +6,18 @@ All moves are gathered first, because stock and tools that nobody has described 
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
-from core.interpreter.actions import Collet, ToolChange
+from core.interpreter.actions import (
+    AskInput,
+    Collet,
+    Output,
+    ProgramStop,
+    ToolChange,
+    WaitInput,
+)
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import Setup
 from core.language.diagnostics import Diagnostic
@@ -35,7 +42,7 @@ from core.proving.program_timeline import MotionSpan, Part, RestSpan
 from core.proving.proof_report import Report, in_order
 from core.proving.prove_program import Progress, prove
 from core.proving.thread_checks import UNKNOWN, Drives, ThreadChecks
-from core.proving.tip_moves import LiveStep, Place, Step, Steps, TipMove
+from core.proving.tip_moves import QUICK, LiveStep, Place, Step, Steps, TipMove
 from core.proving.unchecked_parts import unchecked
 
 MOST_MOVES = 50_000
@@ -44,6 +51,8 @@ MOST_MOVES = 50_000
 On the desk, where it would be in the way of a machine, never: ``part_history``.
 """
 
+_PLUNGE = 0.5  # mm
+_FED_AWAY = 1.0  # mm
 _WATCHED = 200  # moves between two looks at whether the part is still wanted
 
 
@@ -201,7 +210,10 @@ class Tools:
             elif isinstance(step.action, ToolChange):
                 use = self._use(step.action.tool)
                 use.comments.append(step.modal.comment if step.modal.comment != comment else "")
+            elif isinstance(step.action, ProgramStop | Output | WaitInput | AskInput):
+                use.paused = True
             elif isinstance(step.action, Collet):
+                use.paused = True
                 is_open = not step.action.closed
                 self.feeds_first = self.feeds_first or (is_open and not cut)
                 if not is_open and use.pushes_bar and self.fed_at is None:
@@ -243,13 +255,46 @@ class Tools:
             return None  # a live tool across the spindle turns nothing
         lines = outline(shape)
         body = lines.body if self.described(number) else ()
-        return Cutter(lines.cutting, body, _side(shape), rear=shape.behind)
+        return Cutter(lines.cutting, body, _side(shape), rear=shape.behind, drills=shape.turns_itself)
 
     @property
     def back(self) -> float:
         """Least Z that a tool cuts at, mm."""
         moves = (m for use in self.uses.values() for m in use.moves if not (m.quick or use.pushes_bar))
         return min((z for move in moves for z, _ in move.points), default=0.0)
+
+    @property
+    def parted_at(self) -> float | None:
+        """The deepest Z at which a parting tool is fed towards the axis; None: at none."""
+        moves = (m for n, use in self.uses.items() for m in use.moves if self._parts(n) and not m.quick)
+        ways = [(*move.points[0], *move.points[-1]) for move in moves]
+        return min((z1 for _, r0, z1, r1 in ways if abs(r1) < abs(r0) - _PLUNGE), default=None)
+
+    def _parts(self, number: int) -> bool:
+        shape = self.shape(number)
+        return shape is not None and shape.kind is ToolKind.PARTING
+
+    def nothing_cut(self, stock: Stock | None) -> Iterator[tuple[int, int, str]]:
+        """Line, block and sentence of what should have cut and has not: tools never fed, feeds all away."""
+        cutting = [use for n, use in self.uses.items() if self.shape(n) is not None]
+        for use in cutting:
+            if (move := use.never_fed) is not None:
+                yield move.line, move.n, f"T{use.number} is never fed: all its moves are rapids."
+        if stock is not None:
+            return
+        if (lost := self.fed_away) is not None:
+            yield lost.line, lost.n, "This feed leads away from the part, and no other cuts behind Z0."
+        for use in cutting:
+            fed = [block for block, _ in use.live if not block.rapid and block.feed < QUICK]
+            if fed:
+                yield fed[0].line, fed[0].n, f"The live tool T{use.number} is fed, and never comes behind Z0."
+
+    @property
+    def fed_away(self) -> TipMove | None:
+        """The longest feed away from the chuck, where all feeds together lead that way."""
+        feeds = [m for n, use in self.uses.items() if self.shape(n) for m in use.moves if not m.quick]
+        along = [move.points[-1][0] - move.points[0][0] for move in feeds]
+        return feeds[along.index(max(along))] if sum(along) > _FED_AWAY else None
 
     def assumed_stock(self) -> Stock | None:
         """A bar for what the tools cut."""
@@ -296,6 +341,7 @@ class Making:
             ThreadChecks(setting.drives, tools.releases),
             self._not_said,
             setting.silenced,
+            tools.parted_at,
         )
         self._unchecked = unchecked(tools.uses, setting.shapes, setting.clamping, setting.gang)
         self.milling: Milling | None = None  # from the first cut of a live tool on
@@ -357,11 +403,14 @@ class Making:
                 self._tool = tool
             case Collet(closed=closed):
                 self._clamp(closed)
+            case ProgramStop() | Output() | WaitInput() | AskInput():
+                self.findings.pause()
             case _:
                 pass
 
     def _clamp(self, closed: bool) -> None:
         """A collet that opens lets the bar come: behind it stands a new face."""
+        self.findings.pause()
         if not closed:
             self._is_open = True
             return
@@ -381,7 +430,7 @@ class Making:
             self.milling = Milling(self.part)
         self._milled = True
         self.met = self.milling.cut(move, shape)
-        self.findings.milled(move, self.met, shape, step.block.modal)
+        self.findings.milled(move, self.met, shape, step.block.modal, self._tool)
 
     def mill_move(self, step: LiveStep) -> MillMove | None:
         """The way of a live tool in the part's frame; None where nothing is known that would cut."""
@@ -444,8 +493,13 @@ class Making:
         if self.milling is not None:
             left = self.milling.left
         self._finish()
+        self.findings.finish()
         stock = self._stock
         assumed = [each.words for _, each in sorted(self._tools.assumed.items())]
+        if stock is None and self._tools.uses:
+            assumed.append("no stock is assumed: no feed cuts behind Z0")
+        for line, n, text in self._tools.nothing_cut(stock):
+            self.findings.nothing_cut(line, n, text)
         volume = TurnedPart(stock).volume if stock is not None else 0.0
         return PartReport(
             stock=stock,

@@ -21,7 +21,9 @@ BORER = ToolShape(ToolKind.BORING, tip=2, nose_radius=0.4, insert="DCMT070204", 
 BLADE = ToolShape(ToolKind.PARTING, tip=3, width=2.0, stick_out=30.0)
 DRILL = ToolShape(ToolKind.DRILL, diameter=6.0, point=118.0, length=60.0)
 LEFT_DRILL = ToolShape(ToolKind.DRILL, Hand.LEFT, diameter=6.0, point=118.0, length=60.0)
-SHAPES = {1: RIGHT, 2: BLADE, 3: DRILL, 4: BORER, 5: LEFT, 6: LEFT_DRILL}
+REAR_TOOL = ToolShape(ToolKind.GROOVING, tip=2, width=2.0, stick_out=30.0, rear=True)
+V = ToolShape(ToolKind.THREADING, tip=8, point=60.0)
+SHAPES = {7: REAR_TOOL, 8: V, 1: RIGHT, 2: BLADE, 3: DRILL, 4: BORER, 5: LEFT, 6: LEFT_DRILL}
 ROD = bar(25.4, 0.0, -60.0)
 PIPE = tube(38.1, 20.0, 0.0, -60.0)
 
@@ -45,8 +47,16 @@ def found(program: str, stock: Stock = ROD) -> list[tuple[str, int]]:
 SLOPE = "T1\nX[.6]Z[-.3]\nG95F[.004]X[.5]\nX[.4]Z[{z}]\nZ[-.7]\nX[.6]\nG94F[300]Z[1]"
 BACK = "T{t}\nX[.6]Z[-.6]\nG95F[.004]X[.4]Z[-.9]\nZ[-.5]\nX[.6]\nG94F[300]Z[1]"
 ONCE = "T1\nX[.6]Z[.05]\nX[.4]\nG95F[.004]Z[-.3]\nX[.6]\nG94F[300]Z[.05]\n"
+BACKWARDS = ONCE + "X[.35]\nG95F[.004]Z[{z}]\nX[.6]"
 BOTH = ONCE + "X[.35]\nM05\n{m}S900\nG95F[.004]Z[-.3]\nX[.6]"
 HOLE = "M05\n{m}S900\nT{t}\nX[0]Z[.1]\nG95F[{f}]Z[-.3]\nG94F[300]Z[.1]"
+
+REAR = "M05\nM04S900\nT7\nX[-.6]Z[-.4]\nG95F[.004]X[-.4]\nX[{x}]"
+SHAFT = "T1\nX[.6]Z[.05]\nX[.2]\nG95F[.004]Z[{z}]\nX[.6]\nG94F[300]Z[.1]\n"
+SHAFT += "T2\nZ[-.9]X[.6]\nG95F[.002]X[{r}]\nG94F[300]X[.6]"
+GROOVE = "T2\nX[.6]Z[{z}]\nG95F[.004]X[.4]\nG94F[300]X[.6]"
+THREAD = "M05\nM03S600\nT8\nX[.3]Z[.2]\nG34Z[{z}]I[.01]K[.05]\nX[.4]"
+LONG = bar(25.4, 0.0, -80.0)
 
 CASES = {
     # .1 in deep on .1 of Z is 45°, on .25 it is 22°
@@ -72,6 +82,23 @@ CASES = {
     # 1500 rpm: 20 in/min are .0133 in a turn, .8 of the nose is .0126
     "chip-load by time": (
         "T1\nX[.6]Z[.05]\nX[.4]\nF[20]Z[-.5]\nX[.6]", "T1\nX[.6]Z[.05]\nX[.4]\nF[18]Z[-.5]\nX[.6]", ROD, 6,
+    ),
+    # lost minus behind a turned diameter: X.55 for X-.55
+    "over-axis": (REAR.format(x=".55"), REAR.format(x="-.55"), ROD, 8),
+    # parted off at .9, turned to 3 for .3
+    "past-part-off": (SHAFT.format(z="-2.2", r="-.01"), SHAFT.format(z="-.92", r="-.01"), LONG, 6),
+    "part-off-left": (SHAFT.format(z="-.92", r=".01"), SHAFT.format(z="-.92", r="-.01"), LONG, 11),
+    # what goes in between two rapids and meets nothing
+    "unmade-cut, a groove before the face": (GROOVE.format(z=".5"), GROOVE.format(z="-.5"), ROD, 5),
+    "unmade-cut, a rapid in and out": (
+        "T1\nX[.6]Z[.05]\nX[.51]\nZ[-.5]\nX[.6]\nZ[.05]\nX[.4]\nG95F[.004]Z[-.3]\nX[.6]",
+        "T1\nX[.6]Z[.05]\nX[.51]\nZ[-.5]\nM00\nX[.6]\nZ[.05]\nX[.4]\nG95F[.004]Z[-.3]\nX[.6]", ROD, 6,
+    ),
+    "unmade-cut, a thread": (THREAD.format(z=".5"), THREAD.format(z="-.5"), bar(12.7, 0.0, -60.0), 7),
+    "unmade-cut, out of the part": (BACKWARDS.format(z=".4"), BACKWARDS.format(z="-.4"), ROD, 10),
+    "unmade-cut, never fed": (
+        "T2\nX[.6]Z[.05]\nX[.51]Z[-.2]\nX[.6]", "T2\nX[.6]Z[.05]\nX[.51]Z[-.2]\nG95F[.004]X[.45]\nX[.6]",
+        ROD, 5,
     ),
     # .4 in at 8 in/min is 3 s each, and 20 s are the seventh of them
     "cuts-air in many moves": (

@@ -110,7 +110,7 @@ CASES = {
     ),
     # a bar of 8 mm does not go into a bore of 7
     "holder-into-stock": (
-        "T4\nX[.137]Z[.1]\nZ[-.4]\nX[.13]\nZ[1]", "T4\nX[.2]Z[.1]\nZ[-.4]\nX[.19]\nZ[1]",
+        "T4\nX[.137]Z[.1]\nZ[-.4]\nM00\nX[.13]\nZ[1]", "T4\nX[.2]Z[.1]\nZ[-.4]\nM00\nX[.19]\nZ[1]",
         tube(25.4, 7.0, 0.0, -50.0), 5,
     ),
     "feed-into-holder": (
@@ -270,7 +270,7 @@ def test_a_tool_runs_into_the_jaws_where_its_twin_stays_before_them() -> None:
 
 
 def test_a_rapid_beside_the_bar_clears_jaws_that_are_small_enough() -> None:
-    beside = "T2\nX[1.0]Z[.1]\nZ[-1.4]\nZ[1]"
+    beside = "T2\nX[1.0]Z[.1]\nZ[-1.4]\nM00\nZ[1]"
     assert ("into-chuck", 5) in checks(chucked(beside, CHUCK))  # r 25.4 in jaws of r 30
     assert checks(chucked(beside, Clamping(100.0, 1.2 * INCH, 20.0, 48.0))) == []
 
