@@ -12,6 +12,7 @@ from app.desk.persistence import Persistence
 from app.offsets.offset_book import OffsetBook
 from app.programs.run_history import note_cut_off_runs
 from app.quality.cycle_recorder import CycleRecorder
+from app.quality.parts_book import PartsBook
 from core.executor.interrupted_job import InterruptedJob, of_plain, plain
 from core.executor.snapshot import Event
 from core.language.source import Source
@@ -37,7 +38,7 @@ class Journal(Persistence):
         self._folder = folder
         self._lock = threading.Lock()  # held for the blink in which stores or events change hands
         self._held: deque[Event] | None = None  # while a restore is under way
-        self._books: list[OffsetBook] = []
+        self._books: list[OffsetBook | PartsBook] = []
         self._store: Store | None = None
         self._program = ""
         self._trouble = ""
@@ -87,6 +88,14 @@ class Journal(Persistence):
         if self._store is None:
             return OffsetBook(locked=f"OFFSETS CANNOT BE KEPT: {self.trouble}")
         book = OffsetBook(self._store)
+        self._books.append(book)
+        return book
+
+    def parts_book(self) -> PartsBook:
+        """Measured parts and tool lives of the store."""
+        if self._store is None:
+            return PartsBook(locked=f"MEASURED PARTS CANNOT BE KEPT: {self.trouble}")
+        book = PartsBook(self._store)
         self._books.append(book)
         return book
 

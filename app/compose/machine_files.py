@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import resources
-from core.machine import machine_file, serial_table
+from core.machine import gauge_table, machine_file, serial_table
 from core.machine.machine_model import Machine
 from core.table_schema import Driver, Finding, MachineFileError, written
 from drivers.canopen import canopen_table
@@ -23,6 +23,7 @@ _ENTRIES = (
     (inverter_table.DRIVER, ""),
     (grblhal_table.DRIVER, "grblhal_backend"),
     (serial_table.DRIVER, ""),
+    (gauge_table.DRIVER, ""),
     (mtconnect_table.DRIVER, ""),
 )
 DRIVERS: tuple[Driver, ...] = tuple(driver for driver, _ in _ENTRIES)

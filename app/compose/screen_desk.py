@@ -12,6 +12,7 @@ from app.compose.accepted_machine import file_changes, guarded
 from app.compose.backend_entry import Connected, played
 from app.compose.backends import connect
 from app.compose.desk_functions import furnish
+from app.compose.desk_quality import give_quality
 from app.compose.error_log import Log
 from app.compose.inverter_backend import has_inverter
 from app.compose.journal import Journal
@@ -226,6 +227,7 @@ def _desk(
     give_mdi(desk, machine, offsets, keep)
     give_part(desk, machine, keep)
     give_searchto(desk, machine)
+    give_quality(desk, machine, journal)
     return desk
 
 

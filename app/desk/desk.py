@@ -67,6 +67,16 @@ class OwnStart(Protocol):
         ...
 
 
+class Watcher(Protocol):
+    """What looks at every frame, and has something to tell beside the standing prompt."""
+
+    def see(self, snapshot: Snapshot, loaded: Loaded) -> None: ...
+
+    def due(self) -> str:
+        """What the operator is to do some time soon; empty while there is nothing."""
+        ...
+
+
 A = TypeVar("A", bound=Attached)
 
 
@@ -108,6 +118,7 @@ class Desk:
     answers: PromptAnswers = field(init=False)
     rebuilding: ProgramRenewal = field(init=False)
     own_starts: list[OwnStart] = field(default_factory=list)
+    watches: list[Watcher] = field(default_factory=list)  # what else looks at every frame
     _attached: dict[type[Attached], Attached] = field(default_factory=dict)
     _silence: SilenceWatch = field(default_factory=SilenceWatch)
     _part_told: PartProved | None = None
@@ -243,6 +254,8 @@ class Desk:
         if snapshot.starts is not Starts.LINE:  # a line of MDI is no run of the program
             self.counter.see(snapshot, self.post, self.say)
             self.record.see(snapshot, loaded)
+            for watcher in self.watches:
+                watcher.see(snapshot, loaded)
         self._tell_part(snapshot, loaded)
         view = status_of(snapshot, self.readout, self.with_c, self.settings.units)
         if self._silence.silent(snapshot.t, self.hands.clock()):
@@ -270,7 +283,13 @@ class Desk:
             return prompt_line.alarm_of(snapshot, self.release_words) or page
         standing = prompt_line.prompt(snapshot, loaded, self.start_words, self.release_words)
         other = self.differs() if snapshot.state in {State.IDLE, State.DISABLED} and not loaded.busy else ""
-        return f"{other} · {standing}" if other else standing
+        return " · ".join(each for each in (other, self._due(snapshot, standing), standing) if each)
+
+    def _due(self, snapshot: Snapshot, standing: str) -> str:
+        """What is to be done some time soon; behind an alarm, and where the start is refused, it can wait."""
+        if snapshot.state in {State.ESTOP, State.FAULT} or standing.startswith(prompt_line.NO_START):
+            return ""
+        return " · ".join(told for watcher in self.watches if (told := watcher.due()))
 
     def time_left(self, snapshot: Snapshot, loaded: Loaded) -> float:
         """Seconds to the end of the cycle at the present override; infinite while it stands still."""

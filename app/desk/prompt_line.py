@@ -27,6 +27,7 @@ CONTROL_SILENT = "THE CONTROL DOES NOT ANSWER: PRESS E-STOP; WHAT IS SHOWN IS NO
 NOT_HERE = "CYCLES ARE STARTED ON THE AUTOMATIC PAGE: PRESS F1, THEN F2"
 RESTORING = "NO START: A BACKUP IS BEING RESTORED"
 STALE = "NO START: THE PROGRAM IS BEING READ ANEW"
+NO_START = "WILL NOT START"  # how the standing prompt begins then
 GIVE_UP = "PRESS Y TO GIVE THE PROGRAM UP, ESC TO KEEP IT"
 TWIST_OUT = "PRESS Y TO TWIST THE E-STOP OUT, ESC TO LEAVE IT IN"
 NO_MUSHROOM = "THE E-STOP IS THE RED BUTTON AT THE MACHINE: HIT IT. THIS KEY HAS HELD THE FEED"
@@ -103,10 +104,15 @@ def _idle(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
     if snapshot.proof_wanted:
         return "THE PROGRAM IS NOT PROVED YET AND WILL NOT START"
     asked = interrupted_notice.interrupted_prompt(snapshot, loaded, start)
+    return _lacking(snapshot, loaded) or asked or f"TO START {start}"
+
+
+def _lacking(snapshot: Snapshot, loaded: Loaded) -> str:
+    """What a good program lacks to be started; empty when nothing."""
     missing = missing_tools(loaded)
     if missing:
         return f"WILL NOT START: NO OFFSET WAS EVER SET FOR {', '.join(missing)} (F8 SETS THEM)"
-    return asked or f"TO START {start}"
+    return f"WILL NOT START: {snapshot.next_barred}" if snapshot.next_barred else ""
 
 
 def missing_tools(loaded: Loaded) -> list[str]:

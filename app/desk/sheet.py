@@ -39,6 +39,7 @@ class Row:
     cells: tuple[str, ...]
     lit: bool | None = None
     tone: Tone = Tone.READY
+    bar: float | None = None  # 0…1: how much of its last cell is filled
     outline: ToolOutline | None = None
 
 

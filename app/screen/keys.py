@@ -45,6 +45,7 @@ NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_K, SHIFT): "Play fast",
     (Key.Key_L, NONE): "Step on",
     (Key.Key_N, NONE): "To line",
+    (Key.Key_W, NONE): "W",
     (Key.Key_Left, CTRL): "Pan left",
     (Key.Key_Right, CTRL): "Pan right",
     (Key.Key_Up, CTRL): "Pan up",

@@ -15,6 +15,7 @@ SEARCHTO = "SEARCHTO"
 TOOLS, SECCMP, SPECIAL = "TOOL OFFSETS", "SECONDARY OFFSETS", "SPECIAL FUNCTIONS"
 PROGRAMS, ZERO, SHAPE, PART = "PROGRAMS", "ZERO OFFSETS", "TOOL SHAPE", "PART"
 SCOPE = "SCOPE"
+MEASURED = "MEASURED PARTS"
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +103,14 @@ PAGES = (
         "Q",
         "SCOPE",
         "axes and spindle as curves: following error, speed, load",
+    ),
+    PageEntry(
+        MEASURED,
+        "app.quality.quality_view.MeasuredPartsPage",
+        "app.quality.quality_functions.QualityFunctions",
+        "W",
+        "MEASURED",
+        "readings, charts, wear, tool life, trends",
     ),
     PageEntry(SHAPE, "app.offsets.tool_shapes_view.ToolShapePage"),
     PageEntry(MENU, "app.screen.main_menu.MenuPage"),

@@ -103,6 +103,8 @@ class SheetPanel(Panel):
             lamp = QRectF(box.x() + 1.0 * u, box.center().y() - side / 2, side, side)
             painter.box(lamp, row.tone.value, 0.2, row.tone.value if row.lit else "")
         for number, at in self._columns(box):
+            if row.bar is not None and number == len(row.cells) - 1:
+                self._share(painter, at, row)
             side, bold, raw = self._side(number), number == 0 or marked, number in self.sheet.raw
             first, two, second = row.cells[number].partition("\n")
             if two:
@@ -113,6 +115,14 @@ class SheetPanel(Panel):
             painter.write(at, first, 2.1, "text", at=side, bold=bold, raw=raw)
             if row.outline is not None and number == len(row.cells) - 1:
                 draw_outline(painter, at.adjusted(0, 0.2 * u, 0, -0.2 * u), row.outline, small=True)
+
+    def _share(self, painter: Painter, at: QRectF, row: Row) -> None:
+        """A bar behind the words of the last cell."""
+        high = 0.5 * self.look.u
+        track = QRectF(at.x(), at.bottom() - 2 * high, at.width(), high)
+        painter.fill(track, "key")
+        track.setWidth(track.width() * min(1.0, max(0.0, row.bar or 0.0)))
+        painter.fill(track, row.tone.value)
 
     def _bar(self, painter: Painter, room: QRectF) -> None:
         """How much of the table is seen, and where."""

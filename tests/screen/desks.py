@@ -6,6 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from app.compose.desk_functions import furnish
+from app.compose.desk_quality import give_quality
+from app.compose.journal import Journal
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from app.compose.scope_desk import give_scope
@@ -78,6 +80,7 @@ def desk_on(
     desk.attach(Editor(work, archive, folders[0] if folders else Path("/dev/null"), SAMPLES))
     furnish(desk, lathe, keep or Persistence(), work, folders[0] if folders else None)
     give_scope(desk, live)
+    give_quality(desk, lathe, keep if isinstance(keep, Journal) else None)
     built.append(desk)
     machine.hear = desk.hear
     return desk

@@ -49,6 +49,7 @@ KEYS = {
     Key.Key_G: page_table.ZERO,
     Key.Key_B: page_table.PART,
     Key.Key_Q: page_table.SCOPE,
+    Key.Key_W: page_table.MEASURED,
 }
 
 

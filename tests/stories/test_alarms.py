@@ -19,6 +19,7 @@ PAGES = (
     (("F1", "F10"), "SPECIAL FUNCTIONS"),
     (("F1", "b"), "PART"),
     (("F1", "q"), "SCOPE"),
+    (("F1", "w"), "MEASURED PARTS"),
     (("F1",), "MAIN MENU"),
 )
 OURS = ("setpoint", "too early", "splice", "Error", "queue")  # words of whoever wrote the control

@@ -1,0 +1,208 @@
+"""Measured parts as the desk sees them: what is kept of the program on the desk, and changes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+from typing import Any
+
+from app.desk.latest import Latest
+from core.quality.measured_feature import CorrectedBy, Feature, FeatureKind
+from core.store import measured_parts, part_cycles, tool_lives
+from core.store.measured_parts import FeatureRow, ReadingRow
+from core.store.part_cycles import CorrectionRow, CycleRow, StopRow
+from core.store.store import Store
+from core.store.store_errors import StoreError
+from core.store.store_writer import Operation
+from core.store.tool_lives import LifeRow
+
+NONE_KEPT = "NO MEASURED PARTS ARE KEPT HERE"
+NEWEST = 1000  # readings, cycles and stops that are looked at
+
+
+@dataclass(frozen=True, slots=True)
+class PartsData:
+    """Of one program, oldest first; lives of all tools; ``corrected``: newest change of an axis."""
+
+    program: str = ""
+    features: tuple[FeatureRow, ...] = ()
+    readings: tuple[ReadingRow, ...] = ()
+    lives: dict[int, LifeRow] = field(default_factory=dict)
+    corrected: dict[tuple[str, int, str], int] = field(default_factory=dict)
+    cycles: tuple[CycleRow, ...] = ()
+    stops: tuple[StopRow, ...] = ()
+    corrections: tuple[CorrectionRow, ...] = ()
+
+    def readings_of(self, feature: int) -> tuple[ReadingRow, ...]:
+        """Readings of a feature in the order in which they were taken."""
+        return tuple(row for row in self.readings if row.feature == feature)
+
+    def since_correction(self, row: FeatureRow) -> tuple[ReadingRow, ...]:
+        """Readings of parts that were begun after the last change of what corrects the feature.
+
+        A part of which nobody knows when it was begun counts only where nothing was ever changed.
+        """
+        last = self.corrected.get((row.by_kind, row.number, feature_of(row).axis), 0)
+        return tuple(each for each in self.readings_of(row.id) if not last or each.offset_change >= last)
+
+
+def feature_of(row: FeatureRow) -> Feature:
+    """A kept feature as it is reckoned with."""
+    return Feature(
+        row.name,
+        FeatureKind(row.kind),
+        row.nominal,
+        row.low,
+        row.high,
+        CorrectedBy(row.by_kind),
+        row.number,
+        row.grows,
+        row.every,
+        row.sample,
+    )
+
+
+def row_of(feature: Feature, program: str, number: int) -> FeatureRow:
+    """The row that keeps a feature; ``number`` is its id, 0 for a new one."""
+    return FeatureRow(
+        number,
+        program,
+        feature.name,
+        feature.kind.value,
+        feature.nominal,
+        feature.low,
+        feature.high,
+        feature.by.value,
+        feature.number,
+        feature.grows,
+        feature.every,
+        feature.sample,
+    )
+
+
+def parts_data(store: Store, program: str) -> PartsData:
+    """All that is kept of a program; takes its time. Raises StoreError."""
+    with store.read() as connection:
+        return PartsData(
+            program,
+            measured_parts.features(connection, program),
+            measured_parts.readings(connection, program, NEWEST),
+            tool_lives.lives(connection),
+            measured_parts.last_corrections(connection),
+            part_cycles.cycles(connection, program, NEWEST),
+            part_cycles.stops(connection, None, NEWEST),
+            part_cycles.corrections(connection, program, NEWEST),
+        )
+
+
+@dataclass(slots=True)
+class PartsBook:
+    """``look`` is called once a frame; reading is a worker's, writing the store's. ``now`` is what is known.
+
+    Without ``store`` nothing is kept, and ``locked`` says why.
+    """
+
+    store: Store | None = None
+    locked: str = ""
+    now: PartsData = field(default_factory=PartsData)
+    trouble: str = ""  # why the last reading or writing failed
+    loads: int = 0  # how often ``now`` was read
+    worker: Latest = field(default_factory=lambda: Latest("measured-parts"))
+    _stale: bool = True
+    _saving: list[tuple[Future[Any], Callable[[], None], Callable[[str], None]]] = field(default_factory=list)
+    _behind: Future[None] | None = None  # answered when the writer has come to here
+    _kept: list[Callable[[], None]] = field(default_factory=list)  # on the disk, and not read again yet
+    _reopened: tuple[Store | None, str] | None = None
+
+    def look(self, program: str) -> None:
+        """Take up what the worker has read and what is on the disk; read anew what has changed."""
+        if self._reopened is not None:
+            self.store, self.locked = self._reopened
+            self._reopened, self._behind, self._stale = None, None, True
+        self.worker.poll()
+        self._look_at_writing()
+        if program != self.now.program:
+            self.now, self._stale = PartsData(program, lives=self.now.lives), True
+        store = self.store
+        if store is not None and not self.worker.busy and self._written(store):
+            self.worker.ask(lambda _watch: parts_data(store, program), self._read, self._failed)
+
+    def _written(self, store: Store) -> bool:
+        """Whether something is to be read anew, and the writer has come to what was posted before."""
+        if self._stale and self._behind is None:
+            self._stale = False
+            try:
+                self._behind = store.write(lambda _connection: None)
+            except StoreError as error:
+                self._failed(str(error))
+        if self._behind is None or not self._behind.done():
+            return False
+        self._behind = None
+        return True
+
+    def _read(self, found: PartsData) -> None:
+        self.now, self.trouble = found, ""
+        self.loads += 1
+        self._tell_done()
+
+    def _failed(self, why: str) -> None:
+        self.trouble = why
+        self._tell_done()
+
+    def _tell_done(self) -> None:
+        """What is on the disk is told when it is seen too."""
+        told, self._kept = self._kept, []
+        for done in told:
+            done()
+
+    def _look_at_writing(self) -> None:
+        waiting, self._saving = self._saving, []
+        for future, done, failed in waiting:
+            if not future.done():
+                self._saving.append((future, done, failed))
+                continue
+            self._stale = True
+            error = future.exception()
+            if error is None:
+                self._kept.append(done)
+            else:
+                failed(str(error))
+
+    def refresh(self) -> None:
+        """Something was kept elsewhere."""
+        self._stale = True
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is on its way to the disk."""
+        return bool(self._saving or self._kept)
+
+    def write(
+        self, operation: Operation[Any], done: Callable[[], None], failed: Callable[[str], None]
+    ) -> None:
+        """Have something kept; ``done`` is called by ``look`` when it is on the disk, else ``failed``."""
+        if self.store is None:
+            failed(self.locked or NONE_KEPT)
+            return
+        try:
+            self._saving.append((self.store.write(operation), done, failed))
+        except StoreError as error:
+            failed(str(error))
+
+    def keep_use(self, life: LifeRow) -> None:
+        """What an insert has made by now; written as soon as the disk takes it."""
+        store = self.store
+        if store is not None:
+            use = (life.number, life.parts, life.seconds)
+            store.keep(
+                lambda held: held.latest(("life", str(life.number)), lambda c: tool_lives.set_use(c, *use))
+            )
+
+    def reopen(self, store: Store | None, trouble: str) -> None:
+        """Another store is in the place of the one before. From any thread."""
+        self._reopened = store, trouble
+
+    def close(self) -> None:
+        """End the worker."""
+        self.worker.close()

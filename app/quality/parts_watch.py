@@ -1,0 +1,95 @@
+"""What the desk sees of measured parts and tools in every frame: counts, what is due, what stops parts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.desk.desk import Desk
+from app.desk.program_loading import Loaded
+from app.desk.translation import tr
+from app.quality import sample_plan
+from app.quality.parts_book import PartsBook
+from app.quality.tool_life_watch import ToolLifeWatch
+from core.executor.commands import BarNextPart
+from core.executor.snapshot import Snapshot
+from core.store.store_errors import StoreError
+
+
+@dataclass(slots=True)
+class PartsWatch:
+    """``see`` is called once a frame, ``due`` by the prompt line; both know only what is at hand."""
+
+    desk: Desk
+    book: PartsBook
+    lives: ToolLifeWatch
+    _ends: int = -1
+    _changes: int = -1
+    _store: object = None
+    _barred: str | None = None  # as the executor was told
+    _waits: tuple[str, bool] = ("", False)  # whether parts of a program wait for their measuring
+
+    @property
+    def program(self) -> str:
+        """The name of the program on the desk."""
+        return Path(self.desk.session.now.name).name
+
+    def see(self, snapshot: Snapshot, loaded: Loaded) -> None:
+        """One frame."""
+        if snapshot.ends != self._ends or self.desk.book.changes != self._changes:
+            self._ends, self._changes = snapshot.ends, self.desk.book.changes
+            self.book.refresh()
+        self.book.look(self.program)
+        if self.book.store is not self._store:
+            self._store = self.book.store
+            self.lives.forget()
+        self.lives.see(snapshot, self.desk.say)
+        self._bar(snapshot, loaded)
+
+    def _bar(self, snapshot: Snapshot, loaded: Loaded) -> None:
+        """The executor is told before the part ends, so that the next one does not begin."""
+        wanted = self.lives.bar(snapshot, loaded) or self._unmeasured(snapshot)
+        if wanted not in {snapshot.next_barred, self._barred}:
+            self.desk.post(BarNextPart(wanted))
+        self._barred = wanted
+
+    def _unmeasured(self, snapshot: Snapshot) -> str:
+        if not self.waits:
+            return ""
+        made = self.desk.counter.count + (1 if snapshot.counts else 0)
+        return sample_plan.bar(sample_plan.due(self.book.now, made))
+
+    @property
+    def waits(self) -> bool:
+        """Whether parts of this program wait until the sample plan is done."""
+        if self._waits[0] != self.program:
+            try:
+                kept = self.desk.counter.persistence.setting(_key(self.program)) is True
+            except StoreError:
+                kept = False
+            self._waits = self.program, kept
+        return self._waits[1]
+
+    def turn_waits(self) -> None:
+        """Parts wait for the plan, or go on. Raises StoreError when it is not kept."""
+        on = not self.waits
+        self._waits = self.program, on
+        self.desk.counter.persistence.save_setting(_key(self.program), on or None)
+
+    def due(self) -> str:
+        """What the prompt line tells besides: what to measure, which insert to change; empty: nothing."""
+        plan = sample_plan.notice(sample_plan.due(self.book.now, self.desk.counter.count))
+        return " · ".join(each for each in (plan, self.lives.due()) if each)
+
+    def refuse(self, why: str) -> None:
+        """What was not kept, and why."""
+        self.desk.say(tr("NOT KEPT: {why}").format(why=why))
+
+    def close(self) -> None:
+        """End the worker; what inserts have cut since it was kept last is handed to the store."""
+        self.lives.keep_all()
+        self.book.close()
+
+
+def _key(program: str) -> str:
+    return f"waits for measuring:{program}"

@@ -1,0 +1,72 @@
+"""W, measured parts: the list of sections at the left, the chosen one at the right, its chart below."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtWidgets import QWidget
+
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
+from app.quality.quality_functions import QualityFunctions
+from app.quality.section import QualitySection
+from app.screen import page_table
+from app.screen.page_base import Host
+from app.special.special_view import LETTERS, LIST, PAD, SpecialPage
+from core.executor.snapshot import Snapshot
+
+if TYPE_CHECKING:
+    from app.quality.plots_view import PlotsPane
+
+
+class MeasuredPartsPage(SpecialPage):
+    """As the special functions, and a chart where a section draws one: loaded when the first is drawn."""
+
+    NAME = page_table.MEASURED
+    model: QualityFunctions
+
+    def __init__(self, host: Host, model: QualityFunctions, parent: QWidget) -> None:
+        super().__init__(host, model, parent)
+        self.items.title = page_table.MEASURED
+        self.chart: PlotsPane | None = None
+        self._share = 0.0
+
+    def refresh(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
+        """Table and chart of this snapshot."""
+        super().refresh(snapshot, view, loaded)
+        shown = self.model.shown
+        share = shown.chart_share if isinstance(shown, QualitySection) else 0.0
+        if share != self._share:
+            self._share = share
+            self._lay_out()
+        if share and isinstance(shown, QualitySection):
+            self._pane().show_drawing(shown.drawing())
+
+    def _pane(self) -> PlotsPane:
+        if self.chart is None:
+            from app.quality.plots_view import PlotsPane
+
+            self.chart = PlotsPane(self.look, self)
+            self.chart.show()
+            self._lay_out()
+        return self.chart
+
+    def dress(self) -> None:
+        """The chart keeps its own colours."""
+        if self.chart is not None:
+            self.chart.dress()
+
+    def _lay_out(self) -> None:
+        u = self.look.u
+        gap, left = max(4, round(0.7 * u)), round(LIST * u)
+        pad = 0 if self.pad.isHidden() else round(PAD * u) + gap
+        low = 0 if self.letters.isHidden() else round(LETTERS * u) + gap
+        right, room = self.width() - left - gap, self.height() - low
+        drawn = round(self._share * room)
+        self.items.setGeometry(0, 0, left, self.height())
+        self.table.setGeometry(left + gap, 0, right - pad, room - drawn)
+        self.letters.setGeometry(left + gap, room + gap, right, max(0, low - gap))
+        self.pad.setGeometry(self.width() - pad + gap, 0, max(0, pad - gap), self.height())
+        if self.chart is not None:
+            self.chart.setVisible(drawn > 0)
+            self.chart.setGeometry(left + gap, room - drawn + gap, right - pad, max(0, drawn - gap))

@@ -1,0 +1,44 @@
+"""Readings of a program as CSV for a spreadsheet: sizes in the unit in which they were read."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+
+from app.desk.formats import MM_PER_INCH
+from app.quality.parts_book import PartsData, feature_of
+
+HEAD = (
+    "feature", "part", "value", "unit", "nominal", "lower", "upper", "good", "at", "source", "gauge",
+    "corrected_by",
+)  # fmt: skip
+_PER = {"in": MM_PER_INCH, "mm": 1.0}
+
+
+def readings_text(data: PartsData) -> str:
+    """One line a reading, in the order in which they were taken."""
+    features = {row.id: row for row in data.features}
+    out = io.StringIO()
+    table = csv.writer(out)
+    table.writerow(HEAD)
+    for each in data.readings:
+        feature, per = feature_of(features[each.feature]), _PER[each.unit]
+        low, high = feature.limits
+        figures = (round(value / per, 7) for value in (feature.nominal, low, high))
+        table.writerow(
+            (feature.name, each.part, round(each.value / per, 7), each.unit, *figures,
+             "yes" if feature.good(each.value) else "no", each.at, each.source, each.gauge,
+             feature.corrected_by)
+        )  # fmt: skip
+    return out.getvalue()
+
+
+def write_readings(data: PartsData, folder: Path) -> Path:
+    """Writes ``PROGRAM-readings.csv`` whole; answers its path. Raises OSError."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{Path(data.program).stem}-readings.csv"
+    unfinished = path.with_name(path.name + ".new")
+    unfinished.write_text(readings_text(data), encoding="utf-8", newline="")
+    unfinished.replace(path)
+    return path

@@ -1,0 +1,279 @@
+"""Readings of parts: typed on the number pad or taken from a gauge; the correction that they ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from app.desk.arithmetic import EntryError, value_of
+from app.desk.desk import Desk
+from app.desk.machine_status import Tone
+from app.desk.sheet import Key, Row, Sheet
+from app.desk.translation import tr
+from app.offsets.offset_history import refusal
+from app.quality.gauge_line import Gauge, NoGauge, Reading
+from app.quality.parts_book import feature_of
+from app.quality.parts_watch import PartsWatch
+from app.quality.readings_file import write_readings
+from app.quality.section import QualitySection, mark_of, signed_size, size, typed_length
+from app.quality.wear_correction import correction, proposal
+from core.executor.snapshot import Snapshot
+from core.quality.quality_errors import QualityError
+from core.store import measured_parts
+from core.store.measured_parts import FeatureRow, ReadingRow
+from core.store.store_rows import Kind
+
+FAR = 3.0  # tolerances off: typed wrong, or another part
+MM = {"mm": 1.0, "in": 25.4}
+
+
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """A reading that is to be kept."""
+
+    feature: FeatureRow
+    part: int
+    value: float  # mm
+    unit: str
+    source: str
+    gauge: str = ""
+
+
+class ReadingsSection(QualitySection):
+    """A row a feature; what is typed is the size of the marked one at the part that is asked for."""
+
+    name = "READINGS"
+    use = "measure a part, take over a correction"
+
+    def __init__(self, desk: Desk, watch: PartsWatch, folder: Path, gauge: Gauge | None = None) -> None:
+        super().__init__(desk, watch)
+        self.folder = folder
+        self.gauge = gauge or NoGauge()
+        self._part = 0  # 0: the last that was made
+        self._last: tuple[Kind, str] | None = None  # the correction that was taken over last, and its reason
+
+    @property
+    def count(self) -> int:
+        """Features."""
+        return len(self.data.features)
+
+    @property
+    def part(self) -> int:
+        """The number of the part that is measured."""
+        return self._part or max(1, self.desk.counter.count)
+
+    # --- what is shown -------------------------------------------------------------------------------
+
+    def sheet(self, _snapshot: Snapshot) -> Sheet:
+        """Of each feature nominal, last reading, deviation from the middle, and whether it is good."""
+        self.settle()
+        mode, feature = self.mode, self.feature
+        rows = tuple(self._row(each) for each in self.data.features)
+        question = ""
+        if feature is not None:
+            question = tr("{name} OF PART {part}?").format(name=feature.name, part=self.part)
+        heads = ("FEATURE", f"NOMINAL {mode.name}", "PART", "MEASURED", "OFF", "")
+        notes = (self._gauge_words(), "F8 proposes a correction, F9 takes the last one back.")
+        title = f"READINGS  ·  {self.program}" if self.program else "READINGS"
+        return Sheet(title, heads, (0.24, 0.19, 0.1, 0.19, 0.15, 0.13), rows, self.marked, question,
+                     self.entry.text, notes, raw=frozenset({0}), figures=frozenset({2}))  # fmt: skip
+
+    def _row(self, row: FeatureRow) -> Row:
+        mode, feature, taken = self.mode, feature_of(row), self.data.readings_of(row.id)
+        nominal = mark_of(row) + size(row.nominal, mode)
+        if not taken:
+            return Row((row.name, nominal, "", "", "", tr("NONE YET")), False, Tone.OFF)
+        last = taken[-1]
+        good = feature.good(last.value)
+        off = signed_size(last.value - feature.middle, mode)
+        words = tr("GOOD") if good else tr("TOO SMALL") if last.value < feature.middle else tr("TOO LARGE")
+        cells = (row.name, nominal, str(last.part), mark_of(row) + size(last.value, mode), off, words)
+        return Row(cells, good, Tone.RUN if good else Tone.ALARM)
+
+    def _gauge_words(self) -> str:
+        return self.gauge.words
+
+    def keys(self) -> Mapping[str, Key]:
+        """Part number, gauge, file, correction."""
+        return {
+            "F2": Key("PART −", partial(self._step, -1)),
+            "F3": Key("PART +", partial(self._step, 1)),
+            "F4": Key("TAKE OUT", self.take_out),
+            "F5": Key("NO GAUGE" if self.gauge.open else "GAUGE", self.turn_gauge),
+            "F6": Key("CSV", self.write_file),
+            "F8": Key("CORRECT", self.propose),
+            "F9": Key("UNDO", self.undo),
+        }
+
+    def _step(self, by: int) -> None:
+        self.desk.clear()
+        self._part = max(1, self.part + by)
+        if self._part == self.desk.counter.count:
+            self._part = 0
+
+    def prompt(self) -> str:
+        """How to enter a reading."""
+        return self.missing() or "TYPE THE MEASURED SIZE AND PRESS RETURN; ESC GOES BACK TO THE LIST"
+
+    # --- readings ------------------------------------------------------------------------------------
+
+    def take(self, text: str) -> bool:
+        """A typed size of the marked feature. Raises EntryError."""
+        feature = self.feature
+        if feature is None:
+            self.desk.say(self.missing())
+            return False
+        mode = self.mode
+        value = typed_length(value_of(text), mode)
+        return self._offer(Taken(feature, self.part, value, mode.name, "typed"))
+
+    def _offer(self, taken: Taken) -> bool:
+        """Keep it; what no part of this feature can measure is asked about first."""
+        row, feature = taken.feature, feature_of(taken.feature)
+        if taken.value <= 0.0:
+            raise EntryError(f"{row.name} is more than 0; type the measured size, not the deviation")
+        if abs(taken.value - feature.middle) > FAR * feature.width:
+            asked = tr("{name} {size} IS FAR OFF: PRESS Y TO KEEP IT ALL THE SAME, ESC TO MEASURE AGAIN")
+            shown = size(taken.value, self.mode)
+            self.desk.ask(asked.format(name=row.name, size=shown), partial(self._keep, taken))
+            return True
+        self.desk.clear()
+        self._keep(taken)
+        return True
+
+    def _keep(self, taken: Taken) -> None:
+        row = ReadingRow(
+            0, taken.feature.id, taken.part, taken.value, taken.unit, "", taken.source, taken.gauge
+        )
+        self.watch.book.write(
+            lambda c: measured_parts.add_reading(c, row), partial(self._kept, taken), self.watch.refuse
+        )
+
+    def _kept(self, taken: Taken) -> None:
+        """It is on the disk: say so, and go on to the next feature."""
+        text = tr("{name} OF PART {part}: {size} KEPT")
+        self.desk.say(
+            text.format(name=taken.feature.name, part=taken.part, size=size(taken.value, self.mode))
+        )
+        if self.feature is not None and self.feature.id == taken.feature.id:
+            self.marked = (self.marked + 1) % max(1, self.count)
+
+    def take_out(self) -> None:
+        """F4: the newest reading of the marked feature counts no more, after asking."""
+        feature = self.feature
+        taken = self.data.readings_of(feature.id) if feature is not None else ()
+        if feature is None or not taken:
+            self.desk.say(self.missing() or tr("NOTHING IS MEASURED OF THIS FEATURE YET"))
+            return
+        last = taken[-1]
+        asked = tr("PRESS Y TO TAKE {size} OF PART {part} OUT, ESC TO KEEP IT")
+        done = partial(self.desk.say, tr("THE READING IS TAKEN OUT"))
+        self.desk.ask(
+            asked.format(size=size(last.value, self.mode), part=last.part),
+            lambda: self.watch.book.write(
+                lambda c: measured_parts.void_reading(c, last.id), done, self.watch.refuse
+            ),
+        )
+
+    # --- gauge ---------------------------------------------------------------------------------------
+
+    def turn_gauge(self) -> None:
+        """F5: take readings from the gauge, or no more."""
+        self.desk.clear()
+        why = self.gauge.turn()
+        if why:
+            self.desk.say(why)
+
+    def look(self) -> None:
+        """Once a frame: what the gauge has sent goes to the marked feature."""
+        for found in self.gauge.taken():
+            if isinstance(found, Reading):
+                self._measured(found)
+            else:
+                self.desk.say(found)
+
+    def _measured(self, found: Reading) -> None:
+        feature = self.feature
+        if feature is None:
+            self.desk.say(self.missing())
+            return
+        unit = found.unit or self.gauge.unit
+        try:
+            self._offer(Taken(feature, self.part, found.value * MM[unit], unit, "gauge", self.gauge.name))
+        except EntryError as error:
+            self.desk.refuse(str(error))
+
+    def close(self) -> None:
+        """Let go of the gauge."""
+        self.gauge.close()
+
+    # --- correction ----------------------------------------------------------------------------------
+
+    def propose(self) -> None:
+        """F8: what the readings of the marked feature ask for; Y takes it over."""
+        feature = self.feature
+        if feature is None:
+            self.desk.say(self.missing())
+            return
+        try:
+            found = proposal(self.data, feature, self.mode)
+            if found.why:
+                mean = size(found.mean, self.mode)
+                self.desk.say(f"{feature.name} {mean}: {tr(found.why)}")
+                return
+            words = correction(found, self.desk, self.mode).words
+        except (QualityError, EntryError) as error:
+            self.desk.refuse(str(error))
+            return
+        asked = tr("{words}: PRESS Y TO TAKE IT OVER, ESC TO LEAVE IT")
+        self.desk.ask(asked.format(words=words), partial(self._correct, feature))
+
+    def _correct(self, feature: FeatureRow) -> None:
+        """As it is now, not as it was when it was asked."""
+        try:
+            change = correction(proposal(self.data, feature, self.mode), self.desk, self.mode)
+        except (QualityError, EntryError) as error:
+            self.desk.refuse(str(error))
+            return
+        why = self.desk.book.change(change.kind, change.number, change.values, change.why)
+        if why:
+            self.desk.say(why)
+            return
+        self._last = change.kind, change.why
+        self.desk.say(tr("{words}; IT COUNTS FROM THE NEXT PART").format(words=change.words))
+
+    def undo(self) -> None:
+        """F9: the correction that was taken over last is taken back, while no other change came after it."""
+        why = self._undo_barred()
+        if not why and self._last is not None:
+            why = self.desk.book.undo(self._last[0])
+        if why:
+            self.desk.say(why)
+            return
+        self._last = None
+        self.desk.say(tr("THE CORRECTION IS TAKEN BACK"))
+
+    def _undo_barred(self) -> str:
+        """Why nothing is taken back here; empty when it is."""
+        if self._last is None:
+            return tr("NO CORRECTION WAS TAKEN OVER HERE; F8 AND F9 OF THE MAIN MENU HAVE THE HISTORY")
+        kind, reason = self._last
+        last = self.desk.book.history(kind, 1)
+        if not last or last[0].why != reason:
+            return tr("ANOTHER CHANGE CAME AFTER IT; F8 AND F9 OF THE MAIN MENU HAVE THE HISTORY")
+        return refusal(self.desk.snapshot(), correction=True)
+
+    # --- file ----------------------------------------------------------------------------------------
+
+    def write_file(self) -> None:
+        """F6: the readings of the program as a file for a spreadsheet; a worker writes it."""
+        if self.missing():
+            self.desk.say(self.missing())
+            return
+        data, folder = self.data, self.folder
+        self.watch.book.worker.queue(lambda: write_readings(data, folder), self._written, self.watch.refuse)
+
+    def _written(self, path: Path) -> None:
+        self.desk.say(tr("WRITTEN: {path}").format(path=path))

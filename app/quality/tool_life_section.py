@@ -1,0 +1,144 @@
+"""Tool life of every tool: limits by parts and minutes, what is used, and the change of an insert."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
+
+from app.desk.arithmetic import EntryError, value_of
+from app.desk.desk import Desk
+from app.desk.formats import NOTHING
+from app.desk.machine_status import Tone
+from app.desk.sheet import Key, Row, Sheet, following
+from app.desk.translation import tr
+from app.quality.parts_watch import PartsWatch
+from app.quality.section import QualitySection
+from core.executor.snapshot import Snapshot
+from core.quality.quality_errors import QualityError
+from core.quality.tool_life import LifeState, ToolLife, check_life
+from core.store import tool_lives
+from core.store.store_rows import OFFSETS
+from core.store.tool_lives import LifeRow
+
+LIMITS = ("PARTS", "MINUTES", "WARN AT %")
+TONES = {
+    LifeState.NO_LIMIT: Tone.OFF,
+    LifeState.GOOD: Tone.RUN,
+    LifeState.WARNED: Tone.PAUSE,
+    LifeState.SPENT: Tone.ALARM,
+}
+
+
+class ToolLifeSection(QualitySection):
+    """A row for each tool that is set, has a limit or has cut; the typed limit is of the marked one."""
+
+    name = "TOOL LIFE"
+    use = "parts and minutes of an insert"
+
+    def __init__(self, desk: Desk, watch: PartsWatch) -> None:
+        super().__init__(desk, watch)
+        self.limit = LIMITS[0]
+
+    def tools(self) -> tuple[ToolLife, ...]:
+        """What is shown, in the order of T."""
+        lives = self.watch.lives.lives()
+        numbers = sorted({*lives, *self.desk.book.tools} & set(OFFSETS))
+        return tuple(lives.get(number, ToolLife(number)) for number in numbers)
+
+    @property
+    def count(self) -> int:
+        """How many tools are shown."""
+        return len(self.tools())
+
+    @property
+    def tool(self) -> ToolLife | None:
+        """The marked one."""
+        tools = self.tools()
+        return tools[self.marked] if self.marked < len(tools) else None
+
+    def sheet(self, _snapshot: Snapshot) -> Sheet:
+        """Limits, use, what is left, and whether parts stop."""
+        self.settle()
+        rows = tuple(self._row(each) for each in self.tools())
+        tool = self.tool
+        question = tr("T{number} {limit}?").format(number=tool.number, limit=tr(self.limit)) if tool else ""
+        heads = ("TOOL", "PARTS", "MINUTES", "STOPS", "LEFT", "USED")
+        notes = (
+            "Minutes are those at feed. 0 takes a limit away. STOP: no other part begins when it is gone.",
+        )
+        return Sheet("TOOL LIFE", heads, (0.1, 0.13, 0.14, 0.13, 0.17, 0.33), rows, self.marked, question,
+                     self.entry.text, notes)  # fmt: skip
+
+    def _row(self, life: ToolLife) -> Row:
+        parts = str(life.limit_parts) if life.limit_parts else NOTHING
+        minutes = f"{life.limit_seconds / 60.0:g}" if life.limit_seconds else NOTHING
+        left = life.parts_left
+        words = NOTHING if left is None else tr("{count} parts").format(count=left)
+        stops = tr("STOP") if life.stops else NOTHING
+        tone = TONES[life.state]
+        cells = (f"T{life.number}", parts, minutes, stops, words, life.words)
+        bar = life.share if life.state is not LifeState.NO_LIMIT else None
+        return Row(cells, life.state is not LifeState.NO_LIMIT, tone, bar)
+
+    def keys(self) -> Mapping[str, Key]:
+        """Which limit is typed, stopping, and a fresh insert."""
+        return {
+            "F2": Key(following(LIMITS, self.limit).partition(" ")[0], self._next_limit),
+            "F3": Key("STOP", self.turn_stop),
+            "F4": Key("INSERT", self.insert),
+        }
+
+    def _next_limit(self) -> None:
+        self.desk.clear()
+        self.entry.text, self.limit = "", following(LIMITS, self.limit)
+
+    def take(self, text: str) -> bool:
+        """A limit of the marked tool. Raises EntryError."""
+        tool = self.tool
+        if tool is None:
+            self.desk.say(tr("NO TOOL IS SET YET"))
+            return False
+        value = value_of(text)
+        if self.limit == "PARTS" and value != int(value):
+            raise EntryError(f"{value:g} is no number of parts; type a whole number")
+        wanted = {
+            "PARTS": lambda: replace(tool, limit_parts=int(value)),
+            "MINUTES": lambda: replace(tool, limit_seconds=60.0 * value),
+            "WARN AT %": lambda: replace(tool, warn=value / 100.0),
+        }[self.limit]()
+        return self._set(wanted)
+
+    def _set(self, wanted: ToolLife) -> bool:
+        try:
+            check_life(wanted)
+        except QualityError as error:
+            raise EntryError(str(error)) from error
+        row = LifeRow(wanted.number, wanted.limit_parts, wanted.limit_seconds, wanted.warn, wanted.stops)
+        done = partial(self.desk.say, tr("T{number} SAVED").format(number=wanted.number))
+        self.watch.book.write(lambda c: tool_lives.set_limits(c, row), done, self.watch.refuse)
+        return True
+
+    def turn_stop(self) -> None:
+        """F3: whether another part begins when the life is gone."""
+        tool = self.tool
+        if tool is not None:
+            self.desk.clear()
+            self._set(replace(tool, stops=not tool.stops))
+
+    def insert(self) -> None:
+        """F4: a fresh insert is in the holder, after asking."""
+        tool = self.tool
+        if tool is None:
+            return
+        asked = tr("PRESS Y WHEN T{number} HAS A FRESH INSERT ({words} ARE ON THE OLD ONE), ESC IF NOT")
+        self.desk.ask(
+            asked.format(number=tool.number, words=tool.words),
+            lambda: self.watch.lives.change_insert(tool.number, tool.words, self.desk.say),
+        )
+
+    def prompt(self) -> str:
+        """What can be done here."""
+        return self.watch.book.locked or (
+            "TYPE THE LIMIT AND PRESS RETURN; F2 CHOOSES WHICH, F4 WHEN THE INSERT IS CHANGED"
+        )

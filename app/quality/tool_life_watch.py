@@ -1,0 +1,155 @@
+"""Tool life while parts run: what each tool has cut is counted, told, and stops the next part when asked."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+from app.desk.program_loading import Loaded
+from app.desk.translation import tr
+from app.quality.parts_book import PartsBook
+from core.executor.snapshot import CYCLE, Snapshot
+from core.quality.tool_life import LifeState, ToolLife
+from core.store import tool_lives
+from core.store.tool_lives import LifeRow
+
+KEEP = 10.0  # s at feed after which the count is kept, so that a power cut loses no more
+
+
+def life_of(row: LifeRow) -> ToolLife:
+    """A kept life as it is reckoned with."""
+    return ToolLife(
+        row.number, row.limit_parts, row.limit_seconds, row.parts, row.seconds, row.warn, row.stops
+    )
+
+
+@dataclass(slots=True)
+class ToolLifeWatch:
+    """Looks at every snapshot. Counts are its own once the store has been read; limits are the store's."""
+
+    book: PartsBook
+    counted: dict[int, tuple[int, float]] = field(default_factory=dict)  # parts and seconds since the insert
+    _kept: dict[int, float] = field(default_factory=dict)  # seconds that are kept
+    _cut: Mapping[int, float] = field(default_factory=dict)  # of the last snapshot
+    _in_part: set[int] = field(default_factory=set)  # tools that have cut since the last end
+    _ends: int = -1
+    _told: dict[int, LifeState] = field(default_factory=dict)
+
+    def lives(self) -> dict[int, ToolLife]:
+        """Of every tool that has a limit or has cut, as of now."""
+        rows = self.book.now.lives
+        found = {}
+        for number in sorted({*rows, *self.counted}):
+            row = rows.get(number, LifeRow(number))
+            parts, seconds = self.counted.get(number, (row.parts, row.seconds))
+            found[number] = replace(life_of(row), parts=parts, seconds=seconds)
+        return found
+
+    def see(self, snapshot: Snapshot, say: Callable[[str], None]) -> None:
+        """One frame: seconds at feed, ends of parts, and what is to be told."""
+        if self._ends < 0:
+            self._ends, self._cut = snapshot.ends, snapshot.cutting
+        if not self.book.loads and self.book.store is not None:
+            return  # nothing is known of the days before yet; the snapshot's sums wait
+        for number, seconds in snapshot.cutting.items():
+            more = seconds - self._cut.get(number, 0.0)
+            if number and more > 0.0:
+                self._in_part.add(number)
+                self._add(number, 0, more)
+        self._cut = snapshot.cutting
+        if snapshot.ends > self._ends:
+            for number in self._in_part:
+                self._add(number, 1, 0.0)
+            self._keep(self._in_part)
+            self._in_part = set()
+        elif snapshot.state not in CYCLE:
+            self._keep({number for number in self._in_part if self._unkept(number)})
+        self._ends = snapshot.ends
+        self._tell(say)
+
+    def _add(self, number: int, parts: int, seconds: float) -> None:
+        row = self.book.now.lives.get(number, LifeRow(number))
+        before = self.counted.get(number, (row.parts, row.seconds))
+        self.counted[number] = before[0] + parts, before[1] + seconds
+        if self._unkept(number) > KEEP:
+            self._keep({number})
+
+    def _unkept(self, number: int) -> float:
+        return self.counted[number][1] - self._kept.get(number, 0.0)
+
+    def _keep(self, numbers: set[int]) -> None:
+        for number in numbers:
+            parts, seconds = self.counted[number]
+            self._kept[number] = seconds
+            self.book.keep_use(LifeRow(number, parts=parts, seconds=seconds))
+
+    def keep_all(self) -> None:
+        """The desk shuts."""
+        self._keep({number for number in self.counted if self._unkept(number)})
+
+    def _tell(self, say: Callable[[str], None]) -> None:
+        """Once when it is time to think of the next insert, once when it is spent."""
+        for number, life in self.lives().items():
+            before = self._told.get(number)
+            self._told[number] = life.state
+            if before is not None and life.state is not before and life.state in _WORTH_TELLING:
+                say(notice(life))
+
+    # --- inserts -------------------------------------------------------------------------------------
+
+    def change_insert(self, number: int, why: str, said: Callable[[str], None]) -> None:
+        """A fresh insert is in the holder: counting begins at nought. ``said`` is told what became of it."""
+        parts, seconds = self.counted.get(number, (0, 0.0))
+        known = number in self.counted
+
+        def operation(connection: sqlite3.Connection) -> None:
+            if known:
+                tool_lives.set_use(connection, number, parts, seconds)
+            tool_lives.change_insert(connection, number, why)
+
+        def done() -> None:
+            more_parts, more_seconds = self.counted.get(number, (parts, seconds))
+            self.counted[number] = max(0, more_parts - parts), max(0.0, more_seconds - seconds)
+            self._kept[number] = 0.0
+            said(tr("T{number}: A FRESH INSERT, ITS LIFE BEGINS AT NOUGHT").format(number=number))
+
+        self.book.write(operation, done, said)
+
+    def forget(self) -> None:
+        """Another store is in place: its counts are those that count."""
+        self.counted, self._kept = {}, {}
+
+    # --- what is told and what it stops ------------------------------------------------------------------
+
+    def due(self) -> str:
+        """The tool whose life is nearest its end, where one is to be told of; empty while none is."""
+        told = [life for life in self.lives().values() if life.state in _WORTH_TELLING]
+        return notice(max(told, key=lambda life: life.share)) if told else ""
+
+    def bar(self, snapshot: Snapshot, loaded: Loaded) -> str:
+        """Why no other part of the program may begin; of the part under way its tools count already."""
+        used = set(loaded.proof.tools) if loaded.proof is not None else set()
+        for life in self._stopping(used):
+            after = replace(life, parts=life.parts + 1) if snapshot.counts else life
+            if after.state is LifeState.SPENT:
+                return spent(after)
+        return ""
+
+    def _stopping(self, used: set[int]) -> Iterator[ToolLife]:
+        yield from (life for life in self.lives().values() if life.stops and life.number in used)
+
+
+_WORTH_TELLING = frozenset({LifeState.WARNED, LifeState.SPENT})
+
+
+def notice(life: ToolLife) -> str:
+    """What the operator reads of a life that ends."""
+    if life.state is LifeState.SPENT:
+        return tr("T{number}: ITS LIFE IS GONE, {words}").format(number=life.number, words=life.words)
+    return tr("T{number}: {words} OF ITS LIFE ARE GONE").format(number=life.number, words=life.words)
+
+
+def spent(life: ToolLife) -> str:
+    """Why no part begins with it."""
+    return f"the life of T{life.number} is gone, {life.words}: change the insert and tell it in TOOL LIFE"

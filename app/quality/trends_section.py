@@ -1,0 +1,283 @@
+"""Trends: cycle time and spindle load by part, wear over parts, reasons of stops, availability."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+
+from app.desk.arithmetic import EntryError
+from app.desk.desk import Desk
+from app.desk.formats import NOTHING, duration, fixed
+from app.desk.sheet import Row, Sheet, edited
+from app.desk.translation import tr
+from app.offsets.offset_values import signed
+from app.quality.cycle_recorder import COMPLETE
+from app.quality.parts_watch import PartsWatch
+from app.quality.plots import Curve, Drawing, Level, Plot
+from app.quality.section import QualitySection
+from core.executor.snapshot import Snapshot
+from core.quality.availability import Availability, Span, availability
+from core.quality.stops import Stop, pareto, times_between
+from core.store.part_cycles import CycleRow, StopRow
+from core.store.store_errors import StoreError
+
+KINDS = ("CYCLE TIME", "WEAR", "STOPS", "SPINDLE LOAD", "AVAILABILITY")
+_SHIFT = "shift"  # setting: first hour and last
+_USUAL = (6, 14)
+_MOST_BARS = 8
+
+
+class TrendsSection(QualitySection):
+    """A row a trend with its figure, the drawing of the marked one below."""
+
+    name = "TRENDS"
+    use = "cycle times, wear, stops, availability"
+    chart_share = 0.58
+
+    def __init__(
+        self, desk: Desk, watch: PartsWatch, now: Callable[[], datetime] = lambda: datetime.now(UTC)
+    ) -> None:
+        super().__init__(desk, watch)
+        self._now = now
+        self._made: tuple[object, Drawing] = (None, Drawing())
+        self._rows: tuple[object, tuple[Row, ...]] = (None, ())
+
+    @property
+    def count(self) -> int:
+        """The trends."""
+        return len(KINDS)
+
+    @property
+    def kind(self) -> str:
+        """The marked one."""
+        return KINDS[self.marked]
+
+    @property
+    def shift(self) -> tuple[int, int]:
+        """First hour and last of the shift, by the clock on the wall."""
+        try:
+            kept = self.desk.counter.persistence.setting(_SHIFT)
+        except StoreError:
+            return _USUAL
+        good = isinstance(kept, list) and len(kept) == 2 and all(isinstance(each, int) for each in kept)
+        return (kept[0], kept[1]) if good else _USUAL  # type: ignore[index]
+
+    def sheet(self, _snapshot: Snapshot) -> Sheet:
+        """Each trend with what it comes to."""
+        self.settle()
+        minute = int(self._now().timestamp() // 60)
+        of = (self.watch.book.loads, self.program, self.mode, minute, self.shift)
+        if self._rows[0] != of:
+            self._rows = of, tuple(Row((kind, self._figure(kind))) for kind in KINDS)
+        question = tr("SHIFT FROM-TO, SUCH AS 6-14?") if self.kind == "AVAILABILITY" else ""
+        title = f"TRENDS  ·  {self.program}" if self.program else "TRENDS"
+        return Sheet(title, ("", ""), (0.25, 0.75), self._rows[1], self.marked, question, self.entry.text,
+                     raw=frozenset({1}))  # fmt: skip
+
+    # --- figures -------------------------------------------------------------------------------------
+
+    def _cycles(self) -> list[CycleRow]:
+        return [row for row in self.data.cycles if row.outcome == COMPLETE and row.seconds > 0.0]
+
+    def _figure(self, kind: str) -> str:
+        return {
+            "CYCLE TIME": self._cycle_words,
+            "WEAR": self._wear_words,
+            "STOPS": self._stop_words,
+            "SPINDLE LOAD": self._load_words,
+            "AVAILABILITY": self._availability_words,
+        }[kind]()
+
+    def _cycle_words(self) -> str:
+        times = [row.seconds for row in self._cycles()]
+        if not times:
+            return tr("no part was made yet")
+        text = tr("last {last}, shortest {best}, mean {mean} of {count} parts")
+        figures = (fixed(each, 1) + " s" for each in (times[-1], min(times), sum(times) / len(times)))
+        last, best, mean = figures
+        return text.format(last=last, best=best, mean=mean, count=len(times))
+
+    def _wear_words(self) -> str:
+        rows = self.data.corrections
+        if not rows:
+            return tr("no correction yet")
+        last, metric = rows[-1], self.mode.metric
+        letter, factor = ("T", 2.0) if last.kind == "tool" else ("D", 1.0)
+        text = tr("{count} corrections; last {offset}: X {x} Z {z} behind part {part}")
+        return text.format(
+            count=len(rows),
+            offset=f"{letter}{last.number}",
+            x=signed(factor * last.x, metric),
+            z=signed(last.z, metric),
+            part=last.part,
+        )
+
+    def _stop_words(self) -> str:
+        stops = _stops(self.data.stops)
+        rows = pareto(stops)
+        if not rows:
+            return tr("no stop yet")
+        between = times_between(stops)
+        mean = duration(sum(between) / len(between)) if between else NOTHING
+        text = tr("{count} stops, {mean} between them; {reason}: {time}")
+        return text.format(
+            count=len(stops), mean=mean, reason=tr(rows[0].reason), time=duration(rows[0].seconds)
+        )
+
+    def _load_words(self) -> str:
+        loads = [row.load for row in self.data.cycles if row.load is not None]
+        if not loads:
+            return tr("no drive of this machine tells its load")
+        return tr("last {last} %, highest {most} %").format(
+            last=fixed(loads[-1], 0), most=fixed(max(loads), 0)
+        )
+
+    def _availability_words(self) -> str:
+        first, last = self.shift
+        found = self.of_shift()
+        if found is None:
+            return tr("{first}–{last}: the shift has not begun").format(first=first, last=last)
+        text = tr("{first}–{last}: {share} %, {run} of {planned}")
+        return text.format(
+            first=first,
+            last=last,
+            share=fixed(100.0 * found.share, 0),
+            run=duration(found.producing),
+            planned=duration(found.planned),
+        )
+
+    def of_shift(self) -> Availability | None:
+        """Of the shift that is on, up to now, or that ended last today; None before it."""
+        now = self._now().astimezone()
+        first, last = self.shift
+        begins = now.replace(hour=first, minute=0, second=0, microsecond=0)
+        hours = (last - first) % 24 or 24
+        if begins > now:
+            begins -= timedelta(days=1)
+        ends = min(begins + timedelta(hours=hours), now)
+        if ends <= begins:
+            return None
+        running = [span for row in self.data.cycles if (span := _span(row, now)) is not None]
+        return availability(Span(begins.timestamp(), ends.timestamp()), running)
+
+    # --- drawing -------------------------------------------------------------------------------------
+
+    def drawing(self) -> Drawing:
+        """Of the marked trend."""
+        of = (self.watch.book.loads, self.program, self.kind, self.mode)
+        if self._made[0] != of:
+            self._made = of, Drawing(self._plots(), of)
+        return self._made[1]
+
+    def _plots(self) -> tuple[Plot, ...]:
+        return {
+            "CYCLE TIME": self._cycle_plots,
+            "WEAR": self._wear_plots,
+            "STOPS": self._stop_plots,
+            "SPINDLE LOAD": self._load_plots,
+            "AVAILABILITY": self._availability_plots,
+        }[self.kind]()
+
+    def _cycle_plots(self) -> tuple[Plot, ...]:
+        rows = self._cycles()
+        if not rows:
+            return ()
+        times = np.asarray([row.seconds for row in rows])
+        mean = Level(float(times.mean()), "", "centre")
+        return (Plot(tr("CYCLE TIME, s"), (Curve(_numbers(len(rows)), times),), (mean,), across=tr("parts")),)
+
+    def _wear_plots(self) -> tuple[Plot, ...]:
+        """X of tools as a diameter; each correction holds until the next one of the same offset."""
+        unit = self.mode.unit
+        curves: list[list[Curve]] = [[], []]
+        for number, (kind, offset) in enumerate(sorted({(r.kind, r.number) for r in self.data.corrections})):
+            rows = [row for row in self.data.corrections if (row.kind, row.number) == (kind, offset)]
+            parts = np.asarray([float(row.part) for row in rows])
+            name = f"{'T' if kind == 'tool' else 'D'}{offset}"
+            factor = 2.0 if kind == "tool" else 1.0
+            x = np.asarray([factor * row.x / unit for row in rows])
+            z = np.asarray([row.z / unit for row in rows])
+            curves[0].append(Curve(parts, x, number, name=name, steps=True))
+            curves[1].append(Curve(parts, z, number, name=name, steps=True))
+        if not curves[0]:
+            return ()
+        titles = (f"{tr('WEAR X')}, {self.mode.name}", f"{tr('WEAR Z')}, {self.mode.name}")
+        return tuple(Plot(title, tuple(each)) for title, each in zip(titles, curves, strict=True))
+
+    def _stop_plots(self) -> tuple[Plot, ...]:
+        rows = pareto(_stops(self.data.stops))[:_MOST_BARS]
+        if not rows:
+            return ()
+        bars = tuple(
+            (f"{tr(row.reason)}  {row.times} ×  {fixed(100 * row.together, 0)} %", row.seconds / 60.0)
+            for row in rows
+        )
+        return (Plot(tr("MINUTES BY REASON; TOGETHER WITH THOSE ABOVE"), bars=bars),)
+
+    def _load_plots(self) -> tuple[Plot, ...]:
+        rows = [row for row in self.data.cycles if row.load is not None]
+        if not rows:
+            return ()
+        loads = np.asarray([float(row.load or 0.0) for row in rows])
+        return (Plot(tr("SPINDLE LOAD, %"), (Curve(_numbers(len(rows)), loads),)),)
+
+    def _availability_plots(self) -> tuple[Plot, ...]:
+        found = self.of_shift()
+        if found is None:
+            return ()
+        stood = found.planned - found.producing
+        bars = ((tr("CYCLES RAN"), found.producing / 60.0), (tr("STOOD"), stood / 60.0))
+        return (Plot(tr("MINUTES OF THE SHIFT"), bars=bars),)
+
+    # --- the shift -----------------------------------------------------------------------------------
+
+    def takes(self, key: str) -> bool:
+        """Hours of the shift, where they are asked for."""
+        return self.kind == "AVAILABILITY" and len(key) == 1 and (key.isdigit() or key == "-")
+
+    def typed(self, key: str) -> bool:
+        """Arrows, and the hours."""
+        if self.moves(key):
+            self.entry.text = ""
+            return True
+        if self.kind != "AVAILABILITY":
+            return False
+        if key == "Enter":
+            self.enter()
+        elif self.takes(key) or key in {"Back", "Delete"}:
+            self.desk.clear()
+            self.entry.text = edited(self.entry.text, key, 5)
+        else:
+            return False
+        return True
+
+    def take(self, text: str) -> bool:
+        """First and last hour. Raises EntryError."""
+        first, _, last = text.partition("-")
+        if not (first.isdigit() and last.isdigit() and int(first) < 24 and int(last) <= 24):
+            raise EntryError(tr("a shift is two hours of the day, such as 6-14"))
+        hours = [int(first), int(last)]
+        self.desk.keep(lambda: self.desk.counter.persistence.save_setting(_SHIFT, hours))
+        return True
+
+    def prompt(self) -> str:
+        """What can be done here."""
+        return self.watch.book.locked or "THE ARROWS CHOOSE A TREND; ESC GOES BACK TO THE LIST"
+
+
+def _numbers(count: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    return np.arange(1, count + 1, dtype=np.float64)
+
+
+def _stops(rows: tuple[StopRow, ...]) -> list[Stop]:
+    return [Stop(row.reason, datetime.fromisoformat(row.at).timestamp(), row.seconds) for row in rows]
+
+
+def _span(row: CycleRow, now: datetime) -> Span | None:
+    """When a cycle ran: from its beginning for its seconds; of one under way nobody knows more than now."""
+    start = datetime.fromisoformat(row.started).timestamp()
+    if row.ended is None:
+        return None
+    return Span(start, min(start + row.seconds, now.timestamp())) if start <= now.timestamp() else None

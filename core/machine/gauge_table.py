@@ -1,0 +1,34 @@
+"""[gauge] of the machine file: a gauge whose SPC cable sends readings as lines of text."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from core.table_schema import Driver, DriverTable, Field, Kind
+
+_FIELDS = (
+    Field("port", Kind.TEXT),
+    Field("name", Kind.TEXT, default="gauge"),
+    Field("unit", Kind.CHOICE, choices=("mm", "in"), default="mm"),
+    Field("baud", Kind.WHOLE, low=110, high=1_000_000, default=9600),
+    Field("bits", Kind.WHOLE, low=7, high=8, default=8),
+    Field("parity", Kind.CHOICE, choices=("N", "E", "O"), default="N"),
+    Field("stop", Kind.WHOLE, low=1, high=2, default=1),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class GaugeModel:
+    """The serial line of a gauge; ``unit`` of lines that do not say theirs."""
+
+    port: str
+    name: str
+    unit: str
+    baud: int
+    bits: int
+    parity: str
+    stop: int
+
+
+_TABLE = DriverTable("gauge", _FIELDS, lambda file: file.values.model(GaugeModel, "gauge"), port="gauge.port")
+DRIVER = Driver(tables=(_TABLE,))

@@ -1,0 +1,413 @@
+"""Measured parts, tool life and trends at the lathe: keys alone, the product's desk, machine and store."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.desk.sheet import Sheet
+from app.quality.quality_functions import QualityFunctions
+from app.quality.quality_view import MeasuredPartsPage
+from app.screen import page_table
+from core.executor.snapshot import State
+from tests.screen.day import Day, Key, begun
+from tests.screen.yes import yes
+
+PEG = "(PEG)\nG90G94F300G72\nT1\nM03S2000\nG00X.7Z.1\nX.5\nG01G94F60Z-.3\nX.7\nG00Z1\nM05\nM30\n"
+FEATURES, READINGS, CHARTS, LIFE, TRENDS = "12345"
+
+
+@pytest.fixture
+def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Day]:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+    (tmp_path / "peg.nc").write_text(PEG)
+    with begun(qtbot) as day:
+        day.store.set_tool(1, "test", x=-12.7, z=-50.8).result(5)
+        day.desk.book.read()
+        day.run(0.02)
+        day.key(Key.Key_D)
+        day.desk.put_on_desk(tmp_path / "peg.nc")
+        day.sees(lambda: day.prompt.startswith("TO START"))
+        yield day
+
+
+def model(day: Day) -> QualityFunctions:
+    found = day.desk.attached(QualityFunctions)
+    assert found is not None
+    return found
+
+
+def section(day: Day, number: str) -> None:
+    """The section of this number, from wherever the operator is."""
+    day.key(Key.Key_F1)
+    day.run(0.05)
+    day.type("w")
+    day.sees(lambda: day.page == page_table.MEASURED)
+    day.type(number)
+    day.run(0.05)
+
+
+def sheet(day: Day) -> Sheet:
+    day.window.refresh()
+    return model(day).shown.sheet(day.shot)
+
+
+def cells(day: Day) -> list[tuple[str, ...]]:
+    return [row.cells for row in sheet(day).rows]
+
+
+def feature(day: Day, *fields: str, name: str = "spigot") -> None:
+    """Nominal, upper, lower, number, every, sample of a diameter that wear of a tool corrects."""
+    nominal, upper, lower, number, every, sample = fields
+    section(day, FEATURES)
+    day.key(Key.Key_F2)
+    day.enter(name)
+    day.key(Key.Key_Down)
+    day.enter(nominal, upper, lower)
+    day.key(Key.Key_Down)
+    day.enter(number)
+    day.key(Key.Key_Down)
+    day.enter(every, sample)
+    day.key(Key.Key_F6)
+    day.sees(lambda: bool(re.search(r"KEPT|REFUSED", day.prompt)))
+
+
+def spigot(day: Day, every: str = "0", sample: str = "1") -> None:
+    feature(day, ".5", ".001", "-.001", "1", every, sample)
+    day.sees(lambda: len(cells(day)) == 1)
+
+
+def parts(day: Day, count: int) -> None:
+    """So many parts, one Cycle Start each."""
+    day.key(Key.Key_F1)
+    day.key(Key.Key_F2)
+    day.run(0.1)
+    day.key(Key.Key_Escape)
+    for _ in range(count):
+        before = day.shot.parts
+        day.palms()
+        day.until(lambda before=before: day.shot.parts > before)  # type: ignore[misc]
+        day.reaches(State.IDLE)
+    day.run(0.1)
+
+
+def measured(day: Day, *sizes: str) -> None:
+    """A part after the other, the last one the last that was made."""
+    section(day, READINGS)
+    for _ in range(len(sizes) - 1):
+        day.key(Key.Key_F2)
+    for number, size in enumerate(sizes):
+        if number:
+            day.key(Key.Key_F3)
+        day.enter(size)
+        day.sees(lambda: "KEPT" in day.prompt)
+
+
+# --- features ---------------------------------------------------------------------------------------------
+
+
+def test_a_feature_is_entered_once(day: Day) -> None:
+    spigot(day, every="10")
+    assert cells(day) == [("SPIGOT", "Ø 0.50000", "+0.00100  −0.00100", "T1 X", "every 10", "1")]
+
+
+@pytest.mark.parametrize(
+    ("fields", "why"),
+    [
+        ((".5", ".001", ".001", "1", "0", "1"), "lower deviation is not below"),
+        (("0", ".001", "-.001", "1", "0", "1"), "the nominal is more than 0"),
+        ((".5", ".001", "-.001", "33", "0", "1"), "offsets are 1 to 32"),
+        ((".5", ".001", "-.001", "1", "0", "11"), "1 to 10 parts"),
+    ],
+)
+def test_a_feature_that_cannot_be_is_refused_and_stays_to_be_mended(
+    day: Day, fields: tuple[str, ...], why: str
+) -> None:
+    feature(day, *fields)
+    assert "REFUSED" in day.prompt
+    assert why in day.prompt
+    assert sheet(day).title == "FEATURE"
+
+
+def test_half_a_number_is_refused(day: Day) -> None:
+    section(day, FEATURES)
+    day.key(Key.Key_F2)
+    day.enter("spigot")
+    for _ in range(5):
+        day.key(Key.Key_Down)
+    day.enter("1.5")
+    assert "no whole number" in day.prompt
+
+
+def test_the_same_name_twice_is_refused(day: Day) -> None:
+    spigot(day)
+    feature(day, ".3", ".001", "-.001", "1", "0", "1")
+    day.sees(lambda: "another name" in day.prompt)
+
+
+def test_a_feature_is_removed_after_asking(day: Day) -> None:
+    spigot(day)
+    day.key(Key.Key_Escape)
+    day.key(Key.Key_F4)
+    assert "PRESS Y TO MEASURE SPIGOT NO MORE" in day.prompt
+    day.key(Key.Key_Escape)
+    assert len(cells(day)) == 1
+    day.key(Key.Key_F4)
+    yes(day.window)
+    day.sees(lambda: cells(day) == [])
+
+
+# --- readings and correction ------------------------------------------------------------------------------
+
+
+def test_readings_are_kept_and_judged(day: Day) -> None:
+    spigot(day)
+    parts(day, 2)
+    measured(day, ".5004", ".5012")
+    day.sees(lambda: cells(day) == [("SPIGOT", "Ø 0.50000", "2", "Ø 0.50120", "+0.00120", "TOO LARGE")])
+
+
+def test_a_size_that_is_far_off_is_asked_about(day: Day) -> None:
+    spigot(day)
+    parts(day, 1)
+    section(day, READINGS)
+    day.enter("5.001")
+    assert "IS FAR OFF: PRESS Y" in day.prompt
+    day.key(Key.Key_Escape)
+    assert cells(day)[0][3] == ""
+    day.enter("-.001")
+    assert "type the measured size, not the deviation" in day.prompt
+
+
+def test_a_reading_is_taken_out(day: Day) -> None:
+    spigot(day)
+    parts(day, 1)
+    measured(day, ".5004")
+    day.key(Key.Key_Escape)
+    day.key(Key.Key_F4)
+    yes(day.window)
+    day.sees(lambda: cells(day)[0][3] == "")
+
+
+def test_the_correction_goes_the_way_of_a_typed_one_and_back(day: Day) -> None:
+    """Mean Ø .5012: half of .0012 off as a diameter, .0003 at the offset; then undone."""
+    spigot(day)
+    parts(day, 2)
+    measured(day, ".5012", ".5012")
+    day.key(Key.Key_Escape)
+    day.sees(lambda: cells(day)[0][2] == "2")
+    day.key(Key.Key_F8)
+    assert day.prompt.startswith("T1 X −0.00060: SPIGOT 0.50120 → 0.50060: PRESS Y")
+    assert day.store.tools()[1].wear_x == 0.0, "nothing is changed unasked"
+    yes(day.window)
+    day.sees(lambda: not day.desk.book.busy)
+    assert day.store.tools()[1].wear_x == pytest.approx(-0.0003 * 25.4)
+    assert day.store.history(limit=1)[0].why == "measured SPIGOT: mean 0.50120 of 2, −0.00060"
+    day.key(Key.Key_F9)
+    day.sees(lambda: not day.desk.book.busy)
+    assert day.store.tools()[1].wear_x == 0.0
+
+
+def test_parts_of_before_the_correction_ask_for_no_other(day: Day) -> None:
+    spigot(day)
+    parts(day, 1)
+    measured(day, ".5012")
+    day.key(Key.Key_Escape)
+    day.key(Key.Key_F8)
+    yes(day.window)
+    day.sees(lambda: not day.desk.book.busy)
+    day.key(Key.Key_Escape)
+    day.sees(lambda: not model(day).worker.busy)
+    day.run(0.05)
+    day.key(Key.Key_F8)
+    assert "no part begun since the last change of T1 X is measured yet" in day.prompt
+    parts(day, 1)
+    measured(day, ".5006")
+    day.key(Key.Key_Escape)
+    day.key(Key.Key_F8)
+    assert day.prompt.startswith("T1 X −0.00030: SPIGOT 0.50060 → 0.50030")
+
+
+def test_what_another_hand_changed_is_not_taken_back_here(day: Day) -> None:
+    spigot(day)
+    parts(day, 1)
+    measured(day, ".5012")
+    day.key(Key.Key_Escape)
+    day.key(Key.Key_F8)
+    yes(day.window)
+    day.sees(lambda: not day.desk.book.busy)
+    day.store.set_tool(1, "by hand", wear_z=0.01).result(5)
+    day.key(Key.Key_F9)
+    assert "ANOTHER CHANGE CAME AFTER IT" in day.prompt
+    assert day.store.tools()[1].wear_z == 0.01
+
+
+def test_without_readings_there_is_no_proposal(day: Day) -> None:
+    spigot(day)
+    section(day, READINGS)
+    day.key(Key.Key_F8)
+    assert "no part was measured" in day.prompt
+    day.key(Key.Key_F9)
+    assert "NO CORRECTION WAS TAKEN OVER HERE" in day.prompt
+    day.key(Key.Key_F5)
+    assert "NAMES NO GAUGE" in day.prompt
+
+
+def test_the_file_for_a_spreadsheet(day: Day, tmp_path: Path) -> None:
+    spigot(day)
+    parts(day, 1)
+    measured(day, ".5004")
+    day.key(Key.Key_F6)
+    day.sees(lambda: day.prompt.startswith("WRITTEN"))
+    head, line = (tmp_path / "home" / "parts" / "peg-readings.csv").read_text().splitlines()
+    assert head.startswith("feature,part,value,unit,nominal,lower,upper,good")
+    assert line.startswith("SPIGOT,1,0.5004,in,0.5,0.499,0.501,yes,")
+
+
+# --- the sample plan --------------------------------------------------------------------------------------
+
+
+def test_the_plan_asks_at_part_end_and_parts_go_on(day: Day) -> None:
+    spigot(day, every="2")
+    parts(day, 1)
+    assert "MEASURE" not in day.prompt
+    parts(day, 2)
+    day.key(Key.Key_Escape)
+    assert day.prompt.startswith("MEASURE PART 2: SPIGOT · ")
+    measured(day, ".5000")
+    day.key(Key.Key_F1)
+    day.key(Key.Key_F2)
+    day.key(Key.Key_Escape)
+    day.sees(lambda: "MEASURE" not in day.prompt)
+
+
+def test_parts_wait_for_the_plan_when_asked(day: Day) -> None:
+    spigot(day, every="2")
+    day.key(Key.Key_F5)
+    day.key(Key.Key_F1)
+    day.key(Key.Key_F2)
+    day.run(0.1)
+    day.key(Key.Key_Escape)
+    day.type("c")
+    day.palms()
+    day.until(lambda: day.shot.parts == 2)
+    day.reaches(State.IDLE)
+    day.run(1.0)
+    assert day.shot.parts == 2
+    day.palms()
+    assert "part 2 is to be measured first: SPIGOT" in day.prompt
+    assert day.shot.state is State.IDLE
+    measured(day, ".5000")
+    day.sees(lambda: day.shot.next_barred == "")
+
+
+# --- charts -----------------------------------------------------------------------------------------------
+
+
+def test_the_chart_is_loaded_when_it_is_opened(day: Day) -> None:
+    spigot(day)
+    parts(day, 1)
+    measured(day, ".5001")
+    section(day, FEATURES)
+    page = day.frame.page
+    assert isinstance(page, MeasuredPartsPage)
+    assert page.chart is None
+    section(day, CHARTS)
+    assert page.chart is not None
+    assert not page.chart.isHidden()
+    assert "9 of 10" not in str(cells(day))
+    assert "1 of 10 readings that a Cpk needs" in cells(day)[0][5]
+    section(day, READINGS)
+    assert page.chart.isHidden()
+
+
+# --- tool life --------------------------------------------------------------------------------------------
+
+
+def life(day: Day, limit: str, *, stops: bool = True) -> None:
+    section(day, LIFE)
+    day.enter(limit)
+    day.sees(lambda: "SAVED" in day.prompt)
+    if stops:
+        day.sees(lambda: cells(day)[0][1] == limit)
+        day.key(Key.Key_Escape)
+        day.key(Key.Key_F3)
+        day.sees(lambda: cells(day)[0][3] == "STOP")
+
+
+def test_a_spent_tool_stops_the_next_part_and_a_fresh_insert_lets_it_go(day: Day) -> None:
+    life(day, "2")
+    day.key(Key.Key_F1)
+    day.key(Key.Key_F2)
+    day.run(0.1)
+    day.key(Key.Key_Escape)
+    day.type("c")
+    day.palms()
+    day.until(lambda: day.shot.parts == 2)
+    day.reaches(State.IDLE)
+    day.run(2.0)
+    assert day.shot.parts == 2, "no other part begins"
+    day.palms()
+    assert "the life of T1 is gone, 2 of 2 parts: change the insert" in day.prompt
+    section(day, LIFE)
+    assert cells(day)[0][4:] == ("0 parts", "2 of 2 parts")
+    day.key(Key.Key_F4)
+    yes(day.window)
+    day.sees(lambda: cells(day)[0][5] == "0 of 2 parts")
+    day.sees(lambda: day.shot.next_barred == "")
+    with day.store.read() as connection:
+        assert connection.execute("SELECT number, parts FROM insert_changes").fetchall() == [(1, 2)]
+
+
+def test_without_the_stop_it_is_only_told(day: Day) -> None:
+    life(day, "1", stops=False)
+    parts(day, 2)
+    day.key(Key.Key_Escape)
+    assert day.prompt.startswith("T1: ITS LIFE IS GONE, 2 of 1 parts · ")
+
+
+def test_minutes_are_those_at_feed(day: Day) -> None:
+    """.4 in of Z and .1 in of radius at 60 in/min are half a second."""
+    parts(day, 2)
+    section(day, LIFE)
+    day.sees(lambda: cells(day)[0][5].startswith("2 parts"))
+    day.saved()
+    with day.store.read() as connection:
+        ((number, made, seconds),) = connection.execute("SELECT number, parts, seconds FROM tool_lives")
+    assert (number, made) == (1, 2)
+    assert seconds == pytest.approx(2 * 0.5, abs=0.15)
+
+
+@pytest.mark.parametrize(("limit", "why"), [("2.5", "whole number"), ("-1", "0 to 1000000 parts")])
+def test_a_limit_that_is_none(day: Day, limit: str, why: str) -> None:
+    section(day, LIFE)
+    day.enter(limit)
+    assert why in day.prompt
+
+
+# --- trends -----------------------------------------------------------------------------------------------
+
+
+def test_trends_of_what_was_made(day: Day) -> None:
+    parts(day, 3)
+    section(day, TRENDS)
+    day.sees(lambda: "3 parts" in cells(day)[0][1])
+    rows = dict(cells(day))
+    last = day.shot.last_cycle
+    assert rows["CYCLE TIME"].startswith(f"last {last:.1f} s")
+    assert rows["WEAR"].startswith("1 corrections") or rows["WEAR"] == "no correction yet"
+    assert "BETWEEN CYCLES" in rows["STOPS"]
+    assert rows["SPINDLE LOAD"] == "no drive of this machine tells its load"
+    for _ in range(4):
+        day.key(Key.Key_Down)
+        day.run(0.05)
+    day.enter("25-3")
+    assert "two hours of the day" in day.prompt
+    day.key(Key.Key_Delete)
+    day.enter("0-24")
+    day.run(0.05)
+    assert dict(cells(day))["AVAILABILITY"].startswith("0–24: ")
