@@ -43,10 +43,18 @@ def with_kept_clamping(
 
 
 def _clamping(machine: Machine, stick_out: float | None) -> Clamping | None:
-    """Chuck or collet; without a stick-out only its highest speed counts."""
+    """Chuck or collet, and tailstock; without a stick-out only the highest speed of the chuck counts."""
     held = machine.clamping
     out = held.stick_out if stick_out is None else stick_out
-    if not out and not held.max_rpm:
+    if not out and not held.max_rpm and not held.quill_diameter:
         return None
-    diameter = held.diameter if out else 0.0
-    return Clamping(diameter, out, held.jaws, held.jaw_diameter or held.diameter, held.max_rpm)
+    return Clamping(
+        held.diameter if out else 0.0,
+        out,
+        held.jaws,
+        held.jaw_diameter or held.diameter,
+        held.max_rpm,
+        held.quill_diameter,
+        held.centre_point,
+        held.centre_at,
+    )

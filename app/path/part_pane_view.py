@@ -147,7 +147,7 @@ class PartPane(Pane):
         )
         held = instant.clamping
         self._chuck = []
-        if held is not None and held.diameter and stock is not None:
+        if held is not None and stock is not None:
             self._chuck = [_polygon(area) for area in clamping_areas(held, stock, projection)]
 
     @staticmethod

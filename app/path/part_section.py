@@ -72,13 +72,20 @@ def stock_outline(stock: Stock, projection: Projection) -> list[Line]:
 
 
 def clamping_areas(clamping: Clamping, stock: Stock, projection: Projection) -> list[Line]:
-    """Chuck or collet on both sides of what it holds."""
-    held = clamping.around(stock)
-    (z, r), (inner_z, inner_r) = np.array(held.outside).T, np.array(held.bore).T
-    return [
-        _ring(_line(z, side * r, projection), _line(inner_z, side * inner_r, projection))
-        for side in (1.0, -1.0)
-    ]
+    """Chuck or collet on both sides of what it holds, and the tailstock's centre."""
+    found: list[Line] = []
+    if clamping.diameter:
+        held = clamping.around(stock)
+        (z, r), (inner_z, inner_r) = np.array(held.outside).T, np.array(held.bore).T
+        found += [
+            _ring(_line(z, side * r, projection), _line(inner_z, side * inner_r, projection))
+            for side in (1.0, -1.0)
+        ]
+    tailstock = clamping.tailstock
+    if tailstock is not None:
+        z, r = np.array(tailstock.outside).T
+        found.append(_ring(_line(z, r, projection), _line(z, -r, projection)))
+    return found
 
 
 def _piece(edges: Floats, low: Floats, high: Floats, projection: Projection, side: float) -> Metal:

@@ -94,7 +94,11 @@ def _framed(stock: Stock, clamping: Clamping | None) -> Drawing:
 
 
 def _chuck(drawing: Drawing, clamping: Clamping | None) -> None:
-    if clamping is None or not clamping.diameter:
+    if clamping is None:
+        return
+    if (tailstock := clamping.tailstock) is not None:
+        drawing.polygon([*tailstock.outside, *((z, -r) for z, r in reversed(tailstock.outside))], "chuck")
+    if not clamping.diameter:
         return
     upper = [*clamping.outline, (clamping.outline[-1][0], 0.0), (clamping.outline[0][0], 0.0)]
     drawing.polygon(upper, "chuck")

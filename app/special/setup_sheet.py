@@ -77,7 +77,11 @@ class SetupSheet:
             chuck += ", " + tr("jaws {size}").format(size=size)
         if held.max_rpm:
             chuck += ", " + tr("{rpm} rpm at most").format(rpm=f"{held.max_rpm:.0f}")
-        return (tr("STICK-OUT"), self.length(held.stick_out)), (tr("CHUCK"), chuck)
+        rows = [(tr("STICK-OUT"), self.length(held.stick_out)), (tr("CHUCK"), chuck)]
+        if held.quill:
+            quill = f"Ø {self.length(held.quill)}, {held.point:g}°, Z {self.length(held.centre)}"
+            rows.append((tr("TAILSTOCK"), quill))
+        return tuple(rows)
 
     def shape_words(self, tool: SheetTool) -> str:
         """What the tool is."""

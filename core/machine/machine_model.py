@@ -102,13 +102,19 @@ class Interlocks:
 
 @dataclass(frozen=True, slots=True)
 class ClampingModel:
-    """Chuck or collet, mm and rpm; 0: not said. ``stick_out`` is from its front to part zero."""
+    """Chuck or collet, mm and rpm; 0: not said. ``stick_out`` is from its front to part zero.
+
+    A tailstock has a quill; the tip of its centre, ``centre_point`` degrees, stands at Z ``centre_at``.
+    """
 
     diameter: float = 0.0
     stick_out: float = 0.0
     jaws: float = 0.0  # how far they stand before the body
     jaw_diameter: float = 0.0
     max_rpm: float = 0.0
+    quill_diameter: float = 0.0
+    centre_point: float = 60.0
+    centre_at: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

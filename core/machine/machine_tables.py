@@ -114,6 +114,9 @@ CLAMPING = (  # 0: not said, and not checked
     Field("jaws", _NUMBER, Unit.LENGTH, 0.0, 500.0, default=0.0),
     Field("jaw_diameter", _NUMBER, Unit.LENGTH, 0.0, 2000.0, default=0.0),
     Field("max_rpm", _NUMBER, Unit.RPM, 0.0, 50000.0, default=0.0),
+    Field("quill_diameter", _NUMBER, Unit.LENGTH, 0.0, 500.0, default=0.0),
+    Field("centre_point", _NUMBER, Unit.DEGREES, 10.0, 170.0, default=60.0),
+    Field("centre_at", _NUMBER, Unit.LENGTH, -2000.0, 2000.0, default=0.0),
 )
 TOOLING = (Field("kind", _CHOICE, choices=("single", "gang", "turret"), default="single"),)
 CHECKS = (Field("silenced", Kind.WORDS, default=""),)  # of the part, by their ids

@@ -25,6 +25,7 @@ Depths = npt.NDArray[np.int32]
 
 _FRONT = 15.0  # mm of the body of a chuck that are drawn behind its front
 _STEP = 0.01  # mm: a shoulder of the chuck is no wider
+_CONE = 60  # columns of a centre
 _PROUD = 0.1  # mm: by how much an insert is drawn above its holder
 _INSERT, _HOLDER = 4.8, 16.0  # mm below the rake face; a holder's is its width where that is less
 _LIGHT = np.array([-0.38, 0.62, 0.69])  # to the right, up, towards the viewer
@@ -85,16 +86,27 @@ class _Eye(NamedTuple):
 
 
 def chuck_solid(clamping: Clamping, stock: Stock) -> Solid:
-    """The front of a chuck with its jaws, or of a collet, as a solid of revolution."""
-    bore = clamping.around(stock).bore[0][1]
-    face, body = -clamping.stick_out, -clamping.stick_out - clamping.jaws
-    radius, jaws = clamping.diameter / 2.0, (clamping.jaw_diameter or clamping.diameter) / 2.0
-    edges, radii = [body - _FRONT, body - _STEP, body], [radius, radius]
-    if clamping.jaws:
-        edges += [body + _STEP, face]
-        radii += [jaws, jaws]
-    high = np.array([radii])
-    return turned_solid(np.array(edges), np.full(high.shape, min(bore, *radii)), high)
+    """The front of a chuck with its jaws, or of a collet, and a tailstock's centre, all of them round."""
+    edges: list[float] = []
+    columns: list[tuple[float, float]] = []  # from and to which radius
+    if clamping.diameter:
+        inside = clamping.around(stock).bore[0][1]
+        body = -clamping.stick_out - clamping.jaws
+        radius, jaws = clamping.diameter / 2.0, (clamping.jaw_diameter or clamping.diameter) / 2.0
+        edges += [body - _FRONT, body - _STEP, body]
+        columns += [(inside, radius)] * 2
+        if clamping.jaws:
+            edges += [body + _STEP, body + clamping.jaws]
+            columns += [(inside, jaws)] * 2
+    tailstock = clamping.tailstock
+    if tailstock is not None:
+        (tip, _), (end, radius), (back, _) = tailstock.outside
+        cone = np.linspace(tip, end, _CONE + 1)
+        columns += [(0.0, 0.0)] if edges else []
+        edges += [*cone.tolist(), end + _STEP, back]
+        columns += [(0.0, radius * (k + 0.5) / _CONE) for k in range(_CONE)] + [(0.0, radius)] * 2
+    low, high = np.array(columns).T
+    return turned_solid(np.array(edges), low[None], high[None])
 
 
 def tool_layers(

@@ -52,6 +52,13 @@ CHECKS: Mapping[str, Check] = {
         "Let the part stick out further, or stop earlier.",
         (TOOL,),
     ),
+    "into-tailstock": Check(
+        _ERROR,
+        "A tool, or its holder, runs into the tailstock's centre or quill.",
+        "An outline comes into the contour of quill and centre that the machine file gives under [clamping].",
+        "Take another way there, or a slimmer holder; draw the quill back for what needs the face.",
+        (TOOL,),
+    ),
     "neighbour-tool": Check(
         _ERROR,
         "Another tool of the gang plate runs into the stock.",

@@ -50,14 +50,18 @@ class PartFindings:
     _airs: AirChecks = field(init=False)
     _found: dict[tuple[str, int], Diagnostic] = field(default_factory=dict)
     _chuck: TurnedPart | None = None
+    _tailstock: TurnedPart | None = None
     _whirls: float = 0.0  # rpm at which the stock begins to whirl; 0: not known
     _before: TipMove | None = None
 
     def __post_init__(self) -> None:
         self._edges, self._airs = EdgeChecks(self.stock, self.parted_at), AirChecks(self.stock)
         if self.clamping is not None and self.clamping.diameter and self.stock is not None:
-            self._whirls = whirling_rpm(self.stock, self.clamping.stick_out)
+            if not self.clamping.quill:  # what is held at both ends whirls much later
+                self._whirls = whirling_rpm(self.stock, self.clamping.stick_out)
             self._chuck = TurnedPart(self.clamping.around(self.stock), _CHUCK_STEP)
+        tailstock = self.clamping.tailstock if self.clamping is not None else None
+        self._tailstock = TurnedPart(tailstock, _CHUCK_STEP) if tailstock is not None else None
 
     @property
     def found(self) -> tuple[Diagnostic, ...]:
@@ -101,15 +105,13 @@ class PartFindings:
             self._add(check, at or move, text)
 
     def _clamped(self, move: TipMove, cutter: Cutter, tool: int) -> None:
-        """Chuck or collet: what runs into it, and how fast it turns."""
+        """Chuck or collet, and tailstock: what runs into them, and how fast the chuck turns."""
         if self.clamping is None:
             return
-        if self._chuck is not None:
-            met = NOTHING
-            for start, end in pairwise(move.points):
-                met = met.joined(cutter.reaches(self._chuck, start, end))
-            if met:
-                self._add("into-chuck", move, f"T{tool} runs into the chuck, {_depth(met, move)}.")
+        if met := _reached(self._chuck, move, cutter):
+            self._add("into-chuck", move, f"T{tool} runs into the chuck, {_depth(met, move)}.")
+        if met := _reached(self._tailstock, move, cutter):
+            self._add("into-tailstock", move, f"T{tool} runs into the tailstock, {_depth(met, move)}.")
         highest = self.clamping.max_rpm
         if highest and abs(move.rpm) > highest:
             text = f"The spindle turns at {abs(move.rpm):.0f} rpm; the chuck may turn at {highest:.0f}."
@@ -197,6 +199,15 @@ class PartFindings:
             remedy = f"Silenced: {why}" if why else entry.remedy
             found = Diagnostic(line, 0, weight, check, text, remedy, check=check, n=n, silenced=why)
             self._found[check, line] = replace(found, assumed=self.not_said(entry))
+
+
+def _reached(body: TurnedPart | None, move: TipMove, cutter: Cutter) -> Cut:
+    """What of a body that stays whole a tool would meet."""
+    met = NOTHING
+    if body is not None:
+        for start, end in pairwise(move.points):
+            met = met.joined(cutter.reaches(body, start, end))
+    return met
 
 
 def _executed(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[Cut, Cut]:

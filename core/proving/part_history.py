@@ -151,8 +151,9 @@ class PartHistory:
         self._kept = _Copies()
         self._clamping = moves.setting.clamping
         self._chuck: Solid | None = None
-        if self._clamping is not None and self._clamping.diameter and self.stock is not None:
-            self._chuck = chuck_solid(self._clamping, self.stock)
+        held = self._clamping
+        if held is not None and (held.diameter or held.quill) and self.stock is not None:
+            self._chuck = chuck_solid(held, self.stock)
         self._making = Making(self._tools, self.stock, moves.setting)
         self._seen = self._making  # as it was given out last
         self._ahead: tuple[int, float, Making] | None = None  # behind so many steps, so much of the next done

@@ -88,6 +88,17 @@ def test_the_chuck_stands_behind_its_face_and_hides_the_bar() -> None:
     assert math.isclose(float(chuck.low.max()), 5.0)
 
 
+def test_a_centre_stands_before_the_face() -> None:
+    """Its tip 2 mm in the part; 60 degrees: 8 mm of quill begin 4 / tan 30 = 6.93 mm further on."""
+    held = Clamping(0.0, 0.0, quill=8.0, point=60.0, centre=-2.0)
+    found = like(drawn(SIDE, chuck=chuck_solid(held, bar(10.0, 0.0, -20.0))), BROWN)
+    assert not found[:, : 200 + 80].any()  # what is in the part is hidden
+    for z in (2.0, 4.0):
+        high = np.ptp(np.flatnonzero(found[:, round(200 + (10.0 + z) * 8)])) + 1
+        assert high == pytest.approx(2.0 * (z + 2.0) * math.tan(math.radians(30.0)) * 8, abs=3)
+    assert np.ptp(np.flatnonzero(found[:, 200 + 140])) + 1 == pytest.approx(64, abs=3)
+
+
 def test_a_tool_far_off_is_no_matter() -> None:
     bare = drawn(SIDE)
     for z in (-500.0, 500.0):

@@ -249,11 +249,16 @@ def test_what_is_parted_off_behind_a_slot_weighs_less() -> None:
     assert piece.volume == pytest.approx(full.volume - slot.removed, rel=1e-3)
 
 
-def chucked(lines: str, clamping: Clamping, shapes: dict[int, ToolShape] = TOOLS) -> PartReport:
+def chucked(
+    lines: str, clamping: Clamping, shapes: dict[int, ToolShape] = TOOLS, *, metric: bool = False,
+    diameter: bool = False,
+) -> PartReport:  # fmt: skip
     machine = load_machine(None)
     setup = setup_for(machine, tools={n: ToolOffset(-12.7, -50.8) for n in range(1, 12)}, secondary={})
     setting = PartSetting(bar(25.4, 0.0, -80.0), shapes, clamping=clamping)
-    _, part = prove_with_part(Source("PART", text(lines)), setup, machine, setting)
+    _, part = prove_with_part(
+        Source("PART", text(lines, metric=metric, diameter=diameter)), setup, machine, setting
+    )
     assert part is not None
     return part
 
@@ -273,6 +278,25 @@ def test_a_rapid_beside_the_bar_clears_jaws_that_are_small_enough() -> None:
     beside = "T2\nX[1.0]Z[.1]\nZ[-1.4]\nM00\nZ[1]"
     assert ("into-chuck", 5) in checks(chucked(beside, CHUCK))  # r 25.4 in jaws of r 30
     assert checks(chucked(beside, Clamping(100.0, 1.2 * INCH, 20.0, 48.0))) == []
+
+
+CENTRE = Clamping(diameter=0.0, stick_out=0.0, quill=12.0, point=60.0, centre=-3.0)
+
+
+@pytest.mark.parametrize(("metric", "diameter"), WAYS)
+def test_a_tool_runs_into_the_centre_where_its_twin_stays_beside_it(metric: bool, diameter: bool) -> None:
+    """Tip at Z-3 mm, 60 degrees: at the face (Z0) the centre is 3 tan 30 = 1.73 mm (.068 in) of radius."""
+    for r, hit in ((0.03, True), (0.12, False)):
+        lines = f"T1\nX[.6]Z[0]\nG95F[.004]X[{r}]\nG94F[300]Z[.05]\nX[.7]"
+        found = checks(chucked(lines, CENTRE, metric=metric, diameter=diameter))
+        assert (("into-tailstock", 5) in found) is hit
+
+
+def test_a_holder_runs_into_the_quill() -> None:
+    """The quill begins where the cone is 6 mm of radius: Z -3 + 6 / tan 30 = 7.4 mm (.29 in)."""
+    beside = "T2\nX[.6]Z[.05]\nG00Z[.6]\nX[{r}]\nX[.7]"
+    assert ("into-tailstock", 6) in checks(chucked(beside.format(r=0.2), CENTRE))  # 5.08 mm
+    assert checks(chucked(beside.format(r=0.3), CENTRE)) == []  # 7.62 mm
 
 
 def test_a_drill_goes_through_the_part_into_no_chuck() -> None:
