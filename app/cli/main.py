@@ -16,7 +16,19 @@ from app.desk.command_errors import EXIT_OK, EXIT_USAGE, CommandError
 from app.desk.data_folder import DataFolderError, check_data_folder
 
 # Modules with add_parser(subparsers) and run(args) -> exit status; importing one costs next to nothing.
-COMMANDS = ("prove", "expand", "trace", "run", "offsets", "store", "machine", "serial", "alarms", "scope")
+COMMANDS = (
+    "prove",
+    "expand",
+    "trace",
+    "run",
+    "offsets",
+    "store",
+    "machine",
+    "serial",
+    "alarms",
+    "parts",
+    "scope",
+)
 
 NO_DISPLAY = """\
 turndesk: no display here (neither DISPLAY nor WAYLAND_DISPLAY is set), so no operator screen. Without one:

@@ -81,18 +81,18 @@ def row_of(feature: Feature, program: str, number: int) -> FeatureRow:
     )
 
 
-def parts_data(store: Store, program: str) -> PartsData:
-    """All that is kept of a program; takes its time. Raises StoreError."""
+def parts_data(store: Store, program: str, limit: int = NEWEST) -> PartsData:
+    """What is kept of a program, the newest so many of each; -1: all. Takes its time. Raises StoreError."""
     with store.read() as connection:
         return PartsData(
             program,
             measured_parts.features(connection, program),
-            measured_parts.readings(connection, program, NEWEST),
+            measured_parts.readings(connection, program, limit),
             tool_lives.lives(connection),
             measured_parts.last_corrections(connection),
-            part_cycles.cycles(connection, program, NEWEST),
-            part_cycles.stops(connection, None, NEWEST),
-            part_cycles.corrections(connection, program, NEWEST),
+            part_cycles.cycles(connection, program, limit),
+            part_cycles.stops(connection, None, limit),
+            part_cycles.corrections(connection, program, limit),
         )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Iterator
 from pathlib import Path
 
 from app.desk.formats import MM_PER_INCH
@@ -18,20 +19,23 @@ _PER = {"in": MM_PER_INCH, "mm": 1.0}
 
 def readings_text(data: PartsData) -> str:
     """One line a reading, in the order in which they were taken."""
-    features = {row.id: row for row in data.features}
     out = io.StringIO()
     table = csv.writer(out)
     table.writerow(HEAD)
+    table.writerows(reading_lines(data))
+    return out.getvalue()
+
+
+def reading_lines(data: PartsData) -> Iterator[tuple[object, ...]]:
+    """The cells of each reading, as ``HEAD`` names them."""
+    features = {row.id: row for row in data.features}
     for each in data.readings:
         feature, per = feature_of(features[each.feature]), _PER[each.unit]
         low, high = feature.limits
         figures = (round(value / per, 7) for value in (feature.nominal, low, high))
-        table.writerow(
-            (feature.name, each.part, round(each.value / per, 7), each.unit, *figures,
-             "yes" if feature.good(each.value) else "no", each.at, each.source, each.gauge,
-             feature.corrected_by)
-        )  # fmt: skip
-    return out.getvalue()
+        good = "yes" if feature.good(each.value) else "no"
+        sizes = round(each.value / per, 7), each.unit, *figures, good
+        yield feature.name, each.part, *sizes, each.at, each.source, each.gauge, feature.corrected_by
 
 
 def write_readings(data: PartsData, folder: Path) -> Path:

@@ -41,6 +41,7 @@ class TrendsSection(QualitySection):
     ) -> None:
         super().__init__(desk, watch)
         self._now = now
+        self._shift: tuple[int, int] | None = None
         self._made: tuple[object, Drawing] = (None, Drawing())
         self._rows: tuple[object, tuple[Row, ...]] = (None, ())
 
@@ -56,13 +57,15 @@ class TrendsSection(QualitySection):
 
     @property
     def shift(self) -> tuple[int, int]:
-        """First hour and last of the shift, by the clock on the wall."""
-        try:
-            kept = self.desk.counter.persistence.setting(_SHIFT)
-        except StoreError:
-            return _USUAL
-        good = isinstance(kept, list) and len(kept) == 2 and all(isinstance(each, int) for each in kept)
-        return (kept[0], kept[1]) if good else _USUAL  # type: ignore[index]
+        """First hour and last of the shift, by the clock on the wall; read once."""
+        if self._shift is None:
+            try:
+                kept = self.desk.counter.persistence.setting(_SHIFT)
+            except StoreError:
+                kept = None
+            good = isinstance(kept, list) and len(kept) == 2 and all(isinstance(each, int) for each in kept)
+            self._shift = (kept[0], kept[1]) if good else _USUAL  # type: ignore[index]
+        return self._shift
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
         """Each trend with what it comes to."""
@@ -258,7 +261,8 @@ class TrendsSection(QualitySection):
         first, _, last = text.partition("-")
         if not (first.isdigit() and last.isdigit() and int(first) < 24 and int(last) <= 24):
             raise EntryError(tr("a shift is two hours of the day, such as 6-14"))
-        hours = [int(first), int(last)]
+        self._shift = int(first), int(last)
+        hours = list(self._shift)
         self.desk.keep(lambda: self.desk.counter.persistence.save_setting(_SHIFT, hours))
         return True
 

@@ -68,6 +68,11 @@ def save_stop(connection: sqlite3.Connection, row: StopRow) -> None:
     )
 
 
+def programs(connection: sqlite3.Connection) -> set[str]:
+    """The programs of which a part was begun."""
+    return {name for (name,) in connection.execute("SELECT DISTINCT program FROM part_cycles")}
+
+
 def cycles(connection: sqlite3.Connection, program: str | None, limit: int) -> tuple[CycleRow, ...]:
     """The newest cycles in the order of their beginnings; without a program of all."""
     rows = connection.execute(

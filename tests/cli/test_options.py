@@ -88,6 +88,8 @@ COVERED = {
     ("store verify", "--json"): "tests/cli/test_store.py",
     ("machine check", "--json"): "tests/cli/test_machine.py",
     ("alarms", "--json"): "tests/cli/test_alarms.py",
+    ("parts", "--csv"): "tests/cli/test_parts.py",
+    ("parts", "--json"): "tests/cli/test_parts.py",
     ("scope", "--csv"): "tests/cli/test_scope.py",
     ("scope", "--json"): "tests/cli/test_scope.py",
     **{(f"serial {way}", option): "tests/drivers/transfer" for way in ("send", "receive")
