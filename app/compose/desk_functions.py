@@ -14,7 +14,7 @@ from app.desk.program_loading import LoadingSteps
 from app.desk.screen_settings import SettingsBook
 from app.programs.folder_chooser import FolderChooser
 from app.programs.import_export import ImportExport
-from app.programs.preview import Preview
+from app.programs.preview import DrawThumbnail, Preview
 from app.programs.program_list import ProgramList
 from app.programs.run_history import RunHistory
 from app.scope.scope_function import ScopeFunction
@@ -74,11 +74,17 @@ ITEMS: tuple[MakeFunction, ...] = (
 
 
 def furnish(
-    desk: Desk, machine: Machine, persistence: Persistence, workshop: LoadingSteps, own: Path | None = None
+    desk: Desk,
+    machine: Machine,
+    persistence: Persistence,
+    workshop: LoadingSteps,
+    own: Path | None = None,
+    thumbnail: DrawThumbnail | None = None,
 ) -> None:
     """Give the desk what it remembers, and the pages that show it.
 
-    ``workshop`` keeps nothing of what it proves; ``own`` is the operator's folder.
+    ``workshop`` keeps nothing of what it proves; ``own`` is the operator's folder; ``thumbnail`` draws the
+    part of a program.
     """
     desk.settings = SettingsBook(persistence)
     desk.counter = PartCounter(persistence)
@@ -90,11 +96,12 @@ def furnish(
     functions.append(_setup_sheet(desk, machine, persistence, worker))
     functions.append(ScopeFunction(desk))
     desk.attach(SpecialFunctions(functions, worker))
-    desk.attach(_files(desk, persistence, workshop, own))
+    desk.attach(_files(desk, persistence, Preview(workshop, thumbnail), own))
 
 
-def _files(desk: Desk, persistence: Persistence, workshop: LoadingSteps, own: Path) -> ProgramList:
+def _files(desk: Desk, persistence: Persistence, preview: Preview, own: Path) -> ProgramList:
     """The list of programs; what comes in is proved with the offsets of that moment."""
+    workshop = preview.workshop
 
     def check(path: Path) -> str:
         job = workshop.make_job(workshop.read(path), False)
@@ -106,4 +113,4 @@ def _files(desk: Desk, persistence: Persistence, workshop: LoadingSteps, own: Pa
 
     worker = Latest("editing-programs")
     transfer = ImportExport(desk, own, persistence, worker, check, FolderChooser(Path.home()))
-    return ProgramList(desk, own, persistence, worker, Preview(workshop), transfer)
+    return ProgramList(desk, own, persistence, worker, preview, transfer)

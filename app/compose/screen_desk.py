@@ -20,7 +20,16 @@ from app.compose.machine_setup import read_machine
 from app.compose.scope_desk import give_scope
 from app.compose.shop_floor import keep_status, open_shop_floor
 from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_offsets
-from app.compose.workshop import drawer, give_mdi, give_part, give_searchto, part_comparer, samples, workshop
+from app.compose.workshop import (
+    drawer,
+    give_mdi,
+    give_part,
+    give_searchto,
+    part_comparer,
+    samples,
+    thumbnails,
+    workshop,
+)
 from app.desk.alarm_log import KEPT, KINDS
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import RECORDS, data_folder
@@ -223,7 +232,8 @@ def _desk(
     desk.attach(Effect(drawer(machine), part_comparer(machine, shapes_at_hand, kept)))
     beside = workshop(machine, offsets, left=left, shapes=shapes_at_hand, kept=kept)
     desk.attach(_editor(beside, journal))
-    furnish(desk, machine, keep, workshop(machine, offsets, left=left))
+    small = thumbnails(machine, shapes_at_hand, kept)
+    furnish(desk, machine, keep, workshop(machine, offsets, left=left), thumbnail=small)
     give_mdi(desk, machine, offsets, keep)
     give_part(desk, machine, keep)
     give_searchto(desk, machine)

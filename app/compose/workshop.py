@@ -12,6 +12,7 @@ from app.compose.desk_part import Kept, PartDesk, Shapes, nothing_kept
 from app.compose.journal import Journal
 from app.compose.machine_setup import setup_for
 from app.compose.stored_offsets import Offsets
+from app.compose.thumbnails import Thumbnails
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
 from app.desk.latest import Watch
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from app.desk.latest import Watch
     from app.offsets.offset_effect import ComparePart, Draw
     from app.path.path_picture import Picture, Timed
+    from app.programs.preview import DrawThumbnail
     from core.interpreter.restart.state_rebuild import StateRebuild
     from core.proving.program_timeline import MotionSpan, RestSpan
 
@@ -164,6 +166,11 @@ def proof_of(job: Job, report: Report) -> Proof:
 def part_comparer(machine: Machine, shapes: Shapes = dict, kept: Kept = nothing_kept) -> ComparePart:
     """Compares the parts that two offsets make of a job on this machine."""
     return PartDesk(machine, shapes, kept, _read).compared
+
+
+def thumbnails(machine: Machine, shapes: Shapes, kept: Kept) -> DrawThumbnail:
+    """Draws the finished part of a job small, and keeps it in the data folder."""
+    return Thumbnails(data_folder() / "thumbnails", machine, PartDesk(machine, shapes, kept, _read)).of
 
 
 def drawer(machine: Machine) -> Draw:

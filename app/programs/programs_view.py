@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QResizeEvent
+from PySide6.QtGui import QImage, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
@@ -14,6 +14,7 @@ from app.desk.program_loading import Loaded
 from app.editor.editor import Editor
 from app.path.path_view import PathView
 from app.programs.copy_rename_delete import NONE
+from app.programs.preview import Thumbnail
 from app.programs.program_list import ProgramList, details_of
 from app.programs.program_rows import Program
 from app.screen import page_table
@@ -41,6 +42,7 @@ class RecordPanel(Panel):
     title = "RECORD"
     program: Shown[Program | None] = Shown(None)
     trouble = Shown("")  # what is wrong with its picture
+    part: Shown[Thumbnail | None] = Shown(None)
 
     def draw(self, painter: Painter) -> None:
         u = self.look.u
@@ -49,11 +51,23 @@ class RecordPanel(Panel):
             rows.append(("PREVIEW", self.trouble))
         room = self.inside()
         high = min(3.0 * u, room.height() / max(1, len(rows)))
+        self._draw_part(painter, high * (len(rows) - 1))
         for number, (label, text) in enumerate(rows):
             y = room.y() + number * high
             painter.write(QRectF(room.x(), y, (LABEL - 0.6) * u, high), label, 1.6, "soft")
             value = QRectF(room.x() + LABEL * u, y, room.width() - LABEL * u, high)
             painter.write(value, text, 1.9, "text")
+
+    def _draw_part(self, painter: Painter, high: float) -> None:
+        """The finished part at the right, over the last row, which may be long."""
+        if self.part is None or high <= 0.0:
+            return
+        pixels, columns, rows = self.part
+        room, form = self.inside(), QImage.Format.Format_ARGB32
+        scale = min(1.0, high / rows, 0.5 * room.width() / columns)
+        wide, tall = columns * scale, rows * scale
+        at = QRectF(room.right() - wide, room.y() + (high - tall) / 2, wide, tall)
+        painter.drawImage(at, QImage(pixels, columns, rows, 4 * columns, form))
 
 
 SHARE, RECORD = 0.6, 24.0  # of the width for the list; units of height for the record
@@ -146,6 +160,7 @@ class ProgramsPage(ListPage):
         self._show_picture(model.preview.of(here))
         self.letters.setVisible(bool(model.question or model.find.text) and not model.transfer.open)
         self.record.program = here
+        self.record.part = model.preview.part_of(here)
         self.record.trouble = "DRAWING …" if model.preview.busy else model.preview.trouble
 
     def _show_picture(self, picture: Picture | None) -> None:

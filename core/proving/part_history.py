@@ -184,6 +184,11 @@ class PartHistory:
         end = step.points[-1]
         return share_along(step.points, (end[0] + behind_end[0], end[1] + behind_end[1]))
 
+    @property
+    def blocks(self) -> int:
+        """The number of the last block."""
+        return int(self._numbers[-1]) if len(self._numbers) else 0
+
     def now(self) -> PartInstant:
         """The part as far as it has been made on a long way."""
         done = self._done
