@@ -7,10 +7,13 @@ import signal
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import resources
 from app.compose.journal import Journal
+from core.records.record import Record
+from core.records.ring_file import LAST, NOW, read_ring
 from core.store.store import Store
 from tests.killed.bench import Process, process, until
 
@@ -38,6 +41,15 @@ def cutting(desk: Process, parts: int) -> None:
     until(so, lambda: desk.lines[-3:])
 
 
+def parts_in(record: Record) -> int:
+    """How often X went out to .2 in and came back, in what the scope has recorded at 1 ms."""
+    out = record.columns["X demand"] > 5.0
+    moving = np.diff(record.times)[out[1:] & out[:-1]]
+    assert record.rate == 1000.0
+    assert moving == pytest.approx(0.001, abs=1e-6)
+    return int(np.count_nonzero(out[:-1] & ~out[1:]))
+
+
 def test_a_killed_screen_keeps_what_was_entered_and_leaves_nobody(
     files: tuple[str, str], tmp_path: Path
 ) -> None:
@@ -48,6 +60,7 @@ def test_a_killed_screen_keeps_what_was_entered_and_leaves_nobody(
         desk.kill()
         made = int(str(desk.lines[-1]["parts"]))
         until(lambda: not desk.family(), lambda: "the feeder has not ended")
+    assert parts_in(read_ring(home / "records" / NOW)) >= made
     with Store.open(home) as store:
         assert store.tools()[9].offset == (-0.5 * 25.4, -3.25 * 25.4)
         assert store.parts("part.nc") >= made
@@ -60,6 +73,7 @@ def test_a_killed_screen_keeps_what_was_entered_and_leaves_nobody(
         cutting(again, 1)
         assert again.lines[-1]["alarms"] == []
         again.kill()
+        assert parts_in(read_ring(home / "records" / LAST)) >= made  # of the control before
         until(lambda: not again.family(), lambda: "the feeder has not ended")
     with Store.open(home, read_only=True) as store:
         assert store.parts("part.nc") > counted
