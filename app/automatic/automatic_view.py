@@ -131,6 +131,10 @@ class AutomaticPage(Page):
         """Which of the two the keys of looking around are for."""
         return self.path if self.space.scene is None else self.space
 
+    def lively(self) -> bool:
+        """The part is being played."""
+        return self.path.player is not None and self.path.player.playing
+
     def key_actions(self) -> KeyActions:
         """What the page itself does, by key."""
         looked_at = self._looked_at

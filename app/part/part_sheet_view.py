@@ -50,6 +50,10 @@ class PartPage(ListPage):
         """Those of the table that is shown, and the page's own."""
         return self.labels_of({"F3": "EDIT", "F5": "FIT", "F8": "TOOLS"}, self.model.keys())
 
+    def lively(self) -> bool:
+        """The part is being played."""
+        return self.path.player is not None and self.path.player.playing
+
     def key_actions(self) -> KeyActions:
         """Keys of the table, of the time line and of looking around."""
         path, player = self.path, self.path.player

@@ -219,6 +219,10 @@ class ScopePage(ListPage):
             "Follow": scope.fit,
         }
 
+    def lively(self) -> bool:
+        """Live curves go on."""
+        return self.scope.is_live
+
     def has_field(self) -> bool:
         """A level or a line that is asked for."""
         return self.sheets.asks

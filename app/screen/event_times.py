@@ -21,6 +21,8 @@ class EventTimes:
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self.clock = clock
+        self.touched = self.clock()  # when somebody last did something, a key or a finger
+        self.woken: Callable[[], None] = lambda: None  # called then
         self.stalled = 0.0  # s that the last stall took
         self._alive: float | None = None
         self._behind = float("-inf")  # the end of the last stall
@@ -29,12 +31,16 @@ class EventTimes:
 
     def frame(self) -> None:
         """A frame is shown."""
-        self.alive()
+        self._lives(self.clock())
         self._frames += 1
 
     def alive(self) -> None:
         """The screen does something; called before an event is judged."""
-        now = self.clock()
+        self.touched = self.clock()
+        self._lives(self.touched)
+        self.woken()
+
+    def _lives(self, now: float) -> None:
         if self._alive is not None and now - self._alive > STALL:
             self.stalled, self._behind, self._frames = now - self._alive, now, 0
         self._alive = now

@@ -31,6 +31,8 @@ from app.screen.window_frame import Frame
 from app.screen.window_layout import LEAST
 
 FRAME_MS = 16  # at most 60 pictures a second
+REST_MS = 48  # between two of a machine at rest that nobody has touched of late
+UNTOUCHED = 2.0  # s
 
 
 class MainWindow(QWidget):
@@ -44,6 +46,7 @@ class MainWindow(QWidget):
         self.frame: Frame | None = None
         self._keys: dict[str, Callable[[], None]] = {}
         self.times = EventTimes()
+        self.times.woken = self._wake
         self.keyboard = Keyboard(self, self.times)
         self._page = ""  # that has the keyboard
         self._timer = QTimer(self)
@@ -68,6 +71,20 @@ class MainWindow(QWidget):
     def _tick(self) -> None:
         self.times.frame()
         self.refresh()
+        if self.frame is not None:
+            self._pace(FRAME_MS if self._lively(self.frame) else REST_MS)
+
+    def _lively(self, frame: Frame) -> bool:
+        """Whether every picture counts: something moves or was touched, on the machine or on the screen."""
+        return not frame.at_rest or frame.page.lively() or self.times.clock() - self.times.touched < UNTOUCHED
+
+    def _wake(self) -> None:
+        """The first event ends the leisure, before it is judged."""
+        self._pace(FRAME_MS)
+
+    def _pace(self, interval: int) -> None:
+        if self._timer.isActive() and self._timer.interval() != interval:
+            self._timer.setInterval(interval)
 
     def refresh(self) -> None:
         """Poll the snapshot once, and show it everywhere."""

@@ -26,6 +26,7 @@ spindle, lamps, dock, prompt and function keys belong to the ``Frame``. To plug 
               ``desk.say``).
 ``escape()``  Esc; False when nothing was closed by it: then the desk takes its question back or holds, and
               where it has neither the Automatic page comes up.
+``lively()``  whether something on it moves by itself, so that it is shown 60 times a second at rest, too.
 ``refresh``   once a frame while it is shown: snapshot, view and loaded program of the same instant.
 ``dress()``   the colours have changed; painted parts are updated by the frame anyway.
 
@@ -112,6 +113,10 @@ class Page(QWidget):
 
     def has_field(self) -> bool:
         """Whether an entry of the page has the keyboard."""
+        return False
+
+    def lively(self) -> bool:
+        """Whether something on it moves by itself: played, or measured."""
         return False
 
     def asks(self) -> str:

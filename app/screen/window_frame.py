@@ -38,6 +38,7 @@ from core.executor.snapshot import Snapshot, State
 
 _KEYS = (("F6", "SEARCHTO"), ("Y", "FROM LINE 1"))
 GAP = 4  # pixels under the rows that stand
+_RESTING = frozenset({State.ESTOP, State.DISABLED, State.IDLE, State.FAULT})
 _SETTLED = 3.0  # s after a move by hand before the room of a page may change
 
 
@@ -50,6 +51,7 @@ class Frame(QWidget):
     def __init__(self, look: Look, desk: Desk, press: Callable[[str], None], parent: QWidget) -> None:
         super().__init__(parent)
         self.look, self.desk = look, desk
+        self.at_rest = False  # nothing moves on the machine
         self.title = TitleLine(look, self)
         self.head = HeadLine(look, self)
         self.run = RunLine(look, self)
@@ -217,6 +219,7 @@ class Frame(QWidget):
     def refresh(self) -> None:
         """Take one snapshot and show it everywhere."""
         snapshot, view, loaded = self.desk.look()
+        self.at_rest = snapshot.state in _RESTING and not snapshot.wheel
         self.notices.rows = self._notices_of(snapshot, loaded, here=self.page is self.automatic)
         by_hand = self._by_hand(snapshot)
         if self._dock_moved or (self.notices.other_room and not by_hand):

@@ -37,6 +37,9 @@ _STARTS = (CycleStart, EnableDrives, Home, Jog, JogStep, Wheel)
 _WAITED_FOR = (EnableDrives, Home, Reset)  # a driver answers them when its drives have obeyed
 _WORTH_AN_ENTRY = 0.1  # change of the feed override that is worth an entry in the log
 _COMMANDS = 100  # looked at in one tick
+_RESTING = frozenset({State.ESTOP, State.DISABLED, State.IDLE, State.FAULT})
+_SETTLED = 100  # ticks in which nothing has happened: from then on one in so many is shown
+_SHOWN = 5
 _POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
 
 
@@ -66,6 +69,9 @@ class Executor:
         self._ports = ports
         self._tell = tell
         self._due = ports.clock.now()  # when the next tick is expected
+        self._late = 0.0  # s, the worst since the last that was handed over
+        self._seen: tuple[object, ...] = ()  # what the last tick has seen, but for the time
+        self._same = 0  # ticks since anything of that has changed
         spindle = SpindleControl(ports.spindle, machine.spindle, ports.lock)
         outputs = CommandedOutputs(ports.io, machine.outputs)
         self._context = MachineContext(
@@ -105,8 +111,9 @@ class Executor:
             self._blind()
         for part in (self._mind_watchdog, self._obey, self._supervise, self._go_on, self._turn):
             self._guarded(part)
-        self._show()
-        self._hand_over()
+        if self._worth_showing():
+            self._show()
+            self._hand_over()
         self.patient = False
         self.ticks += 1
 
@@ -149,13 +156,37 @@ class Executor:
                 self.snapshot, t=self._context.now, state=status.state, alarms=status.alarms
             )
 
+    def _worth_showing(self) -> bool:
+        """Everything is looked at and decided in every tick; what a machine at rest shows is made anew twenty
+        times a second, once nothing has happened for a second, for that is most of what a tick costs.
+        """
+        context, status = self._context, self._control.status
+        self._late = max(self._late, context.now - self._due)
+        self._due = context.now + TICK
+        seen = (
+            status.state,
+            context.sample[1:],
+            context.inputs,
+            context.signals,
+            context.ports.io.outputs(),
+            context.spindle.measured,
+            context.spindle.command,
+            status.alarms,
+            context.stop,
+            status.job,
+        )
+        changed = self._same < 0 or status.state not in _RESTING or seen != self._seen
+        self._same = 0 if changed else self._same + 1
+        self._seen = seen
+        return self._same < _SETTLED or self._same % _SHOWN == 0
+
     def _hand_over(self) -> None:
         """What the scope records; that nothing can be recorded stops nothing."""
         if self._tell is None:
             return
         with Attempt():
             now, source = self._context.now, self._ports.samples
-            late, self._due = max(now - self._due, 0.0), now + TICK
+            late, self._late = self._late, 0.0
             samples = source.take() if source is not None else None
             queued = math.nan if source is not None else max(self._ports.axes.horizon() - now, 0.0)
             self._tell(Tick(self.snapshot, late, queued, self._context.spindle.angle.turns, samples))
@@ -218,6 +249,7 @@ class Executor:
                 posted, command = self._commands.get_nowait()
             except queue.Empty:
                 return
+            self._same = -1  # whatever it does is shown at once
             if isinstance(command, _STARTS) and self._context.now - posted > _STALE:
                 self._context.log("refused", f"{type(command).__name__} came too late to be obeyed")
             else:

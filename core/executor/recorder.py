@@ -31,6 +31,7 @@ _log = logging.getLogger(__name__)
 _NAN = float("nan")
 _LOOK = 0.1  # s between two looks at what was handed over
 _AT_REST = 0.1  # s between two rows of a machine on which nothing changes
+_GRAIN = 0.005  # s; half a tick
 _MOST = 60_000  # ticks that wait for a recorder that does not come: ten minutes
 BEFORE, BEHIND = 10.0, 2.0  # s before an alarm and after it that are kept with it
 _SOON = 0.2  # s; a machine that stands is waited for so long
@@ -212,7 +213,7 @@ class Recorder:
                 *bits_of(recorded.outputs, s.outputs),
             ]
             self._late = max(self._late, tick.late)
-            if figures == self._figures and s.t < last + _AT_REST:
+            if figures == self._figures and s.t < last + _AT_REST - _GRAIN:
                 continue
             self._figures, last = figures, s.t
             rows.append([s.t, *figures[:6], self._late, *figures[7:]])
@@ -238,7 +239,7 @@ class Recorder:
                 continue
             place = (s.demand, s.actual, s.rpm_actual)
             row = [s.t, *s.demand, *s.actual, *none, s.rpm_actual, tick.turns, _NAN, tick.queue]
-            if place == self._place and s.t < last + _AT_REST:
+            if place == self._place and s.t < last + _AT_REST - _GRAIN:
                 self._resting = row
                 continue
             if self._resting is not None and place != self._place:
