@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from app.desk.data_folder import RECORDS, data_folder
 from app.desk.desk import Desk
+from app.scope.analyses import Analyses
 from app.scope.record_shelf import RecordShelf
 from app.scope.scope_curves import LiveSamples
 from app.scope.scope_model import Scope
@@ -46,4 +47,7 @@ def give_scope(desk: Desk, live: LiveSamples | None = None) -> None:
     if live is None and desk.recorder is not None:
         live = RecordedSamples(desk.recorder)
     shelf = RecordShelf(data_folder() / RECORDS, save_record, open_record, write_csv)
-    desk.attach(Scope(desk, live, shelf))
+    scope = Scope(desk, live, shelf)
+    desk.attach(scope)
+    slides = {axis.name: axis for axis in desk.lathe.axes} if desk.lathe is not None else {}
+    desk.attach(Analyses(scope, slides["Z"].vmax if "Z" in slides else 0.0))

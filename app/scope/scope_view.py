@@ -200,6 +200,7 @@ class ScopePage(ListPage):
             "F4": Key("CURVES", partial(open_, Side.CURVES)),
             "F5": Key("CURSORS", scope.cursors_key),
             "F6": Key("FIT", scope.fit),
+            "F8": Key("ANALYSE", self._analyse),
             "F9": Key("RECORDS", partial(open_, Side.FILES)),
         }
 
@@ -230,6 +231,9 @@ class ScopePage(ListPage):
     def escape(self) -> bool:
         """One step back; from the curves as the window does."""
         return self.sheets.escape()
+
+    def _analyse(self) -> None:
+        self.host.go(page_table.ANALYSES)
 
     def _picture(self) -> None:
         """The page as it is seen; a worker makes the file of it."""

@@ -14,7 +14,7 @@ MENU, AUTOMATIC, EDITOR, MDI, JOG = "MAIN MENU", "AUTOMATIC", "EDITOR", "MDI", "
 SEARCHTO = "SEARCHTO"
 TOOLS, SECCMP, SPECIAL = "TOOL OFFSETS", "SECONDARY OFFSETS", "SPECIAL FUNCTIONS"
 PROGRAMS, ZERO, SHAPE, PART = "PROGRAMS", "ZERO OFFSETS", "TOOL SHAPE", "PART"
-SCOPE = "SCOPE"
+SCOPE, ANALYSES = "SCOPE", "ANALYSES"
 MEASURED = "MEASURED PARTS"
 
 
@@ -112,6 +112,7 @@ PAGES = (
         "MEASURED",
         "readings, charts, wear, tool life, trends",
     ),
+    PageEntry(ANALYSES, "app.scope.analyses_view.AnalysesPage", "app.scope.analyses.Analyses"),
     PageEntry(SHAPE, "app.offsets.tool_shapes_view.ToolShapePage"),
     PageEntry(MENU, "app.screen.main_menu.MenuPage"),
     PageEntry(

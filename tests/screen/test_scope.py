@@ -15,6 +15,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from app.scope.analyses_view import AnalysesPage
 from app.scope.record_shelf import RecordShelf, ShelfError
 from app.scope.scope_model import Scope, Side
 from app.scope.scope_trigger import When
@@ -251,7 +252,7 @@ def test_a_trigger_freezes_once(hands: Hands, played: PlayedSamples) -> None:
     assert scope.armed
 
     def later() -> bool:
-        played.now += 0.05
+        played.now += 0.25
         return scope.frozen is not None
 
     hands.sees(later)
@@ -405,3 +406,25 @@ def test_the_desk_starts_without_pyqtgraph() -> None:
         "import app.scope.scope_view; sys.exit('pyqtgraph' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_the_analyses_stand_behind_f8(hands: Hands) -> None:
+    frozen(hands)
+    hands.key(Key.Key_F8)
+    page = hands.frame.page
+    assert isinstance(page, AnalysesPage)
+    hands.sees(lambda: page.chart is not None and bool(page.chart.drawing.curves))
+    found = page.analyses.found
+    assert found is not None
+    assert found.worst
+    before = page.analyses.magnified
+    hands.key(Key.Key_Z)
+    assert page.analyses.magnified > before
+    hands.key(Key.Key_F3)
+    hands.sees(lambda: "by the spindle's angle" in page.above.words)
+    hands.sees(lambda: page.chart is not None and len(page.chart.plots) == 2)
+    hands.key(Key.Key_F4)
+    hands.sees(lambda: "no arc" in page.above.words)
+    hands.sees(lambda: page.chart is not None and not page.chart.drawing.curves)
+    hands.key(Key.Key_F8)
+    assert hands.frame.page.NAME == page_table.SCOPE

@@ -1,0 +1,378 @@
+"""Analyses of a record: path error along the part, passes of a thread, ball-bar plot of an arc.
+
+They take what the scope shows frozen, or of live samples the last program that ran. A worker works them out;
+what cannot be told is a sentence.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from enum import Enum
+
+import numpy as np
+import numpy.typing as npt
+
+from app.desk import formats
+from app.desk.desk import Desk
+from app.desk.latest import Latest
+from app.desk.sheet import STEPS, Row, Sheet
+from app.desk.translation import tr
+from app.scope.scope_model import Scope
+from core.records.analysis_errors import AnalysisError
+from core.records.ball_bar import BallBar, arcs_in, ball_bar
+from core.records.path_error import PathError, WorstPlace, of_samples, worst_places
+from core.records.record import Record
+from core.records.thread_passes import Thread, fastest, find_thread
+
+FloatArray = npt.NDArray[np.float64]
+MOST_POINTS = 6000  # that are drawn of a path
+MAGNIFIED = (10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0)
+_PAUSE = 2.0  # s without a line that end a run of the program
+_WORST = 12
+
+
+class Kind(Enum):
+    """What is looked for."""
+
+    PATH = "PATH ERROR"
+    THREAD = "THREAD"
+    BALL_BAR = "BALL BAR"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Drawing:
+    """Lines to be drawn: ``soft`` is what was programmed, then a curve each; units inside. ``equal`` axes.
+
+    ``below`` are curves of a second plot. ``marks`` are places with their words.
+    """
+
+    soft: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
+    curves: tuple[FloatArray, ...] = ()
+    below: tuple[FloatArray, ...] = ()
+    marks: tuple[tuple[float, float, str], ...] = ()
+    equal: bool = True
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Found:
+    """What an analysis has found: one of the three, or ``why`` there is nothing."""
+
+    kind: Kind
+    why: str = ""
+    path: PathError | None = None
+    worst: tuple[WorstPlace, ...] = ()
+    thread: Thread | None = None
+    speeds: tuple[FloatArray, ...] = ()  # of the passes, rpm
+    ball: BallBar | None = None
+    arc: tuple[int, int, int] = (0, 0, 0)  # its number, of how many, its line
+    vmax: float = 0.0  # of the slide along a thread, mm/s
+    axes: tuple[str, str] = ("Z", "X")
+
+
+@dataclass(slots=True)
+class Analyses:
+    """``marked`` row of the table, ``magnified`` how many times an error is drawn larger."""
+
+    scope: Scope
+    vmax: float = 0.0  # of the slide along the spindle, mm/s
+    worker: Latest = field(default_factory=lambda: Latest("editing-analyses"))
+    kind: Kind = Kind.PATH
+    arc: int = 0
+    magnified: float = 100.0
+    marked: int = 0
+    found: Found | None = None
+    _of: object = None
+
+    @property
+    def desk(self) -> Desk:
+        """Where answers are said."""
+        return self.scope.desk
+
+    # --- what is asked -------------------------------------------------------------------------------
+
+    def opened(self) -> None:
+        """The page comes up: look at what there is now."""
+        self._of = None
+        self.found = None
+
+    def choose(self, kind: Kind) -> None:
+        """Another analysis; the same again takes newer samples."""
+        self.desk.clear()
+        self.kind, self.arc, self.marked = kind, 0, 0
+        self.opened()
+
+    def next_arc(self) -> None:
+        """The next arc of the record."""
+        self.desk.clear()
+        if self.kind is not Kind.BALL_BAR:
+            self.choose(Kind.BALL_BAR)
+            return
+        self.arc += 1
+        self.opened()
+
+    def magnify(self, steps: int) -> None:
+        """Draw the error larger or smaller."""
+        at = min(range(len(MAGNIFIED)), key=lambda i: abs(MAGNIFIED[i] - self.magnified))
+        self.magnified = MAGNIFIED[max(0, min(len(MAGNIFIED) - 1, at + steps))]
+
+    def typed(self, key: str) -> bool:
+        """Arrows mark a row."""
+        count = len(self.sheet().rows)
+        if key not in STEPS or not count:
+            return False
+        self.mark(self.marked + STEPS[key])
+        return True
+
+    def mark(self, row: int) -> None:
+        """The drawing shows where it is."""
+        self.marked = max(0, min(len(self.sheet().rows) - 1, row))
+
+    def look(self) -> None:
+        """Once a frame: what the worker has found; it is asked once."""
+        self.worker.poll()
+        if self._of is None and not self.worker.busy:
+            kind, arc, vmax = self.kind, self.arc, self.vmax
+            self._of = (kind, arc)
+            frozen, window, live = self.scope.frozen, self.scope.window, self.scope.live
+
+            def work(_request: object) -> Found:
+                if frozen is not None:
+                    begin, end = frozen.zero + window.begin, frozen.zero + window.end
+                    return analysed(kind, frozen.record.between(begin, end), arc, vmax)
+                if live is None or not math.isfinite(live.last):
+                    return Found(kind, tr("NOTHING IS RECORDED ON THIS MACHINE: OPEN A RECORD WITH F9"))
+                names = {each.name for each in live.channels if each.unit in {"mm", "deg"}}
+                names |= {"line", "spindle turns", "spindle speed"}
+                record = live.between(live.last - live.lasts, live.last, names)
+                return analysed(kind, last_run(record), arc, vmax)
+
+            self.worker.ask(work, self._take, self.desk.say)
+
+    def _take(self, found: Found) -> None:
+        if found.kind is self.kind:
+            self.found = found
+
+    def close(self) -> None:
+        """End the worker."""
+        self.worker.close()
+
+    # --- what is shown -------------------------------------------------------------------------------
+
+    def drawing(self) -> Drawing:
+        """Lines of what was found."""
+        found = self.found
+        if found is None or found.why:
+            return Drawing()
+        if found.path is not None:
+            return _path_drawing(found, self.magnified, self.marked)
+        if found.thread is not None:
+            return _thread_drawing(found)
+        return _ball_drawing(found, self.magnified) if found.ball is not None else Drawing()
+
+    def sheet(self) -> Sheet:
+        """Figures of what was found."""
+        found, metric = self.found, self.scope.metric
+        title = tr(self.kind.value)
+        if found is None:
+            return Sheet(title, ("",), (1.0,), (), notes=(tr("WORKED OUT …"),))
+        if found.path is not None:
+            return _path_sheet(title, found, metric, self.marked)
+        if found.thread is not None:
+            return _thread_sheet(title, found.thread, found.vmax, metric, self.marked)
+        if found.ball is not None:
+            return _ball_sheet(title, found.ball, found, metric)
+        return Sheet(title, ("",), (1.0,), ())
+
+    @property
+    def words(self) -> str:
+        """What is looked at, above the drawing."""
+        found = self.found
+        if found is None:
+            return tr("WORKED OUT …")
+        if found.why:
+            return found.why
+        if found.thread is not None:
+            return tr("passes over each other by the spindle's angle: way beside the thread, and speed")
+        return tr("error drawn {times} times as large; Z changes that").format(times=f"{self.magnified:g}")
+
+
+def last_run(record: Record) -> Record:
+    """Of samples the last stretch in which lines of a program were executed; all of it where none were."""
+    lines = record.columns.get("line")
+    if lines is None or not (lines > 0).any():
+        return record
+    on = np.flatnonzero(lines > 0)
+    times = record.times[on]
+    gaps = np.flatnonzero(np.diff(times) > _PAUSE)
+    first = on[gaps[-1] + 1] if len(gaps) else on[0]
+    return record.between(float(record.times[first]), float(record.times[on[-1]]))
+
+
+def analysed(kind: Kind, record: Record, arc: int, vmax: float) -> Found:
+    """Work it out; what cannot be is told by ``why``."""
+    try:
+        return _analysed(kind, record, arc, vmax)
+    except AnalysisError as error:
+        return Found(kind, str(error))
+
+
+def _analysed(kind: Kind, record: Record, arc: int, vmax: float) -> Found:
+    columns = record.columns
+    letters = [each.name[0] for each in record.channels if each.name[1:] == " demand" and each.unit == "mm"]
+    if len(letters) < 2 or not len(record.times):
+        raise AnalysisError(tr("the record has no two slides, and so no path"))
+    axes = ("Z", "X") if {"X", "Z"} <= set(letters) else (letters[0], letters[1])
+    demand = np.column_stack([columns[f"{each} demand"] for each in axes])
+    actual = np.column_stack([columns[f"{each} actual"] for each in axes])
+    lines = columns.get("line", np.zeros(len(record.times)))
+    if kind is Kind.PATH:
+        path = of_samples(demand, actual, lines, record.rate)
+        return Found(kind, path=path, worst=worst_places(path, _WORST), axes=axes)
+    if kind is Kind.THREAD:
+        speed = columns.get("spindle speed", np.full(len(lines), np.nan))
+        turns = columns.get("spindle turns", np.full(len(lines), np.nan))
+        thread = find_thread(turns, actual[:, 0], actual[:, 1], speed)
+        speeds = tuple(speed[each.first : each.last + 1] for each in thread.passes)
+        return Found(kind, thread=thread, speeds=speeds, vmax=vmax, axes=axes)
+    arcs = arcs_in(demand, np.where(np.isfinite(lines), lines, 0.0))
+    if not arcs:
+        raise AnalysisError(
+            tr("there is no arc of 60 degrees or more in this time: record while a G02 or G03 is cut")
+        )
+    number = arc % len(arcs)
+    line, cut = arcs[number]
+    part = demand[cut]
+    moved = np.append(True, (np.abs(np.diff(part, axis=0)) > 1e-9).any(axis=1))
+    ball = ball_bar(part[moved], actual[cut][moved])
+    return Found(kind, ball=ball, arc=(number, len(arcs), line), axes=axes)
+
+
+# --- drawings -------------------------------------------------------------------------------------------
+
+
+def _thinned(points: FloatArray, most: int = MOST_POINTS) -> FloatArray:
+    return points[:: max(1, math.ceil(len(points) / most))]
+
+
+def _path_drawing(found: Found, factor: float, marked: int) -> Drawing:
+    path = found.path
+    assert path is not None
+    marks: tuple[tuple[float, float, str], ...] = ()
+    if marked < len(found.worst):
+        worst = found.worst[marked]
+        place = path.magnified(factor)[worst.sample]
+        marks = ((float(place[0]), float(place[1]), tr("line {line}").format(line=worst.line)),)
+    return Drawing(_thinned(path.foot), (_thinned(path.magnified(factor)),), (), marks)
+
+
+def _thread_drawing(found: Found) -> Drawing:
+    assert found.thread is not None
+    curves = tuple(_thinned(np.column_stack([each.turns, each.off])) for each in found.thread.passes[:8])
+    below = tuple(
+        _thinned(np.column_stack([each.turns, speed]))
+        for each, speed in zip(found.thread.passes[:8], found.speeds, strict=False)
+        if np.isfinite(speed).all()
+    )
+    return Drawing(curves=curves, below=below, equal=False)
+
+
+def _ball_drawing(found: Found, factor: float) -> Drawing:
+    ball = found.ball
+    assert ball is not None
+    angles = np.radians(ball.angles)
+    out = np.column_stack([np.cos(angles), np.sin(angles)])
+    seen = (ball.radius + factor * ball.deviation)[:, None] * out
+    return Drawing(_thinned(ball.radius * out), (_thinned(seen),))
+
+
+# --- figures --------------------------------------------------------------------------------------------
+
+
+def _length(mm: float, metric: bool) -> str:
+    return f"{formats.length(mm, metric)} {'mm' if metric else 'in'}"
+
+
+def _path_sheet(title: str, found: Found, metric: bool, marked: int) -> Sheet:
+    path = found.path
+    assert path is not None
+    rows = tuple(
+        Row((str(each.line), formats.length(each.distance, metric), formats.length(each.place[0], metric)))
+        for each in found.worst
+    )
+    notes = (
+        tr("Greatest: {far}").format(far=_length(path.greatest, metric)),
+        tr("Positive lies to the left of the way the tool goes."),
+    )
+    heads = (tr("LINE"), tr("OFF THE PATH"), found.axes[0])
+    shares, figures = (0.22, 0.4, 0.38), frozenset({1, 2})
+    return Sheet(title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, figures=figures)
+
+
+def _thread_sheet(title: str, thread: Thread, vmax: float, metric: bool, marked: int) -> Sheet:
+    rows = tuple(
+        Row(
+            (
+                str(number),
+                formats.length(abs(each.depth - thread.passes[0].depth), metric),
+                f"{formats.fixed(each.entry, 2)}°",
+                formats.length(each.lead - thread.lead, metric),
+                formats.fixed(each.drop, 0),
+            )
+        )
+        for number, each in enumerate(thread.passes, 1)
+    )
+    limit = fastest(thread.lead, vmax) if vmax else math.inf
+    notes = (
+        tr("Lead: {lead} a turn").format(lead=_length(abs(thread.lead), metric)),
+        tr("Entry angles lie within {angle}°").format(angle=formats.fixed(thread.entry_spread, 2)),
+        tr("Infeed along a flank shifts the entry, by its depth."),
+        tr("The slide can follow this lead up to {rpm} rpm").format(rpm=formats.rpm(limit)),
+    )
+    heads = (tr("PASS"), tr("DEEPER"), tr("ENTRY"), tr("LEAD OFF"), tr("RPM LOST"))
+    shares = (0.12, 0.24, 0.2, 0.24, 0.2)
+    figures = frozenset({1, 2, 3, 4})
+    return Sheet(title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, figures=figures)
+
+
+def _ball_sheet(title: str, ball: BallBar, found: Found, metric: bool) -> Sheet:
+    u, v = found.axes
+    a_metre = tr("a metre")
+
+    def lean(value: float) -> str:
+        return f"{_length(value, metric)} {a_metre}" if math.isfinite(value) else formats.NOTHING
+
+    def told(value: float) -> str:
+        return _length(value, metric) if math.isfinite(value) else formats.NOTHING
+
+    rows = (
+        Row((tr("ROUNDNESS"), told(ball.roundness))),
+        Row((tr("BACKLASH {axis}").format(axis=u), told(ball.backlash[0]))),
+        Row((tr("BACKLASH {axis}").format(axis=v), told(ball.backlash[1]))),
+        Row((tr("REVERSAL SPIKE {axis}").format(axis=u), told(ball.spike[0]))),
+        Row((tr("REVERSAL SPIKE {axis}").format(axis=v), told(ball.spike[1]))),
+        Row((tr("OUT OF SQUARE"), lean(ball.squareness))),
+        Row((tr("SCALE {u} TO {v}").format(u=u, v=v), lean(ball.scale))),
+        Row((tr("RADIUS OFF"), told(ball.size))),
+    )
+    number, count, line = found.arc
+    notes = (
+        tr("Line {line}, arc {number} of {count}: radius {radius}, {angle}°").format(
+            line=line,
+            number=number + 1,
+            count=count,
+            radius=_length(ball.radius, metric),
+            angle=formats.fixed(ball.covered, 0),
+        ),
+        tr("A dash: the arc is too short to tell it."),
+        tr("Play behind the encoder is not seen by it."),
+    )
+    return Sheet(title, ("", ""), (0.52, 0.48), rows, notes=notes, figures=frozenset({1}))
+
+
+def scaled(drawing: Drawing, factor: float) -> Drawing:
+    """In another unit of length, both ways of equal axes, else upwards."""
+    by = np.array([factor if drawing.equal else 1.0, factor])
+    marks = tuple((x * by[0], y * by[1], word) for x, y, word in drawing.marks)
+    curves = tuple(each * by for each in drawing.curves)
+    return replace(drawing, soft=drawing.soft * by, curves=curves, marks=marks)

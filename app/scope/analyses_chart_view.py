@@ -1,0 +1,96 @@
+"""The drawing of an analysis: a path with its error magnified, passes of a thread, a ball-bar plot."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QPainter, QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.scope.analyses import Drawing
+from app.screen.chart import Chart, Plot, curve_colour, line_pen, set_curve
+from app.screen.look import Look
+
+FloatArray = npt.NDArray[np.float64]
+_LEFT = 9.0  # units
+_ROOM = 0.06  # round what is drawn
+
+
+class AnalysisChart(Chart):
+    """``show_drawing`` puts lines on it; everything fits into it."""
+
+    def __init__(self, look: Look, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self.drawing = Drawing()
+
+    def show_drawing(self, drawing: Drawing) -> None:
+        """Draw this, in the units it is given in."""
+        self.drawing = drawing
+        self.empty()
+        if not drawing.curves:
+            return
+        upper = self.add()
+        upper.vb.invertY(drawing.equal)  # X+ goes downwards, as the operator sees the slide
+        self._fill(upper, drawing.soft, drawing.curves)
+        if drawing.below:
+            self._fill(self.add(), np.empty((0, 2)), drawing.below)
+        self.share_left(_LEFT)
+        self._fit()
+
+    def _fill(self, plot: Plot, soft: FloatArray, curves: tuple[FloatArray, ...]) -> None:
+        if len(soft):
+            line = plot.curve(line_pen(self.look.colour("todo")))
+            set_curve(line, soft[:, 0], soft[:, 1])
+        for number, points in enumerate(curves):
+            line = plot.curve(line_pen(curve_colour(self.look, number)))
+            set_curve(line, points[:, 0], points[:, 1])
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Equal axes stay equal."""
+        super().resizeEvent(event)
+        if self.isVisible() and self.plots:  # it comes once while pyqtgraph makes it
+            self._fit()
+
+    def _fit(self) -> None:
+        self.ci.layout.activate()
+        drawing = self.drawing
+        _range(self.plots[0], [drawing.soft, *drawing.curves], equal=drawing.equal)
+        if drawing.below:
+            _range(self.plots[1], list(drawing.below), equal=False)
+
+    def dress(self) -> None:
+        """Colours and letters of now."""
+        super().dress()
+        if self.plots:
+            self.show_drawing(self.drawing)
+
+    def drawForeground(self, painter: QPainter, rect: QRectF) -> None:
+        """Rings round the marks, with their words."""
+        super().drawForeground(painter, rect)
+        if not self.plots:
+            return
+        u, plot = self.look.u, self.plots[0]
+        (x0, x1), (y0, y1) = plot.vb.viewRange()
+        room = plot.room()
+        for x, y, word in self.drawing.marks:
+            down = (y - y0) / (y1 - y0) if self.drawing.equal else (y1 - y) / (y1 - y0)
+            at = QPointF(room.x() + (x - x0) / (x1 - x0) * room.width(), room.y() + down * room.height())
+            painter.setPen(self.look.pen("pause", 0.2))
+            painter.drawEllipse(at, 1.4 * u, 1.4 * u)
+            painter.setFont(self.look.font(1.7, bold=True))
+            box = QRectF(at.x() - 8 * u, at.y() - 4.2 * u, 16 * u, 2.4 * u)
+            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, word)
+
+
+def _range(plot: Plot, parts: list[FloatArray], *, equal: bool) -> None:
+    """Everything in sight; both axes in one scale where they are ``equal``."""
+    points = np.concatenate([each for each in parts if len(each)])
+    low, high = points.min(axis=0), points.max(axis=0)
+    middle, wide = 0.5 * (low + high), np.maximum((1.0 + 2.0 * _ROOM) * (high - low), 1e-6)
+    room = plot.room()
+    if equal and room.width() > 1.0 and room.height() > 1.0:
+        scale = max(wide[0] / room.width(), wide[1] / room.height())
+        wide = scale * np.array([room.width(), room.height()])
+    plot.setXRange(middle[0] - wide[0] / 2, middle[0] + wide[0] / 2, padding=0)
+    plot.setYRange(middle[1] - wide[1] / 2, middle[1] + wide[1] / 2, padding=0)

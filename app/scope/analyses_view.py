@@ -1,0 +1,162 @@
+"""The page of the analyses: path error, thread passes, ball bar; the drawing and its figures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QResizeEvent, QWheelEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk.formats import MM_PER_INCH
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
+from app.desk.sheet import Key
+from app.desk.translation import tr
+from app.scope.analyses import Analyses, Kind, scaled
+from app.screen import page_table
+from app.screen.look import Painter
+from app.screen.page_base import Host, KeyActions
+from app.screen.panel import Panel, Shown
+from app.screen.sheet_panel import ListPage, SheetPanel
+from core.executor.snapshot import Snapshot
+
+if TYPE_CHECKING:
+    from app.scope.analyses_chart_view import AnalysisChart
+
+_TABLE, _HEAD = 50.0, 3.4  # units
+CHART = "app.scope.analyses_chart_view"
+
+
+class Above(Panel):
+    """What is looked at, or why there is nothing."""
+
+    ground = "panel"
+    words = Shown("")
+
+    def draw(self, painter: Painter) -> None:
+        u = self.look.u
+        room = self.area().adjusted(0.8 * u, 0, -0.8 * u, 0)
+        painter.write(QRectF(room), self.words, 1.8, "text")
+
+
+class AnalysesPage(ListPage):
+    """The model decides; this shows it."""
+
+    NAME = page_table.ANALYSES
+    model: _Keys
+
+    def __init__(self, host: Host, analyses: Analyses, parent: QWidget) -> None:
+        super().__init__(host, _Keys(analyses), parent)
+        self.analyses = analyses
+        self.above = Above(self.look, self)
+        self.room = QWidget(self)
+        self.table = SheetPanel(self.look, analyses.mark, self)
+        self.chart: AnalysisChart | None = None
+        self._drawn: object = None
+        analyses.worker.queue(lambda: import_module(CHART), self._chart_there, self.desk.say)
+
+    def _chart_there(self, module: object) -> None:
+        self.chart = module.AnalysisChart(self.look, self.room)  # type: ignore[attr-defined]
+        self.chart.setGeometry(self.room.rect())
+        self.chart.show()
+
+    def _keys(self) -> Mapping[str, Key]:
+        choose = self.analyses.choose
+        return {
+            "F2": Key("PATH", partial(choose, Kind.PATH)),
+            "F3": Key("THREAD", partial(choose, Kind.THREAD)),
+            "F4": Key("BALL BAR", partial(choose, Kind.BALL_BAR)),
+            "F5": Key("NEXT ARC", self.analyses.next_arc),
+            "F8": Key("SCOPE", self._back),
+        }
+
+    def _back(self) -> None:
+        self.host.go(page_table.SCOPE)
+
+    def labels(self) -> tuple[str, ...]:
+        """The analyses, and the way back."""
+        return self.labels_of({}, self._keys())
+
+    def key_actions(self) -> KeyActions:
+        """Function keys, and how much an error is magnified."""
+        magnify = self.analyses.magnify
+        return {
+            **{name: key.action for name, key in self._keys().items()},
+            "Zoom in": partial(magnify, 1),
+            "Zoom out": partial(magnify, -1),
+        }
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """How much an error is magnified."""
+        self.analyses.magnify(1 if event.angleDelta().y() > 0 else -1)
+        event.accept()
+
+    def escape(self) -> bool:
+        """Back to the scope, unless something moves: then the desk holds."""
+        if self.desk.notice:
+            self.desk.clear()
+            return True
+        return False
+
+    def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
+        """What has been found."""
+        analyses = self.analyses
+        analyses.look()
+        self.above.words = analyses.words
+        self.table.show_sheet(analyses.sheet())
+        metric = analyses.scope.metric
+        shown = (analyses.found, analyses.magnified, analyses.marked, metric)
+        if self.chart is not None and shown != self._drawn:
+            self._drawn = shown
+            self.chart.show_drawing(scaled(analyses.drawing(), 1.0 if metric else 1.0 / MM_PER_INCH))
+
+    def dress(self) -> None:
+        """Other colours are in force."""
+        if self.chart is not None:
+            self.chart.dress()
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """Drawing at the left, figures at the right."""
+        u = self.look.u
+        gap, side, high = max(4, round(0.7 * u)), round(_TABLE * u), round(_HEAD * u)
+        left = self.width() - side - gap
+        self.above.setGeometry(0, 0, left, high)
+        self.room.setGeometry(0, high, left, self.height() - high)
+        self.table.setGeometry(left + gap, 0, side, self.height())
+        if self.chart is not None:
+            self.chart.setGeometry(self.room.rect())
+            self.chart.dress()
+
+
+class _Keys:
+    """What a page asks of its model."""
+
+    def __init__(self, analyses: Analyses) -> None:
+        self._analyses = analyses
+
+    def typed(self, key: str) -> bool:
+        """Arrows mark a row."""
+        return self._analyses.typed(key)
+
+    def takes(self, _key: str) -> bool:
+        """No character is text here."""
+        return False
+
+    def opened(self) -> None:
+        """Look at what there is now."""
+        self._analyses.opened()
+
+    def escape(self) -> bool:
+        """Nothing is open in it."""
+        return False
+
+    def prompt(self) -> str:
+        """What keys do now."""
+        return tr("ARROWS MARK A ROW; Z AND THE WHEEL MAGNIFY; THE SAME KEY AGAIN TAKES NEWER SAMPLES")
+
+    def leave(self) -> None:
+        """Nothing stays open."""

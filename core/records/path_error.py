@@ -1,0 +1,133 @@
+"""Path error: how far the measured path lies beside the programmed one, along the part, with the worst lines.
+
+It is the distance to the path and no following error: a slide that is late on a straight line is on it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from core.records.analysis_errors import AnalysisError
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+LEAST = 10  # samples that a path needs
+UNTOLD = "the driver does not tell where the slides are; there is no path to compare"
+STOOD = "nothing moved in this time; record while a program runs"
+_SAME = 1e-9  # mm: points nearer than that are one
+
+
+@dataclass(frozen=True, slots=True)
+class PathError:
+    """Of each measured sample (m,): its distance to the path, mm, positive to the left of the way it goes.
+
+    ``foot`` (m, 2) is the nearest point of the path, ``along`` how far along the path that lies, mm,
+    ``lines`` the source line there.
+    """
+
+    distance: FloatArray
+    foot: FloatArray
+    along: FloatArray
+    lines: IntArray
+    measured: FloatArray
+
+    @property
+    def greatest(self) -> float:
+        """The greatest distance on either side, mm."""
+        return float(np.abs(self.distance).max())
+
+    def magnified(self, factor: float) -> FloatArray:
+        """The measured path (m, 2) with its distance from the programmed one so many times as large."""
+        return self.foot + factor * (self.measured - self.foot)
+
+
+@dataclass(frozen=True, slots=True)
+class WorstPlace:
+    """Where a line is farthest off: its distance, mm, and where on the path."""
+
+    line: int
+    distance: float
+    place: tuple[float, float]
+    sample: int
+
+
+def path_error(
+    programmed: FloatArray, lines: IntArray, measured: FloatArray, due: IntArray, reach: int
+) -> PathError:
+    """Distances of ``measured`` (m, 2) from the polyline ``programmed`` (n, 2) with its ``lines`` (n,).
+
+    ``due`` (m,) is the point of the polyline at which each sample was to be; its foot is sought ``reach``
+    points to both sides of it, so that a path that crosses itself is not taken for its own neighbour.
+    Raises AnalysisError.
+    """
+    _check(programmed, lines, measured, due)
+    n = len(programmed)
+    lengths = np.hypot(*np.diff(programmed, axis=0).T)
+    come = np.concatenate([[0.0], np.cumsum(lengths)])
+    best = np.full(len(measured), np.inf)
+    segment, share = np.zeros(len(measured), dtype=np.int64), np.zeros(len(measured))
+    for step in range(-reach, reach):
+        at = np.clip(due + step, 0, n - 2)
+        start, way = programmed[at], programmed[at + 1] - programmed[at]
+        square = (way**2).sum(axis=1)
+        dot = ((measured - start) * way).sum(axis=1)
+        part = np.clip(np.divide(dot, square, out=np.zeros_like(dot), where=square > _SAME**2), 0.0, 1.0)
+        off = ((measured - start - part[:, None] * way) ** 2).sum(axis=1)
+        nearer = off < best
+        best[nearer], segment[nearer], share[nearer] = off[nearer], at[nearer], part[nearer]
+    start, way = programmed[segment], programmed[segment + 1] - programmed[segment]
+    foot = start + share[:, None] * way
+    beside = measured - foot
+    side = np.sign(way[:, 0] * beside[:, 1] - way[:, 1] * beside[:, 0])
+    distance = np.where(side < 0.0, -1.0, 1.0) * np.sqrt(best)
+    return PathError(distance, foot, come[segment] + share * lengths[segment], lines[segment], measured)
+
+
+def _check(programmed: FloatArray, lines: IntArray, measured: FloatArray, due: IntArray) -> None:
+    if len(measured) < LEAST or len(programmed) < 2:
+        raise AnalysisError(
+            f"a path error needs {LEAST} samples of a path at least; record while a program runs"
+        )
+    if len(lines) != len(programmed) or len(due) != len(measured):
+        raise AnalysisError("points and lines of the path do not belong together")
+    if not (np.isfinite(programmed).all() and np.isfinite(measured).all()):
+        raise AnalysisError(UNTOLD)
+    if not (np.ptp(programmed, axis=0) > _SAME).any():
+        raise AnalysisError(STOOD)
+
+
+def of_samples(
+    demand: FloatArray, actual: FloatArray, lines: FloatArray, rate: float, late: float = 0.1
+) -> PathError:
+    """Of a record: the setpoints (m, 2) are the programmed path, ``actual`` (m, 2) what was measured.
+
+    A sample's foot is sought within ``late`` s of the path before and behind. Raises AnalysisError.
+    """
+    if len(demand) < LEAST:
+        raise AnalysisError(
+            f"a path error needs {LEAST} samples of a path at least; record while a program runs"
+        )
+    if not (np.isfinite(demand).all() and np.isfinite(actual).all()):
+        raise AnalysisError(UNTOLD)
+    moved = np.append(True, (np.abs(np.diff(demand, axis=0)) > _SAME).any(axis=1))
+    if moved.sum() < 2:
+        raise AnalysisError(STOOD)
+    due = np.cumsum(moved) - 1
+    known = np.where(np.isfinite(lines), lines, 0.0).astype(np.int64)
+    path = demand[moved]
+    reach = max(2, round(late * rate))
+    return path_error(path, known[moved], actual, due.astype(np.int64), reach)
+
+
+def worst_places(error: PathError, most: int = 10) -> tuple[WorstPlace, ...]:
+    """The lines that are farthest off, the worst first; samples of no line (0) are left out."""
+    found = []
+    for line in np.unique(error.lines[error.lines > 0]):
+        of_line = np.flatnonzero(error.lines == line)
+        sample = int(of_line[np.argmax(np.abs(error.distance[of_line]))])
+        x, z = error.foot[sample]
+        found.append(WorstPlace(int(line), float(error.distance[sample]), (float(x), float(z)), sample))
+    return tuple(sorted(found, key=lambda each: -abs(each.distance))[:most])

@@ -1,0 +1,171 @@
+"""Response of an axis to a step, ramp or sine: rise, overshoot, settling, lag; and what a window would do.
+
+Everything is read off the samples; nothing is assumed of the drive but, of ``at_other_speed``, that its lag
+grows with its speed.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from core.records.analysis_errors import AnalysisError
+
+FloatArray = npt.NDArray[np.float64]
+LEAST = 20  # samples
+
+
+@dataclass(frozen=True, slots=True)
+class StepResponse:
+    """Seconds and shares of the step. ``rise`` from 10 to 90 %, ``overshoot`` beyond the end, 0: none.
+
+    ``settling`` from the request's end until it stays within ``band`` mm; nan: it did not in the record.
+    ``delay`` until half of the way is done, less that of the request; ``rest`` mm that it is off at last.
+    """
+
+    way: float
+    rise: float
+    overshoot: float
+    settling: float
+    delay: float
+    rest: float
+    band: float
+
+
+def step_response(times: FloatArray, request: FloatArray, response: FloatArray, band: float) -> StepResponse:
+    """Samples (n,) from before the step until after it. ``band`` mm is the window of in position.
+
+    Raises AnalysisError.
+    """
+    _check(times, request, response)
+    way = float(request[-1] - request[0])
+    if abs(way) <= 2.0 * band:
+        raise AnalysisError(f"a step of {abs(way):.4f} is no larger than its window of {band:.4f}: take more")
+    asked = (request - request[0]) / way
+    done = (response - response[0]) / way
+    half, tenth, most = (_crossing(times, done, share) for share in (0.5, 0.1, 0.9))
+    end = float(times[np.argmax(asked >= 1.0 - 1e-9)])
+    outside = np.flatnonzero(np.abs(response - request[-1]) > band)
+    last = int(outside[-1]) if len(outside) else -1
+    settling = math.nan if last == len(times) - 1 else max(float(times[last + 1]) - end, 0.0)
+    return StepResponse(
+        way,
+        most - tenth,
+        max(float(done.max()) - 1.0, 0.0),
+        settling,
+        half - _crossing(times, asked, 0.5),
+        float(response[-1] - request[-1]),
+        band,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class SineResponse:
+    """``gain``: amplitude of the response over that of the request; ``lag`` degrees behind it."""
+
+    frequency: float
+    gain: float
+    lag: float
+    error: float  # amplitude of request less response
+
+    @property
+    def late(self) -> float:
+        """The lag in seconds."""
+        return self.lag / 360.0 / self.frequency
+
+
+def sine_response(
+    times: FloatArray, request: FloatArray, response: FloatArray, frequency: float
+) -> SineResponse:
+    """By the sine of ``frequency`` Hz that fits each best, over whole waves. Raises AnalysisError."""
+    _check(times, request, response)
+    waves = math.floor((times[-1] - times[0]) * frequency + 1e-6)
+    if waves < 1:
+        raise AnalysisError("the record holds less than one wave of the sine; take more")
+    cut = times <= times[0] + waves / frequency
+    asked, got = (_wave(times[cut], each[cut], frequency) for each in (request, response))
+    if abs(asked) < 1e-9:
+        raise AnalysisError(f"the request has no sine of {frequency:g} Hz")
+    ratio = got / asked
+    return SineResponse(frequency, abs(ratio), -math.degrees(np.angle(ratio)), abs(asked - got))
+
+
+def _wave(times: FloatArray, values: FloatArray, frequency: float) -> complex:
+    """Amplitude and phase of the sine in these samples, with an offset and a slope beside it."""
+    t = times - times[0]
+    turn = 2.0 * math.pi * frequency * t
+    system = np.column_stack([np.cos(turn), np.sin(turn), np.ones_like(t), t])
+    (a, b, *_), *_ = np.linalg.lstsq(system, values, rcond=None)
+    return complex(a, -b)
+
+
+@dataclass(frozen=True, slots=True)
+class RampResponse:
+    """``speed`` mm/s of the ramp, ``error`` mm that the axis lags in its even part."""
+
+    speed: float
+    error: float
+    overshoot: float  # mm beyond the end
+
+    @property
+    def lag(self) -> float:
+        """Seconds behind the request."""
+        return self.error / self.speed
+
+
+def ramp_response(times: FloatArray, request: FloatArray, response: FloatArray) -> RampResponse:
+    """Of the later half of the ramp's even part: the lag has settled then. Raises AnalysisError."""
+    _check(times, request, response)
+    speeds = np.gradient(request, times)
+    top = float(speeds[np.argmax(np.abs(speeds))])
+    even = np.flatnonzero(np.abs(speeds - top) <= 0.01 * abs(top))
+    if abs(top) < 1e-9 or len(even) < LEAST:
+        raise AnalysisError("the request has no ramp of even speed; take a longer one")
+    late = even[len(even) // 2 :]
+    error = float(np.mean(request[late] - response[late]))
+    sign = math.copysign(1.0, top)
+    return RampResponse(top, error, max(float(np.max(sign * (response - request[-1]))), 0.0))
+
+
+def _check(times: FloatArray, request: FloatArray, response: FloatArray) -> None:
+    if len(times) < LEAST:
+        raise AnalysisError(f"a response needs {LEAST} samples at least; this driver gives too few")
+    if not (np.isfinite(request).all() and np.isfinite(response).all()):
+        raise AnalysisError("the driver does not tell where the slide is; there is no response to see")
+
+
+def _crossing(times: FloatArray, share: FloatArray, level: float) -> float:
+    """When it first reaches this share, between samples by a straight line; nan: never."""
+    above = np.flatnonzero(share >= level)
+    if not len(above) or above[0] == 0:
+        return float(times[0]) if len(above) else math.nan
+    i = int(above[0])
+    part = (level - share[i - 1]) / (share[i] - share[i - 1])
+    return float(times[i - 1] + part * (times[i] - times[i - 1]))
+
+
+# --- what another window or another speed would do ------------------------------------------------------
+
+
+def would_trip(times: FloatArray, error: FloatArray, window: float, lasts: float) -> float | None:
+    """When an error (mm) beyond ``window`` for longer than ``lasts`` s would have tripped; None: never."""
+    off = np.abs(error) > window
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], off, [False]]).astype(int)))
+    for first, last in zip(edges[0::2], edges[1::2], strict=True):
+        if times[last - 1] - times[first] > lasts:
+            return float(times[first]) + lasts
+    return None
+
+
+def at_other_speed(velocity: FloatArray, error: FloatArray, factor: float) -> FloatArray:
+    """The following error (n,), mm, at ``factor`` times the speed: its part that goes with speed grows so.
+
+    That part is the best line error = k · velocity; the rest (friction, weight, cut) stays as it is.
+    """
+    known = np.isfinite(velocity) & np.isfinite(error)
+    square = float((velocity[known] ** 2).sum())
+    lag = float((velocity[known] * error[known]).sum()) / square if square > 0.0 else 0.0
+    return np.asarray(error + (factor - 1.0) * lag * np.where(np.isfinite(velocity), velocity, 0.0))

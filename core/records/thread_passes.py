@@ -1,0 +1,180 @@
+"""Passes of a thread laid over each other by the spindle's angle: entry angle, lead error, speed under load.
+
+A pass is a stretch in which the slide goes the same way a turn, for two turns at least. Each is told by the
+line that fits it best: way = lead · turns + entry.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from core.records.analysis_errors import AnalysisError
+
+FloatArray = npt.NDArray[np.float64]
+LEAST_TURNS = 2.0
+_EVEN = 0.04  # by which the way of a turn may differ within a pass
+_ALIKE = 0.02  # by which leads of passes of one thread may differ
+_LEAST_LEAD = 0.05  # mm a turn
+_EDGE = 0.5  # turns at both ends, in which the slide still speeds up
+_POINTS = 24  # of a turn, at which the way is compared
+
+
+@dataclass(frozen=True, slots=True)
+class ThreadPass:
+    """One pass. ``first`` and ``last`` sample; ``turns`` (k,) from the thread's beginning, ``off`` mm (k,).
+
+    ``entry`` degrees of the spindle where the slide crosses that beginning, against the first pass;
+    ``lead`` mm a turn by the best line. Speeds in rpm; ``depth`` where the other slide stood, mm.
+    """
+
+    first: int
+    last: int
+    turns: FloatArray
+    off: FloatArray
+    entry: float
+    lead: float
+    depth: float
+    speed_before: float
+    speed_least: float
+    ripple: float
+
+    @property
+    def drop(self) -> float:
+        """By how many rpm the spindle was slower in the cut than before it."""
+        return self.speed_before - self.speed_least
+
+
+@dataclass(frozen=True, slots=True)
+class Thread:
+    """The passes of one thread; the lead they were compared with, mm a turn, signed as the slide goes."""
+
+    lead: float
+    passes: tuple[ThreadPass, ...]
+
+    @property
+    def entry_spread(self) -> float:
+        """From the least to the greatest entry angle, degrees."""
+        entries = [each.entry for each in self.passes]
+        return max(entries) - min(entries)
+
+    @property
+    def lead_error(self) -> float:
+        """The worst lead less the one it should be, mm a turn."""
+        return max((each.lead - self.lead for each in self.passes), key=abs)
+
+
+def fastest(lead: float, vmax: float) -> float:
+    """Spindle speed, rpm, at which the slide of ``vmax`` mm/s can just follow this lead, mm a turn."""
+    return 60.0 * vmax / abs(lead) if lead else math.inf
+
+
+def find_thread(
+    turns: FloatArray, along: FloatArray, depth: FloatArray, speed: FloatArray, lead: float | None = None
+) -> Thread:
+    """Of samples (n,): spindle turns, the slide along the thread and the other (mm), speed (rpm).
+
+    ``lead`` mm a turn where it is known; else that of the passes that were alike. Raises AnalysisError.
+    """
+    if len(turns) < 100:
+        raise AnalysisError("the passes of a thread need 100 samples at least; record while one is cut")
+    if not np.isfinite(turns).all():
+        raise AnalysisError("the spindle has no encoder that is counted: its angle is not in the record")
+    if abs(turns[-1] - turns[0]) < LEAST_TURNS:
+        raise AnalysisError("the spindle does not turn in this time; record while a thread is cut")
+    runs = _runs(turns, along)
+    if lead is not None:
+        runs = [each for each in runs if abs(each[2] - lead) <= _EVEN * abs(lead)]
+    else:
+        runs = _alike(runs)
+    if not runs:
+        raise AnalysisError("there is no pass of a thread in this time: nothing goes two turns evenly")
+    if lead is None:
+        slopes = [np.polyfit(turns[a : b + 1] - turns[a], along[a : b + 1], 1)[0] for a, b, *_ in runs]
+        lead = float(np.median(slopes))
+    return Thread(lead, _passes(runs, lead, turns, along, depth, speed))
+
+
+Run = tuple[int, int, float, int]  # first sample, last, way a turn; sample at which the slide set out
+
+
+def _runs(turns: FloatArray, along: FloatArray) -> list[Run]:
+    """Stretches in which the way of each turn is the same."""
+    direction = 1.0 if turns[-1] >= turns[0] else -1.0
+    t = np.maximum.accumulate(direction * turns)
+    grid = np.arange(t[0], t[-1], 1.0 / _POINTS)
+    where = np.interp(grid, t, along)
+    slope = _POINTS * np.gradient(where) * direction if len(grid) > 2 else np.zeros(len(grid))
+    even = np.zeros(len(grid), dtype=bool)
+    even[1:] = np.abs(np.diff(slope)) <= _EVEN * np.abs(slope[1:]) / 2.0
+    even &= np.abs(slope) >= _LEAST_LEAD
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], even, [False]]).astype(int)))
+    found = []
+    for begin, end in zip(edges[0::2], edges[1::2], strict=True):
+        if end - begin < LEAST_TURNS * _POINTS:
+            continue
+        middle = float(np.median(slope[begin:end]))
+        good = np.flatnonzero(np.abs(slope[begin:end] - middle) <= _EVEN * abs(middle))
+        a, b = begin + good[0], begin + good[-1]
+        if grid[b] - grid[a] >= LEAST_TURNS:
+            edge = min(_EDGE, 0.1 * (grid[b] - grid[a]))
+            first, last = np.searchsorted(t, (grid[a] + edge, grid[b] - edge))
+            found.append((int(first), int(last), middle, int(np.searchsorted(t, grid[a]))))
+    return found
+
+
+def _alike(runs: list[Run]) -> list[Run]:
+    """The passes of the coarsest lead that occurs more than once, else of the coarsest."""
+    if not runs:
+        return []
+    groups = [[each for each in runs if abs(each[2] - one[2]) <= _ALIKE * abs(one[2])] for one in runs]
+    several = [group for group in groups if len(group) > 1] or groups
+    return max(several, key=lambda group: (abs(group[0][2]) > _LEAST_LEAD, len(group), abs(group[0][2])))
+
+
+def _passes(
+    runs: list[Run],
+    lead: float,
+    turns: FloatArray,
+    along: FloatArray,
+    depth: FloatArray,
+    speed: FloatArray,
+) -> tuple[ThreadPass, ...]:
+    """Each by its best line; entry angles against the first, within half a turn of it."""
+    begin = float(np.median([along[first] for first, *_ in runs]))
+    found: list[ThreadPass] = []
+    base = 0.0
+    for number, (first, last, _, out) in enumerate(runs):
+        cut = slice(first, last + 1)
+        t = turns[cut]
+        slope, start = np.polyfit(t - t[0], along[cut], 1)
+        crossing = t[0] + (begin - start) / slope
+        base = crossing if number == 0 else base
+        entry = 360.0 * ((crossing - base + 0.5) % 1.0 - 0.5)
+        whole = base + round(crossing - base)
+        off = along[cut] - (begin + lead * (t - whole))
+        before = speed[max(0, out - max(1, (last - first) // 10)) : out + 1]
+        within = speed[cut]
+        found.append(
+            ThreadPass(
+                first,
+                last,
+                t - whole,
+                off,
+                float(entry),
+                float(slope),
+                float(np.median(depth[cut])),
+                _mean(before),
+                float(np.nanmin(within)) if np.isfinite(within).any() else math.nan,
+                float(np.nanmax(within) - np.nanmin(within)) if np.isfinite(within).any() else math.nan,
+            )
+        )
+    return tuple(found)
+
+
+def _mean(values: FloatArray) -> float:
+    known = values[np.isfinite(values)]
+    return float(known.mean()) if len(known) else math.nan

@@ -1,0 +1,110 @@
+"""Threads that are computed: entry angles, leads, speeds that are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from core.records.analysis_errors import AnalysisError
+from core.records.thread_passes import Thread, fastest, find_thread
+
+RATE, RPM, LEAD = 1000.0, 1200.0, 1.5
+
+
+def cut(
+    *,
+    entries: tuple[float, ...] = (0.0, 0.0, 0.0),
+    leads: tuple[float, ...] = (),
+    drop: float = 0.0,
+    ripple: float = 0.0,
+    way: float = -1.0,
+) -> tuple[np.ndarray, ...]:
+    """Passes of 15 turns over the same way, entries in degrees; 20 turns a second."""
+    leads = leads or tuple(LEAD for _ in entries)
+    t = np.arange(int(2.0 * RATE * len(entries))) / RATE
+    turns = RPM / 60.0 * t
+    speed = RPM + ripple * np.sin(2.0 * np.pi * turns)
+    along, depth = np.full(len(t), 5.0), np.full(len(t), 12.0)
+    for n, (entry, lead) in enumerate(zip(entries, leads, strict=True)):
+        begin = 40 * n + 5 + entry / 360.0  # whole turns apart, so that angles are those that are put in
+        inside = (turns >= begin) & (turns < begin + 15.0)
+        along[inside] = 5.0 + way * lead * (turns[inside] - begin)
+        depth[inside] = 10.0 - 0.2 * n
+        speed[inside] -= drop
+        back = (turns >= begin + 15.0) & (turns < begin + 16.0)
+        along[back] = 5.0 + way * lead * 15.0 * (1.0 - (turns[back] - begin - 15.0))
+    return turns, along, depth, speed
+
+
+def found(**how: object) -> Thread:
+    return find_thread(*cut(**how))  # type: ignore[arg-type]
+
+
+def test_passes_that_lie_in_one_groove() -> None:
+    thread = found()
+    assert len(thread.passes) == 3
+    assert thread.lead == pytest.approx(-LEAD, rel=1e-6)
+    assert thread.entry_spread == pytest.approx(0.0, abs=0.01)
+    assert [each.depth for each in thread.passes] == pytest.approx([10.0, 9.8, 9.6])
+    assert all(np.abs(each.off).max() < 1e-6 for each in thread.passes)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_pass_that_enters_at_another_angle(way: float) -> None:
+    thread = found(entries=(0.0, 0.0, 12.0), way=way)
+    assert [each.entry for each in thread.passes] == pytest.approx([0.0, 0.0, 12.0], abs=0.05)
+    assert np.mean(thread.passes[2].off) == pytest.approx(-way * LEAD * 12.0 / 360.0, abs=1e-4)
+
+
+def test_an_entry_angle_before_the_first() -> None:
+    assert found(entries=(0.0, -5.0)).passes[1].entry == pytest.approx(-5.0, abs=0.05)
+
+
+def test_a_lead_that_is_wrong() -> None:
+    thread = find_thread(*cut(leads=(LEAD, LEAD, 1.503)), lead=-LEAD)
+    assert thread.passes[2].lead == pytest.approx(-1.503, abs=1e-5)
+    assert thread.lead_error == pytest.approx(-0.003, abs=1e-5)
+    assert abs(thread.passes[2].off[-1]) == pytest.approx(
+        0.003 * 15.0, rel=0.05
+    )  # half a turn at both ends is left out
+
+
+def test_the_spindle_gives_way_in_the_cut() -> None:
+    thread = found(drop=30.0)
+    assert [each.speed_least for each in thread.passes] == pytest.approx([RPM - 30.0] * 3)
+    assert [each.drop for each in thread.passes] == pytest.approx([30.0] * 3, abs=5.0)
+
+
+def test_a_known_ripple() -> None:
+    assert [each.ripple for each in found(ripple=4.0).passes] == pytest.approx([8.0] * 3, abs=0.1)
+
+
+def test_the_speed_at_which_a_slide_can_just_follow() -> None:
+    assert fastest(-1.5, 42.0) == pytest.approx(1680.0)  # 42 mm/s are 28 leads a second
+
+
+def test_an_even_feed_is_one_long_pass_and_the_lead_is_told() -> None:
+    turns = np.arange(4000) * 0.02
+    thread = find_thread(turns, -0.2 * turns, np.zeros(4000), np.full(4000, RPM))
+    assert len(thread.passes) == 1
+    assert thread.lead == pytest.approx(-0.2)
+
+
+@pytest.mark.parametrize(
+    ("turns", "says"),
+    [
+        (np.arange(50) * 0.02, "100 samples"),
+        (np.full(500, np.nan), "no encoder"),
+        (np.zeros(500), "does not turn"),
+        (np.arange(500) * 0.02, "no pass of a thread"),
+    ],
+)
+def test_what_is_no_thread_is_refused(turns: np.ndarray, says: str) -> None:
+    n = len(turns)
+    with pytest.raises(AnalysisError, match=says):
+        find_thread(turns, np.zeros(n), np.zeros(n), np.zeros(n))
+
+
+def test_another_lead_is_not_taken_for_this_one() -> None:
+    with pytest.raises(AnalysisError, match="no pass"):
+        find_thread(*cut(), lead=2.0)

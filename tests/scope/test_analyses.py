@@ -1,0 +1,62 @@
+"""The analyses page: what is worked out of a record, told in figures and drawn."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.scope.analyses import Kind, analysed, last_run
+from tests.scope.played_record import record_of, seconds
+
+
+def turned_arc() -> object:
+    """Line 4 is a whole circle of 10 mm in four seconds; X lags by a play of .02 mm."""
+    times = seconds(0.0, 6.0)
+    angle = 2.0 * np.pi * np.clip((times - 1.0) / 4.0, 0.0, 1.0)
+    x, z = 30.0 + 10.0 * np.sin(angle), -50.0 + 10.0 * np.cos(angle)
+    play = 0.01 * np.sign(np.gradient(x))
+    line = np.where((times >= 1.0) & (times <= 5.0), 4.0, 0.0)
+    return record_of(times, X_demand=x, X_actual=x - play, Z_demand=z, Z_actual=z, line=line)
+
+
+def test_a_ball_bar_of_the_arc_of_a_record() -> None:
+    found = analysed(Kind.BALL_BAR, turned_arc(), 0, 0.0)  # type: ignore[arg-type]
+    assert found.ball is not None
+    assert found.arc == (0, 1, 4)
+    assert found.ball.radius == pytest.approx(10.0, abs=1e-3)
+    assert found.ball.backlash == pytest.approx((0.0, 0.02), abs=3e-4)  # Z, X
+
+
+def test_the_path_error_of_its_line() -> None:
+    found = analysed(Kind.PATH, turned_arc(), 0, 0.0)  # type: ignore[arg-type]
+    assert [each.line for each in found.worst] == [4]
+    assert abs(found.worst[0].distance) == pytest.approx(0.01, abs=1e-4)  # the play where X goes radially
+
+
+def test_what_is_not_there_is_told() -> None:
+    record = record_of(seconds(0.0, 3.0))
+    assert "no arc" in analysed(Kind.BALL_BAR, record, 0, 0.0).why
+    still = record_of(seconds(0.0, 3.0), spindle_turns=np.full(3001, 7.0))
+    assert "does not turn" in analysed(Kind.THREAD, still, 0, 0.0).why
+    assert "two slides" in analysed(Kind.PATH, record_of(seconds(0.0, 3.0), {"line"}), 0, 0.0).why
+    nothing = np.full(3001, np.nan)
+    deaf = record_of(seconds(0.0, 3.0), spindle_turns=nothing)
+    assert "no encoder" in analysed(Kind.THREAD, deaf, 0, 0.0).why
+
+
+def test_of_live_samples_the_last_run_is_taken() -> None:
+    times = seconds(0.0, 20.0)
+    line = np.where((times > 2.0) & (times < 5.0), 3.0, 0.0) + np.where(
+        (times > 9.0) & (times < 15.0), 4.0, 0.0
+    )
+    found = last_run(record_of(times, line=line))
+    assert (found.times[0], found.times[-1]) == pytest.approx((9.001, 14.999))
+
+
+def test_without_a_run_all_of_it_is() -> None:
+    record = record_of(seconds(0.0, 2.0), line=np.zeros(2001))
+    assert len(last_run(record).times) == 2001
+    without = replace(record, columns={})
+    assert last_run(without) is without
