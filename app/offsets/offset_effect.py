@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     from app.path.path_picture import Picture
     from core.proving.other_offsets import OtherPart
 
+    # The job with the offsets before and after; None: the program makes no part.
+    ComparePart = Callable[[Job, Job, Watch], OtherPart | None]
+
 NOUGHT = 1e-9  # mm
 R = TypeVar("R", ToolRow, SecondaryRow)
 
@@ -40,8 +43,6 @@ class Tables:
 
 # Job, the tools in whose frame it is drawn, and whether anybody still wants it.
 Draw = Callable[[Job, Mapping[int, ToolOffset], Watch], "Picture"]
-# The job with the offsets before and after; None: the program makes no part.
-ComparePart = Callable[[Job, Job, Watch], "OtherPart | None"]
 
 
 @dataclass(frozen=True, slots=True)

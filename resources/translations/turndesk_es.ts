@@ -25,13 +25,138 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1 cannot run while nose compensation is active.</source>
+      <translation>%1 no puede correr con la compensación de punta activa.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1 cuts a contour, and its lines would have to follow</source>
       <translation>%1 corta un contorno, y sus líneas tendrían que seguir</translation>
     </message>
     <message>
       <location filename="" />
+      <source>%1 has no feed: none for cutting is in force.</source>
+      <translation>%1 no tiene avance: no hay ninguno de corte vigente.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 is no surface speed that a tool can stand.</source>
+      <translation>%1 no es velocidad superficial que aguante una herramienta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 is the first move after the T on line %2: its start point is not known.</source>
+      <translation>%1 es el primer movimiento tras la T de la línea %2: no se conoce su punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 makes a corner at the end of a straight move, and the line has none.</source>
+      <translation>%1 hace una esquina al final de una recta, y la línea no tiene ninguna.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 needs %2 of the corner opposite to the start point.</source>
+      <translation>%1 necesita %2 de la esquina opuesta al punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 needs %2, %3.</source>
+      <translation>%1 necesita %2, %3.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 needs Z, the bottom of the hole.</source>
+      <translation>%1 necesita Z, el fondo del barreno.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 needs a C axis, and the machine file switches it off.</source>
+      <translation>%1 necesita un eje C, y el archivo de máquina lo apaga.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 turns the spindle, which is not locked.</source>
+      <translation>%1 gira el husillo, que no está bloqueado.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1 · SIMULATED</source>
       <translation>%1 · SIMULADO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: %2 stands without a number here.</source>
+      <translation>%1: aquí %2 está sin número.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: %2, %3, must be over 0.</source>
+      <translation>%1: %2, %3, debe ser mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: C turns at more than 0 and at most %2 rpm.</source>
+      <translation>%1: C gira a más de 0 y a lo más %2 rpm.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: U is what the cycle leaves on a side, which is never negative.</source>
+      <translation>%1: U es lo que el ciclo deja por lado, y nunca es negativo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: a corner's size must be a number over 0.</source>
+      <translation>%1: el tamaño de una esquina debe ser mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: beside G35 only F2 has a meaning (leads to 2 in/rev).</source>
+      <translation>%1: junto a G35 sólo F2 tiene sentido (pasos hasta 2 pulg/rev).</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: the angle of infeed goes from 0 to 30 degrees.</source>
+      <translation>%1: el ángulo de entrada va de 0 a 30 grados.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: the lead must be above 0 and at most %2.</source>
+      <translation>%1: el paso debe ser mayor que 0 y a lo más %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: the rate of the retract goes from over 0 to %2.</source>
+      <translation>%1: la velocidad de retiro va de más de 0 a %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: the speed has no sign; M03 and M04 say the direction.</source>
+      <translation>%1: la velocidad no lleva signo; M03 y M04 dicen el sentido.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>(~%1) turns C, which is not locked.</source>
+      <translation>(~%1) gira C, que no está bloqueado.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>(~%1) under G95: a plane is fed in inches a minute.</source>
+      <translation>(~%1) con G95: un plano avanza en pulgadas por minuto.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>(~%1) with nose compensation on.</source>
+      <translation>(~%1) con compensación de punta activa.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>A T stands between G35 and G36.</source>
+      <translation>Hay una T entre G35 y G36.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>A dwell of %1 s is out of range: 0.1 s to an hour.</source>
+      <translation>Una espera de %1 s está fuera de rango: de 0.1 s a una hora.</translation>
     </message>
     <message>
       <location filename="" />
@@ -45,8 +170,33 @@
     </message>
     <message>
       <location filename="" />
+      <source>Add R, or I and K.</source>
+      <translation>Agregue R, o I y K.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Arcs cannot be incremental in diameter mode.</source>
+      <translation>Los arcos no pueden ser incrementales en modo diámetro.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>C MOVES WHILE THE SPINDLE TURNS</source>
       <translation>C SE MUEVE MIENTRAS EL HUSILLO GIRA</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Close it with M12 first.</source>
+      <translation>Ciérrela primero con M12.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Correct %1.</source>
+      <translation>Corrija %1.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Correct C; bare C is 29 degrees.</source>
+      <translation>Corrija C; C sola es 29 grados.</translation>
     </message>
     <message>
       <location filename="" />
@@ -55,13 +205,123 @@
     </message>
     <message>
       <location filename="" />
+      <source>End G%1 first: a move off the part, then G40.</source>
+      <translation>Termine primero G%1: un movimiento fuera de la pieza, luego G40.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Feed %1 is out of range: %2 to %3.</source>
+      <translation>El avance %1 está fuera de rango: de %2 a %3.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>G%1 comes while G%2 is on.</source>
+      <translation>G%1 viene con G%2 activo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>G%1 does not stand alone on its line.</source>
+      <translation>G%1 no va sola en su línea.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>G%1 is active, and a thread is cut without nose compensation.</source>
+      <translation>G%1 está activo, y una rosca se corta sin compensación de punta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>G%1 needs S, a speed in rpm.</source>
+      <translation>G%1 necesita S, una velocidad en rpm.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>G%1 needs X or Z.</source>
+      <translation>G%1 necesita X o Z.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>G%1 stands alone on its line.</source>
+      <translation>G%1 va sola en su línea.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>G00 stands with F, G94 or G95, each of which ends the rapid.</source>
+      <translation>G00 está con F, G94 o G95, y cada uno termina el rápido.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>G01 goes back to the last cutting feed, and none has been set after the first line.</source>
+      <translation>G01 vuelve al último avance de corte, y no se puso ninguno después de la primera línea.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>G04 does not say how long.</source>
+      <translation>G04 no dice cuánto.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>G35 is in force already.</source>
+      <translation>G35 ya está vigente.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>G89 locks the spindle and stands without M codes.</source>
+      <translation>G89 bloquea el husillo y va sin códigos M.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>G96 is active, and a thread needs one speed from first pass to last.</source>
+      <translation>G96 está activo, y una rosca necesita una sola velocidad de la primera a la última pasada.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Give larger arcs I and K.</source>
+      <translation>A los arcos mayores déles I y K.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>I is missing.</source>
+      <translation>Falta I.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>I, the depth of the first pass, must be above 0.</source>
+      <translation>I, la profundidad de la primera pasada, debe ser mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>IN/OUT</source>
       <translation>INT/EXT</translation>
     </message>
     <message>
       <location filename="" />
+      <source>K, the lead, is missing.</source>
+      <translation>Falta K, el paso.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Keep one way.</source>
+      <translation>Deje una sola forma.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Line %1 begins in the work, and no sure way leads there.</source>
       <translation>La línea %1 empieza dentro de la pieza y ningún camino seguro lleva allí.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>M%1 starts the spindle and no S has said how fast.</source>
+      <translation>M%1 arranca el husillo y ninguna S dijo qué tan rápido.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>M%1 starts the spindle with the collet open.</source>
+      <translation>M%1 arranca el husillo con la boquilla abierta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>M%1 starts the spindle, which is locked as the axis C.</source>
+      <translation>M%1 arranca el husillo, que está bloqueado como eje C.</translation>
     </message>
     <message>
       <location filename="" />
@@ -80,6 +340,71 @@
     </message>
     <message>
       <location filename="" />
+      <source>M13 opens the collet while the spindle turns.</source>
+      <translation>M13 abre la boquilla con el husillo girando.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Move there before the plane.</source>
+      <translation>Muévase ahí antes del plano.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Move to X and Z of the start point before it.</source>
+      <translation>Muévase antes a la X y la Z del punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>No G35 is in force that G36 could end.</source>
+      <translation>No hay G35 vigente que G36 pueda terminar.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>P does not say which subroutine describes the contour.</source>
+      <translation>P no dice qué subrutina describe el contorno.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Put G40 and a departure before it.</source>
+      <translation>Ponga antes G40 y una salida.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Put it on the line with X or Z.</source>
+      <translation>Póngalo en la línea con X o Z.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Put the rest on a line of its own.</source>
+      <translation>Ponga lo demás en su propia línea.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>R must be a number over 0.</source>
+      <translation>R debe ser un número mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Release it with M05 first.</source>
+      <translation>Libérelo primero con M05.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Set axis.C.enabled.</source>
+      <translation>Ponga axis.C.enabled.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Set one with G95Fn or G94Fn.</source>
+      <translation>Ponga uno con G95Fn o G94Fn.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Stop it with M05 first.</source>
+      <translation>Párelo primero con M05.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>THE PROGRAM ENDS WITHOUT M30 OR M02</source>
       <translation>EL PROGRAMA TERMINA SIN M30 NI M02</translation>
     </message>
@@ -90,8 +415,163 @@
     </message>
     <message>
       <location filename="" />
+      <source>Take the line out.</source>
+      <translation>Quite la línea.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The T on line %1 has not been moved to X and Z.</source>
+      <translation>La T de la línea %1 no se ha movido a X y Z.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The arc has R and %1.</source>
+      <translation>El arco tiene R y %1.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The arc has neither R nor I and K.</source>
+      <translation>El arco no tiene ni R ni I y K.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The line has both C and R.</source>
+      <translation>La línea tiene C y R a la vez.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The line holds %1 and %2.</source>
+      <translation>La línea contiene %1 y %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The line holds %1, which is neither C1 (on) nor C0 (off).</source>
+      <translation>La línea contiene %1, que no es C1 (encendido) ni C0 (apagado).</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The line holds %1, which is no number of an input.</source>
+      <translation>La línea contiene %1, que no es número de una entrada.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The spindle stands, and a thread is cut by its turns.</source>
+      <translation>El husillo está parado, y una rosca se corta por sus vueltas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Use G90 or G73 for the arc.</source>
+      <translation>Use G90 o G73 para el arco.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>With input %1 %2 at line %3: %4</source>
       <translation>Con la entrada %1 %2 en la línea %3: %4</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write %1 alone.</source>
+      <translation>Escriba sólo %1.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write C1 or C0.</source>
+      <translation>Escriba C1 o C0.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write F on the %1 line.</source>
+      <translation>Escriba F en la línea de %1.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write G%1Sn.</source>
+      <translation>Escriba G%1Sn.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write G04Fn, n in seconds.</source>
+      <translation>Escriba G04Fn, n en segundos.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write G35 or G35F2.</source>
+      <translation>Escriba G35 o G35F2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write G36 before it.</source>
+      <translation>Escriba G36 antes.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write G40 before.</source>
+      <translation>Escriba antes G40.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write G94 with F before.</source>
+      <translation>Escriba antes G94 con F.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write G97S before it.</source>
+      <translation>Escriba antes G97S.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write I, the depth of the first pass.</source>
+      <translation>Escriba I, la profundidad de la primera pasada.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write K, the lead per revolution.</source>
+      <translation>Escriba K, el paso por vuelta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write M19 before.</source>
+      <translation>Escriba antes M19.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write M19 or M89 before.</source>
+      <translation>Escriba antes M19 o M89.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write its number after P.</source>
+      <translation>Escriba su número tras P.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write the coordinates.</source>
+      <translation>Escriba las coordenadas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write the degrees.</source>
+      <translation>Escriba los grados.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write the input's number.</source>
+      <translation>Escriba el número de la entrada.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write the size in full.</source>
+      <translation>Escriba el tamaño completo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>X of the last pass is missing.</source>
+      <translation>Falta la X de la última pasada.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Z, the end of the thread, is missing.</source>
+      <translation>Falta Z, el final de la rosca.</translation>
     </message>
     <message>
       <location filename="" />
@@ -189,6 +669,21 @@
       <translation>modo de husillo</translation>
     </message>
     <message>
+      <location filename="" />
+      <source>the depth of a peck</source>
+      <translation>la profundidad de un picoteo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the distance before the cut at which the feed begins</source>
+      <translation>la distancia antes del corte en que empieza el avance</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the greatest depth of cut</source>
+      <translation>la mayor profundidad de corte</translation>
+    </message>
+    <message>
       <location filename="app/automatic/automatic_view.py" />
       <source>ALARMS</source>
       <translation>ALARMAS</translation>
@@ -259,6 +754,46 @@
       <translation>A la línea</translation>
     </message>
     <message>
+      <location filename="app/compose/desk_part.py" />
+      <source>%1 Assumed: %2.</source>
+      <translation>%1 Supuesto: %2.</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_part.py" />
+      <source>LINE {line}: {check}</source>
+      <translation>LÍNEA {line}: {check}</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_part.py" />
+      <source>Say another stock, or other shapes of tools.</source>
+      <translation>Indique otro material u otras formas de herramienta.</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_part.py" />
+      <source>Say it anew on the page PART.</source>
+      <translation>Indíquelo de nuevo en la página PIEZA.</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_part.py" />
+      <source>THE PART IS NOT PROVED AS IT WAS SAID</source>
+      <translation>LA PIEZA NO SE PROBÓ COMO SE INDICÓ</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_part.py" />
+      <source>The part could not be proved: %1.</source>
+      <translation>La pieza no se pudo comprobar: %1.</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_part.py" />
+      <source>The stock that was said cannot be used, and is assumed: %1.</source>
+      <translation>El material indicado no se puede usar y se supone: %1.</translation>
+    </message>
+    <message>
+      <location filename="app/compose/journal.py" />
+      <source>MEASURED PARTS CANNOT BE KEPT: %1</source>
+      <translation>LAS PIEZAS MEDIDAS NO SE PUEDEN GUARDAR: %1</translation>
+    </message>
+    <message>
       <location filename="app/compose/journal.py" />
       <source>loaded to run</source>
       <translation>cargado para correr</translation>
@@ -287,6 +822,11 @@
       <location filename="app/compose/screen_desk.py" />
       <source>SIMULATED SLIDES · REAL SPINDLE</source>
       <translation>CARROS SIMULADOS · HUSILLO REAL</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>THE RECORD OF THE SCOPE</source>
+      <translation>EL REGISTRO DEL OSCILOSCOPIO</translation>
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -427,6 +967,11 @@
       <location filename="app/desk/desk.py" />
       <source>FILE NOT FOUND: %1</source>
       <translation>NO SE ENCONTRÓ EL ARCHIVO: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>LOOK: {what}; H HOLDS THE FEED</source>
+      <translation>MIRE: {what}; H RETIENE EL AVANCE</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -815,6 +1360,11 @@
     </message>
     <message>
       <location filename="app/desk/program_loading.py" />
+      <source>PROVING THE PART OF</source>
+      <translation>PROBANDO LA PIEZA DE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/program_loading.py" />
       <source>READING</source>
       <translation>LEYENDO</translation>
     </message>
@@ -1030,6 +1580,16 @@
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
+      <source>WILL NOT START</source>
+      <translation>NO ARRANCARÁ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompt_line.py" />
+      <source>WILL NOT START: %1</source>
+      <translation>NO ARRANCARÁ: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompt_line.py" />
       <source>WILL NOT START: NO OFFSET WAS EVER SET FOR %1 (F8 SETS THEM)</source>
       <translation>NO ARRANCARÁ: NUNCA SE PUSO COMPENSACIÓN PARA %1 (F8 LA PONE)</translation>
     </message>
@@ -1154,7 +1714,7 @@
       <translation>COMO EL PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/desk/tool_shapes.py" />
+      <location filename="app/desk/stored_shapes.py" />
       <source>a profile is three points or more, Z and X in mm: 0,0 2.5,0 1.2,1.5</source>
       <translation>un perfil son tres puntos o más, Z y X en mm: 0,0 2.5,0 1.2,1.5</translation>
     </message>
@@ -2185,6 +2745,16 @@
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
+      <source>MAKING THE PART WITH THE OFFSETS BEFORE AND AFTER</source>
+      <translation>HACIENDO LA PIEZA CON LOS CORRECTORES DE ANTES Y DESPUÉS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>NO DIAMETER OR SHOULDER OF THE PART CHANGES; F6 SHOWS THE TABLE</source>
+      <translation>NO CAMBIA NINGÚN DIÁMETRO NI HOMBRO DE LA PIEZA; F6 MUESTRA LA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
       <source>NOTHING HAS CHANGED HERE YET: TYPE A VALUE OR CHANGE ONE, THEN PRESS F6</source>
       <translation>AQUÍ AÚN NO CAMBIÓ NADA: ESCRIBA UN VALOR O CAMBIE UNO, Y OPRIMA F6</translation>
     </message>
@@ -2192,6 +2762,11 @@
       <location filename="app/offsets/offset_effect.py" />
       <source>THE EFFECT CANNOT BE DRAWN: {why}</source>
       <translation>EL EFECTO NO SE PUEDE DIBUJAR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>THE PART CANNOT BE COMPARED: {why}; F6 SHOWS THE TABLE</source>
+      <translation>LA PIEZA NO SE PUEDE COMPARAR: {why}; F6 MUESTRA LA TABLA</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
@@ -2205,6 +2780,11 @@
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
+      <source>THIS PROGRAM MAKES NO PART</source>
+      <translation>ESTE PROGRAMA NO HACE PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
       <source>UP TO {far} APART, AT THE CIRCLE; F6 GOES NEAR, Z ZOOMS, ESC SHOWS THE TABLE</source>
       <translation>HASTA {far} DE DIFERENCIA, EN EL CÍRCULO; F6 SE ACERCA, Z AMPLÍA, ESC MUESTRA LA TABLA</translation>
     </message>
@@ -2212,6 +2792,16 @@
       <location filename="app/offsets/offset_effect.py" />
       <source>UP TO {far} APART; Z ZOOMS, F6 SHOWS THE TABLE</source>
       <translation>HASTA {far} DE DIFERENCIA; Z AMPLÍA, F6 MUESTRA LA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>UP TO {far} APART; Z ZOOMS, F6: WHAT IT DOES TO THE PART</source>
+      <translation>HASTA {far} DE SEPARACIÓN; Z AMPLÍA, F6: QUÉ HACE A LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>{count} FEATURES OF THE PART CHANGE; F6 SHOWS THE TABLE</source>
+      <translation>CAMBIAN {count} MEDIDAS DE LA PIEZA; F6 MUESTRA LA TABLA</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
@@ -2509,6 +3099,56 @@
       <translation>Todavía no se cambia ninguna compensación.</translation>
     </message>
     <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>AFTER</source>
+      <translation>DESPUÉS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>BORE</source>
+      <translation>AGUJERO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>DIFFERENCE</source>
+      <translation>DIFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>FEATURE</source>
+      <translation>MEDIDA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>LINE {line}: {check} IS GONE</source>
+      <translation>LÍNEA {line}: YA NO HAY {check}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>LINE {line}: {what}</source>
+      <translation>LÍNEA {line}: {what}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>NOT BOTH</source>
+      <translation>SOLO UNA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>SHOULDER</source>
+      <translation>HOMBRO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>SHOULDER IN THE BORE</source>
+      <translation>HOMBRO DEL AGUJERO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>WHAT IT DOES TO THE PART</source>
+      <translation>QUÉ HACE A LA PIEZA</translation>
+    </message>
+    <message>
       <location filename="app/offsets/secondary_offsets.py" />
       <source>C CLEARS ALL OFFSETS ONLY WHILE Offset Number? IS ASKED; PRESS ESC FIRST</source>
       <translation>C BORRA TODO SÓLO MIENTRAS SE PREGUNTA ¿Número de compensación?; OPRIMA PRIMERO ESC</translation>
@@ -2604,6 +3244,36 @@
       <translation>CEROS</translation>
     </message>
     <message>
+      <location filename="app/offsets/tool_fields.py" />
+      <source>NOW {axis}: T{number} IS SET WHEN BOTH ARE THERE</source>
+      <translation>AHORA {axis}: T{number} QUEDA PUESTA CUANDO ESTÉN LAS DOS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_fields.py" />
+      <source>PRESS RETURN TO SET IT, OR ESC TO LEAVE IT AS IT WAS</source>
+      <translation>OPRIMA RETURN PARA PONERLO, O ESC PARA DEJARLO COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_fields.py" />
+      <source>T{number} WAS NEVER SET: TYPE X AND Z FIRST, OR TOUCH IT OFF ON THE JOG PAGE</source>
+      <translation>T{number} NUNCA SE PUSO: ESCRIBA PRIMERO X Y Z, O TÓQUELA EN LA PÁGINA MANUAL</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_fields.py" />
+      <source>chosen as master</source>
+      <translation>elegida como maestra</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_fields.py" />
+      <source>entered by hand</source>
+      <translation>escrito a mano</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_fields.py" />
+      <source>no master</source>
+      <translation>sin maestra</translation>
+    </message>
+    <message>
       <location filename="app/offsets/tool_offsets.py" />
       <source>ARROWS CHOOSE A CELL; TYPE A VALUE OR A SUM; RETURN SETS IT, F2 ADDS IT TO WHAT IS THERE</source>
       <translation>LAS FLECHAS ELIGEN CELDA; ESCRIBA UN VALOR O UNA SUMA; RETURN LO PONE, F2 LO SUMA A LO QUE HAY</translation>
@@ -2617,16 +3287,6 @@
       <location filename="app/offsets/tool_offsets.py" />
       <source>NO TOOL IS THE MASTER: CHOOSE ONE IN ITS COLUMN WITH RETURN</source>
       <translation>NINGUNA HERRAMIENTA ES LA MAESTRA: ELIJA UNA EN SU COLUMNA CON RETURN</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets.py" />
-      <source>NOW {axis}: T{number} IS SET WHEN BOTH ARE THERE</source>
-      <translation>AHORA {axis}: T{number} QUEDA PUESTA CUANDO ESTÉN LAS DOS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets.py" />
-      <source>PRESS RETURN TO SET IT, OR ESC TO LEAVE IT AS IT WAS</source>
-      <translation>OPRIMA RETURN PARA PONERLO, O ESC PARA DEJARLO COMO ESTABA</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
@@ -2650,28 +3310,8 @@
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
-      <source>T{number} WAS NEVER SET: TYPE X AND Z FIRST, OR TOUCH IT OFF ON THE JOG PAGE</source>
-      <translation>T{number} NUNCA SE PUSO: ESCRIBA PRIMERO X Y Z, O TÓQUELA EN LA PÁGINA MANUAL</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets.py" />
       <source>X AND Z ARE SHOWN FROM THE MASTER: PRESS F3, THEN TYPE THEM FROM HOME</source>
       <translation>X Y Z SE MUESTRAN DESDE LA MAESTRA: OPRIMA F3, Y ESCRÍBALAS DESDE LA REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets.py" />
-      <source>chosen as master</source>
-      <translation>elegida como maestra</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets.py" />
-      <source>entered by hand</source>
-      <translation>escrito a mano</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets.py" />
-      <source>no master</source>
-      <translation>sin maestra</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
@@ -2839,6 +3479,246 @@
       <translation>CEROS AJUSTABLES  ·  X ES RADIO  ·  MM Y GRADOS</translation>
     </message>
     <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>FINDINGS</source>
+      <translation>AVISOS</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>FORGET</source>
+      <translation>OLVIDAR</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>KEPT WITH {name}</source>
+      <translation>GUARDADO CON {name}</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>LEFT AND RIGHT TURN THE KIND OF STOCK; F6: NOTHING IS SAID ANY MORE</source>
+      <translation>IZQUIERDA Y DERECHA CAMBIAN EL TIPO DE MATERIAL; F6: YA NO SE INDICA NADA</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>LOAD A PROGRAM FIRST: ITS STOCK IS KEPT WITH IT</source>
+      <translation>CARGUE ANTES UN PROGRAMA: SU MATERIAL SE GUARDA CON ÉL</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>MARK THE FINDING WHOSE CHECK IS TO BE SILENCED</source>
+      <translation>MARQUE EL AVISO CUYA COMPROBACIÓN SE SILENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>NOT KEPT: {why}</source>
+      <translation>SIN GUARDAR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>NOTHING IS SAID OF THE STOCK ANY MORE</source>
+      <translation>YA NO HAY NADA INDICADO DEL MATERIAL</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>NOTHING IS SAID OF THIS PROGRAM'S STOCK</source>
+      <translation>NO HAY NADA INDICADO DEL MATERIAL DE ESTE PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>ONLY CHECKS OF THE PART ARE SILENCED; THIS IS ONE OF THE PROGRAM</source>
+      <translation>SOLO SE SILENCIAN COMPROBACIONES DE LA PIEZA; ESTA ES DEL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>SILENCE</source>
+      <translation>SILENC.</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>STOCK</source>
+      <translation>MATERIAL</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>THE MACHINE FILE SILENCES {check}: [checks]</source>
+      <translation>EL ARCHIVO DE MÁQUINA SILENCIA {check}: [checks]</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>THE PROGRAM IS BEING PROVED: WAIT A MOMENT</source>
+      <translation>SE ESTÁ PROBANDO EL PROGRAMA: ESPERE UN MOMENTO</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>TYPE A LENGTH OR A SUM, RETURN KEEPS IT WITH THE PROGRAM; 0: NOT SAID</source>
+      <translation>ESCRIBA UNA LONGITUD O SUMA, RETORNO LA GUARDA CON EL PROGRAMA; 0: NO INDICADO</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>TYPE THE NAME OF THE FILE; RETURN TAKES IT, ESC LEAVES IT AS IT WAS</source>
+      <translation>ESCRIBA EL NOMBRE DEL ARCHIVO; RETORNO LO TOMA, ESC LO DEJA COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>TYPE THE REASON, RETURN KEEPS IT WITH THE PROGRAM; ESC LEAVES THE CHECK ON</source>
+      <translation>ESCRIBA EL MOTIVO, RETORNO LO GUARDA CON EL PROGRAMA; ESC DEJA LA COMPROBACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>UP AND DOWN SHOW THE PLACE OF A FINDING; F2: STOCK, F4 SILENCES A CHECK</source>
+      <translation>ARRIBA Y ABAJO MUESTRAN EL LUGAR DE UN AVISO; F2: MATERIAL, F4 SILENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>WHAT THE PART IS PROVED ON CHANGES BETWEEN TWO CYCLES ONLY</source>
+      <translation>LO QUE SUPONE LA PRUEBA DE LA PIEZA SOLO CAMBIA ENTRE DOS CICLOS</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>a check is not silenced without a reason</source>
+      <translation>una comprobación no se silencia sin motivo</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>there is no file {name} beside the program</source>
+      <translation>no hay archivo {name} junto al programa</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>{check} IS LOOKED FOR AGAIN</source>
+      <translation>{check} SE BUSCA DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>{check} IS SILENCED</source>
+      <translation>{check} QUEDA SILENCIADA</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet_view.py" />
+      <source>PART</source>
+      <translation>PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>ALLOWANCE</source>
+      <translation>DEMASÍA</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>ASSUMED</source>
+      <translation>SUPUESTO</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>BAR</source>
+      <translation>BARRA</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>CHECK</source>
+      <translation>COMPROBACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>COUNTS ONLY WITH [clamping] IN THE MACHINE FILE</source>
+      <translation>SOLO CUENTA CON [clamping] EN EL ARCHIVO DE MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>ELEMENTARY BLOCK {n}</source>
+      <translation>BLOQUE ELEMENTAL {n}</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>F4 UNDOES IT</source>
+      <translation>F4 LO DESHACE</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>FINDINGS  ·  {name}</source>
+      <translation>AVISOS  ·  {name}</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>LENGTH</source>
+      <translation>LONGITUD</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>NO PROGRAM</source>
+      <translation>SIN PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>NOT PROVED YET</source>
+      <translation>AÚN NO PROBADO</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>NOTHING WAS FOUND</source>
+      <translation>NO SE ENCONTRÓ NADA</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>NOTHING WAS FOUND; THIS PROGRAM HAS NO PART</source>
+      <translation>NO SE ENCONTRÓ NADA; ESTE PROGRAMA NO TIENE PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>SAID</source>
+      <translation>INDICADO</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>SILENCED BY THE MACHINE FILE</source>
+      <translation>SILENCIADO POR EL ARCHIVO DE MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>STOCK  ·  {name}</source>
+      <translation>MATERIAL  ·  {name}</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>TUBE</source>
+      <translation>TUBO</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>WHAT</source>
+      <translation>QUÉ</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>WHY IS {check} SILENCED?</source>
+      <translation>¿POR QUÉ SILENCIAR {check}?</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>{field} IS STILL TO BE SAID</source>
+      <translation>FALTA INDICAR {field}</translation>
+    </message>
+    <message>
+      <location filename="app/part/stock_entry.py" />
+      <source>OF A PROGRAM</source>
+      <translation>DE UN PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/part/stock_entry.py" />
+      <source>a length of the stock is not negative; 0 takes it back</source>
+      <translation>una longitud del material no es negativa; 0 la retira</translation>
+    </message>
+    <message>
+      <location filename="app/part/stock_entry.py" />
+      <source>the bore of a tube is less than its diameter</source>
+      <translation>el agujero de un tubo es menor que su diámetro</translation>
+    </message>
+    <message>
+      <location filename="app/part/stock_entry.py" />
+      <source>the stick-out is more than 0 and up to 40 in</source>
+      <translation>el voladizo es mayor que 0 y hasta 40 in</translation>
+    </message>
+    <message>
       <location filename="app/path/measuring.py" />
       <source>ANGLE {axis}</source>
       <translation>ÁNGULO {axis}</translation>
@@ -2885,6 +3765,11 @@
     </message>
     <message>
       <location filename="app/path/path_aspects.py" />
+      <source>OPEN</source>
+      <translation>ABRIR</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_aspects.py" />
       <source>PATH</source>
       <translation>TRAYECTORIA</translation>
     </message>
@@ -2912,11 +3797,6 @@
       <location filename="app/path/path_marks_view.py" />
       <source>FACE  ·  SEEN FROM THE TAILSTOCK</source>
       <translation>CARA  ·  VISTA DESDE EL CONTRAPUNTO</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_marks_view.py" />
-      <source>LINE {line}: {what}</source>
-      <translation>LÍNEA {line}: {what}</translation>
     </message>
     <message>
       <location filename="app/path/path_marks_view.py" />
@@ -3354,42 +4234,42 @@
       <translation>REGISTRO</translation>
     </message>
     <message>
-      <location filename="app/programs/run_record.py" />
+      <location filename="app/programs/run_history.py" />
       <source>%1 ERRORS: %2</source>
       <translation>%1 ERRORES: %2</translation>
     </message>
     <message>
-      <location filename="app/programs/run_record.py" />
+      <location filename="app/programs/run_history.py" />
       <source>: the control ended in the middle of its last run</source>
       <translation>: el control terminó en medio de su última corrida</translation>
     </message>
     <message>
-      <location filename="app/programs/run_record.py" />
+      <location filename="app/programs/run_history.py" />
       <source>ALARM %1</source>
       <translation>ALARMA %1</translation>
     </message>
     <message>
-      <location filename="app/programs/run_record.py" />
+      <location filename="app/programs/run_history.py" />
       <source>COMPLETE</source>
       <translation>COMPLETO</translation>
     </message>
     <message>
-      <location filename="app/programs/run_record.py" />
+      <location filename="app/programs/run_history.py" />
       <source>CUT OFF</source>
       <translation>CORTADO</translation>
     </message>
     <message>
-      <location filename="app/programs/run_record.py" />
+      <location filename="app/programs/run_history.py" />
       <source>E-STOP</source>
       <translation>PARO DE EMERGENCIA</translation>
     </message>
     <message>
-      <location filename="app/programs/run_record.py" />
+      <location filename="app/programs/run_history.py" />
       <source>GIVEN UP</source>
       <translation>ABANDONADO</translation>
     </message>
     <message>
-      <location filename="app/programs/run_record.py" />
+      <location filename="app/programs/run_history.py" />
       <source>NOT COUNTED</source>
       <translation>NO CONTADO</translation>
     </message>
@@ -3540,8 +4420,23 @@
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
+      <source>MEASURED</source>
+      <translation>MEDIDO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>MEASURED PARTS</source>
+      <translation>PIEZAS MEDIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
       <source>PROGRAMS</source>
       <translation>PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>SCOPE</source>
+      <translation>OSCILOSCOPIO</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -3570,6 +4465,16 @@
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
+      <source>axes and spindle as curves: following error, speed, load</source>
+      <translation>ejes y husillo como curvas: error de seguimiento, velocidad, carga</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>findings of the program, its stock, silenced checks</source>
+      <translation>avisos del programa, su material, comprobaciones silenciadas</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
       <source>list, preview, copy, import and export</source>
       <translation>lista, vista previa, copiar, importar y exportar</translation>
     </message>
@@ -3582,6 +4487,11 @@
       <location filename="app/screen/page_table.py" />
       <source>one line at a time</source>
       <translation>una línea a la vez</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>readings, charts, wear, tool life, trends</source>
+      <translation>lecturas, gráficos, desgaste, vida de herramienta, tendencias</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -3715,11 +4625,6 @@
     </message>
     <message>
       <location filename="app/screen/window_bars.py" />
-      <source>NO PROGRAM</source>
-      <translation>SIN PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_bars.py" />
       <source>STARTING</source>
       <translation>ARRANCANDO</translation>
     </message>
@@ -3757,11 +4662,6 @@
       <location filename="app/screen/window_frame.py" />
       <source>NOT KEPT</source>
       <translation>SIN GUARDAR</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_frame.py" />
-      <source>NOT KEPT: {why}</source>
-      <translation>SIN GUARDAR: {why}</translation>
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
@@ -4000,11 +4900,6 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_view.py" />
-      <source>AFTER</source>
-      <translation>DESPUÉS</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
       <source>CONFIRM</source>
       <translation>CONFIRMA</translation>
     </message>
@@ -4109,72 +5004,72 @@
       <translation>{which}: NINGUNA</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
+      <location filename="app/special/backup_and_restore.py" />
       <source>%1 KB</source>
       <translation>%1 KB</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
+      <location filename="app/special/backup_and_restore.py" />
       <source>A PROGRAM IS UNDER WAY: NOTHING IS RESTORED BEFORE IT HAS ENDED</source>
       <translation>HAY UN PROGRAMA EN CURSO: NO SE RESTAURA NADA ANTES DE QUE TERMINE</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
+      <location filename="app/special/backup_and_restore.py" />
       <source>BACKUP AND RESTORE</source>
       <translation>RESPALDO Y RESTAURACIÓN</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
+      <location filename="app/special/backup_and_restore.py" />
       <source>BACKUP TO HERE</source>
       <translation>RESPALDAR AQUÍ</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
+      <location filename="app/special/backup_and_restore.py" />
       <source>BACKUP {name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED</source>
       <translation>EL RESPALDO {name} ESTÁ COMPLETO Y EN EL DISCO: YA PUEDE SACAR LA MEMORIA</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
+      <location filename="app/special/backup_and_restore.py" />
       <source>Backing up …</source>
       <translation>Respaldando …</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
+      <location filename="app/special/backup_and_restore.py" />
       <source>PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW, ESC TO LEAVE IT</source>
       <translation>OPRIMA Y PARA RESTAURAR {name} SOBRE TODO LO GUARDADO, ESC PARA DEJARLO</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
+      <location filename="app/special/backup_and_restore.py" />
       <source>RESTORED; WHAT WAS THERE BEFORE IS KEPT AS {name}</source>
       <translation>RESTAURADO; LO QUE HABÍA ANTES SE GUARDA COMO {name}</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
+      <location filename="app/special/backup_and_restore.py" />
       <source>RETURN DOES</source>
       <translation>RETURN HACE</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
+      <location filename="app/special/backup_and_restore.py" />
       <source>RETURN ON A PLACE BACKS UP, ON A BACKUP RESTORES IT; F4 LOOKS FOR STICKS AGAIN</source>
       <translation>RETURN SOBRE UN LUGAR RESPALDA, SOBRE UN RESPALDO LO RESTAURA; F4 BUSCA MEMORIAS OTRA VEZ</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
+      <location filename="app/special/backup_and_restore.py" />
       <source>Restoring …</source>
       <translation>Restaurando …</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
+      <location filename="app/special/backup_and_restore.py" />
       <source>WHEN</source>
       <translation>CUÁNDO</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
+      <location filename="app/special/backup_and_restore.py" />
       <source>What a restore replaces is kept beside it.</source>
       <translation>Lo que una restauración reemplaza se guarda al lado.</translation>
     </message>
     <message>
-      <location filename="app/special/backup.py" />
+      <location filename="app/special/backup_and_restore.py" />
       <source>offsets, versions, counts, settings, log</source>
       <translation>compensaciones, versiones, ajustes</translation>
     </message>
@@ -4247,66 +5142,6 @@
       <location filename="app/special/drive_status.py" />
       <source>power, home, following error, faults</source>
       <translation>potencia, referencia, error, fallas</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
-      <source>%1 EVENTS</source>
-      <translation>%1 EVENTOS</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
-      <source>EVENT LOG</source>
-      <translation>BITÁCORA</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
-      <source>EVENT LOG  ·  %1  ·  %2</source>
-      <translation>BITÁCORA  ·  %1  ·  %2</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
-      <source>F4 SEARCHES, F5 SHOWS ANOTHER KIND; PAGE UP AND PAGE DOWN LOOK ON; ESC GOES BACK</source>
-      <translation>F4 BUSCA, F5 MUESTRA OTRA CLASE; RE PÁG Y AV PÁG SIGUEN; ESC REGRESA</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
-      <source>FILTER</source>
-      <translation>FILTRO</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
-      <source>OPERATOR</source>
-      <translation>OPERADOR</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
-      <source>RUNS</source>
-      <translation>CORRIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
-      <source>SEARCH FOR?</source>
-      <translation>¿QUÉ BUSCAR?</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
-      <source>THE LAST %1 EVENTS</source>
-      <translation>LOS ÚLTIMOS %1 EVENTOS</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
-      <source>TYPE WHAT TO LOOK FOR; RETURN KEEPS IT, ESC TAKES IT AWAY</source>
-      <translation>ESCRIBA QUÉ BUSCAR; RETURN LO CONSERVA, ESC LO QUITA</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
-      <source>WHAT</source>
-      <translation>QUÉ</translation>
-    </message>
-    <message>
-      <location filename="app/special/event_log.py" />
-      <source>what happened when; search</source>
-      <translation>qué pasó y cuándo; buscar</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
@@ -4407,6 +5242,61 @@
       <location filename="app/special/inputs_outputs.py" />
       <source>live state, outputs by hand, lamps</source>
       <translation>estado, salidas a mano, lámparas</translation>
+    </message>
+    <message>
+      <location filename="app/special/logged_events.py" />
+      <source>%1 EVENTS</source>
+      <translation>%1 EVENTOS</translation>
+    </message>
+    <message>
+      <location filename="app/special/logged_events.py" />
+      <source>EVENT LOG</source>
+      <translation>BITÁCORA</translation>
+    </message>
+    <message>
+      <location filename="app/special/logged_events.py" />
+      <source>EVENT LOG  ·  %1  ·  %2</source>
+      <translation>BITÁCORA  ·  %1  ·  %2</translation>
+    </message>
+    <message>
+      <location filename="app/special/logged_events.py" />
+      <source>F4 SEARCHES, F5 SHOWS ANOTHER KIND; PAGE UP AND PAGE DOWN LOOK ON; ESC GOES BACK</source>
+      <translation>F4 BUSCA, F5 MUESTRA OTRA CLASE; RE PÁG Y AV PÁG SIGUEN; ESC REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/special/logged_events.py" />
+      <source>FILTER</source>
+      <translation>FILTRO</translation>
+    </message>
+    <message>
+      <location filename="app/special/logged_events.py" />
+      <source>OPERATOR</source>
+      <translation>OPERADOR</translation>
+    </message>
+    <message>
+      <location filename="app/special/logged_events.py" />
+      <source>RUNS</source>
+      <translation>CORRIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/special/logged_events.py" />
+      <source>SEARCH FOR?</source>
+      <translation>¿QUÉ BUSCAR?</translation>
+    </message>
+    <message>
+      <location filename="app/special/logged_events.py" />
+      <source>THE LAST %1 EVENTS</source>
+      <translation>LOS ÚLTIMOS %1 EVENTOS</translation>
+    </message>
+    <message>
+      <location filename="app/special/logged_events.py" />
+      <source>TYPE WHAT TO LOOK FOR; RETURN KEEPS IT, ESC TAKES IT AWAY</source>
+      <translation>ESCRIBA QUÉ BUSCAR; RETURN LO CONSERVA, ESC LO QUITA</translation>
+    </message>
+    <message>
+      <location filename="app/special/logged_events.py" />
+      <source>what happened when; search</source>
+      <translation>qué pasó y cuándo; buscar</translation>
     </message>
     <message>
       <location filename="app/special/machine_file_acceptance.py" />
@@ -4649,6 +5539,266 @@
       <translation>unidades, idioma, colores, estación</translation>
     </message>
     <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>%1 in</source>
+      <translation>%1 pulg</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>%1 mm</source>
+      <translation>%1 mm</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>CHUCK</source>
+      <translation>PLATO</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>NOT SET</source>
+      <translation>SIN AJUSTAR</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>TAILSTOCK</source>
+      <translation>CONTRAPUNTO</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>X (radius) {x}   Z {z}   R {r}</source>
+      <translation>X (radio) {x}   Z {z}   R {r}</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>bore {size}</source>
+      <translation>agujero {size}</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>jaws {size}</source>
+      <translation>garras {size}</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>not known</source>
+      <translation>no se conoce</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>not known: the machine file says nothing under [clamping]</source>
+      <translation>no se conoce: el archivo de la máquina no dice nada en [clamping]</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>{rpm} rpm at most</source>
+      <translation>{rpm} rpm como máximo</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>{size} at least, as nobody has said it</source>
+      <translation>{size} como mínimo, pues nadie lo ha dicho</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>{tool} (assumed)</source>
+      <translation>{tool} (supuesto)</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>A NOTE HAS {most} LETTERS AT MOST: TAKE ANOTHER ONE</source>
+      <translation>UNA NOTA TIENE {most} LETRAS COMO MÁXIMO: TOME OTRA</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN SETUP SHEET</source>
+      <translation>ELIJA PRIMERO UN PROGRAMA: CADA UNO TIENE SU HOJA DE PREPARACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>F2 TAKES A NOTE, F6 WRITES THE SHEET AS PDF AND HTML; ESC GOES BACK TO THE LIST</source>
+      <translation>F2 TOMA UNA NOTA, F6 ESCRIBE LA HOJA EN PDF Y HTML; ESC VUELVE A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>F2 TAKES A NOTE; RETURN CHANGES THE NOTE THAT IS MARKED</source>
+      <translation>F2 TOMA UNA NOTA; RETURN CAMBIA LA NOTA MARCADA</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>LETTER</source>
+      <translation>CARTA</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>MARK A NOTE FIRST</source>
+      <translation>MARQUE PRIMERO UNA NOTA</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>Making the sheet …</source>
+      <translation>Se hace la hoja …</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>NO NOTE</source>
+      <translation>SIN NOTA</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>NOTE</source>
+      <translation>NOTA</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>PRESS Y TO THROW THIS NOTE AWAY, ESC TO KEEP IT</source>
+      <translation>PULSE Y PARA BORRAR ESTA NOTA, ESC PARA CONSERVARLA</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>RETURN WRITES THE SHEET TO THE MARKED PLACE; F4 LOOKS FOR STICKS AGAIN</source>
+      <translation>RETURN ESCRIBE LA HOJA EN EL SITIO MARCADO; F4 BUSCA OTRA VEZ MEMORIAS USB</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>Return writes it there, as PDF and as HTML.</source>
+      <translation>Return la escribe ahí, en PDF y en HTML.</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>SETUP SHEET</source>
+      <translation>HOJA DE PREPARACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>SETUP SHEET  ·  %1</source>
+      <translation>HOJA DE PREPARACIÓN  ·  %1</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>SETUP SHEET  ·  WRITE TO WHERE?</source>
+      <translation>HOJA DE PREPARACIÓN  ·  ¿DÓNDE SE ESCRIBE?</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>THE SHEET IS STILL BEING MADE: WAIT A MOMENT</source>
+      <translation>LA HOJA AÚN SE ESTÁ HACIENDO: ESPERE UN MOMENTO</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>THERE ARE {most} NOTES ALREADY: CHANGE ONE OF THEM</source>
+      <translation>YA HAY {most} NOTAS: CAMBIE UNA DE ELLAS</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>TYPE THE NOTE AND PRESS RETURN; ESC LEAVES IT AS IT WAS</source>
+      <translation>ESCRIBA LA NOTA Y PULSE RETURN; ESC LA DEJA COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>WRITE</source>
+      <translation>ESCRIBIR</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>Writing …</source>
+      <translation>Se escribe …</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>tools, stock, stops, notes; on paper</source>
+      <translation>herramientas, material, notas; en papel</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>{name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED</source>
+      <translation>{name} ESTÁ ENTERO Y EN EL DISCO: PUEDE RETIRAR LA MEMORIA USB</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_page.py" />
+      <source>NOTES</source>
+      <translation>NOTAS</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_page.py" />
+      <source>None.</source>
+      <translation>Ninguna.</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_page.py" />
+      <source>OFFSET</source>
+      <translation>CORRECTOR</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_page.py" />
+      <source>PICTURE</source>
+      <translation>IMAGEN</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_page.py" />
+      <source>SECONDARY AND ZERO OFFSETS</source>
+      <translation>CORRECTORES SECUNDARIOS Y DE CERO</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_page.py" />
+      <source>STATION</source>
+      <translation>PUESTO</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_page.py" />
+      <source>STOPS</source>
+      <translation>PARADAS</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_page.py" />
+      <source>Section: stock light, finished part dark</source>
+      <translation>Sección: material claro, pieza acabada oscura</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_page.py" />
+      <source>TIME A PART</source>
+      <translation>TIEMPO POR PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_page.py" />
+      <source>WHAT THE OPERATOR READS</source>
+      <translation>LO QUE LEE EL OPERADOR</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_page.py" />
+      <source>X (radius)</source>
+      <translation>X (radio)</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_page.py" />
+      <source>no T</source>
+      <translation>sin T</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_page.py" />
+      <source>what live tools mill is not in it</source>
+      <translation>lo que fresan las herramientas motorizadas no está</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_page.py" />
+      <source>{count} ERRORS: this program will not run as it stands</source>
+      <translation>{count} ERRORES: este programa no puede ejecutarse así</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_work.py" />
+      <source>ERRORS</source>
+      <translation>ERRORES</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_work.py" />
+      <source>Setup sheet: {program}</source>
+      <translation>Hoja de preparación: {program}</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_work.py" />
+      <source>TEXT (SHA-256)</source>
+      <translation>TEXTO (SHA-256)</translation>
+    </message>
+    <message>
       <location filename="app/special/special_functions.py" />
       <source>ARROWS OR A FIGURE CHOOSE A FUNCTION, RETURN OPENS IT; ESC FOR AUTOMATIC</source>
       <translation>FLECHAS O UNA CIFRA ELIGEN UNA FUNCIÓN, RETURN LA ABRE; ESC A AUTOMÁTICO</translation>
@@ -4734,7 +5884,7 @@
       <translation>un tope hasta reiniciar</translation>
     </message>
     <message>
-      <location filename="app/transfer/serial_line.py" />
+      <location filename="app/transfer/line_transfer.py" />
       <source>RECEIVED</source>
       <translation>RECIBIDO</translation>
     </message>
@@ -4870,6 +6020,11 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
+      <source>HEARS</source>
+      <translation>OYE</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
       <source>HELD BY THE OTHER SIDE (XOFF)</source>
       <translation>DETENIDA POR EL OTRO LADO (XOFF)</translation>
     </message>
@@ -4980,6 +6135,11 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
+      <source>WHAT COMES IS NO TEXT: LOOK AT BAUD, BITS AND PARITY</source>
+      <translation>LO QUE LLEGA NO ES TEXTO: REVISE BAUDIOS, BITS Y PARIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
       <source>programs over the serial line</source>
       <translation>programas por la línea serie</translation>
     </message>
@@ -5057,6 +6217,16 @@
       <location filename="core/alarms/alarm_entry.py" />
       <source>what was asked for: a stop that somebody pressed or programmed</source>
       <translation>lo que se pidió: un paro que alguien oprimió o programó</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/alarms_page.py" />
+      <source>Likely: %1.  </source>
+      <translation>Probable: %1.  </translation>
+    </message>
+    <message>
+      <location filename="core/alarms/alarms_page.py" />
+      <source>alarm, drives off</source>
+      <translation>alarma, servos apagados</translation>
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
@@ -5889,16 +7059,6 @@
       <translation>esta línea no se puede correr como está</translation>
     </message>
     <message>
-      <location filename="core/alarms/document.py" />
-      <source>Likely: %1.  </source>
-      <translation>Probable: %1.  </translation>
-    </message>
-    <message>
-      <location filename="core/alarms/document.py" />
-      <source>alarm, drives off</source>
-      <translation>alarma, servos apagados</translation>
-    </message>
-    <message>
       <location filename="core/alarms/spindle_alarms.py" />
       <source>C moves while the spindle turns</source>
       <translation>C se mueve mientras gira el husillo</translation>
@@ -6595,6 +7755,16 @@
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
+      <source>no other part: %1</source>
+      <translation>ninguna otra pieza: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/command_handler.py" />
+      <source>parts may go on</source>
+      <translation>las piezas pueden seguir</translation>
+    </message>
+    <message>
+      <location filename="core/executor/command_handler.py" />
       <source>press both palm buttons</source>
       <translation>oprima los dos botones de palma</translation>
     </message>
@@ -6717,11 +7887,6 @@
       <location filename="core/executor/following_error.py" />
       <source>%1 is %2 off its setpoint</source>
       <translation>%1 está a %2 de su consigna</translation>
-    </message>
-    <message>
-      <location filename="core/executor/following_error.py" />
-      <source>%1 mm</source>
-      <translation>%1 mm</translation>
     </message>
     <message>
       <location filename="core/executor/following_error.py" />
@@ -6985,6 +8150,11 @@
     </message>
     <message>
       <location filename="core/executor/machine_control.py" />
+      <source>warned %1</source>
+      <translation>avisado %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/machine_control.py" />
       <source>while giving the program up: %1</source>
       <translation>al abandonar el programa: %1</translation>
     </message>
@@ -7092,6 +8262,41 @@
       <location filename="core/executor/read_ahead.py" />
       <source>line %1 moves C while the spindle turns</source>
       <translation>la línea %1 mueve C mientras gira el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/recorder.py" />
+      <source>%1: old records cannot be removed: %2</source>
+      <translation>%1: los registros antiguos no se pueden quitar: %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/recorder.py" />
+      <source>alarm line</source>
+      <translation>línea de la alarma</translation>
+    </message>
+    <message>
+      <location filename="core/executor/recorder.py" />
+      <source>alarm time</source>
+      <translation>hora de la alarma</translation>
+    </message>
+    <message>
+      <location filename="core/executor/recorder.py" />
+      <source>the record is kept in memory alone: %1</source>
+      <translation>el registro se guarda solo en memoria: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/recorder.py" />
+      <source>the record of an alarm is lost: %1</source>
+      <translation>se ha perdido el registro de una alarma: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/recorder.py" />
+      <source>the record of this alarm is being written: look again in two seconds</source>
+      <translation>el registro de esta alarma se está escribiendo: mire de nuevo en dos segundos</translation>
+    </message>
+    <message>
+      <location filename="core/executor/recorder.py" />
+      <source>the record of this alarm is no longer kept; the newest %1 are</source>
+      <translation>el registro de esta alarma ya no se conserva; se conservan los %1 más recientes</translation>
     </message>
     <message>
       <location filename="core/executor/safe_stop.py" />
@@ -7930,16 +9135,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
-      <source>Add R, or I and K.</source>
-      <translation>Agregue R, o I y K.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
-      <source>Arcs cannot be incremental in diameter mode.</source>
-      <translation>Los arcos no pueden ser incrementales en modo diámetro.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>Correct I and K.</source>
       <translation>Corrija I y K.</translation>
     </message>
@@ -7947,11 +9142,6 @@
       <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>Correct R or the end point.</source>
       <translation>Corrija R o el punto final.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
-      <source>Give larger arcs I and K.</source>
-      <translation>A los arcos mayores déles I y K.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
@@ -7965,33 +9155,13 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
-      <source>Keep one way.</source>
-      <translation>Deje una sola forma.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>R is %1, and the ends are so far apart that it takes %2 at least.</source>
       <translation>R es %1, y los extremos están tan separados que necesita al menos %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
-      <source>R must be a number over 0.</source>
-      <translation>R debe ser un número mayor que 0.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>The arc by R ends where it starts.</source>
       <translation>El arco por R termina donde empieza.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
-      <source>The arc has R and %1.</source>
-      <translation>El arco tiene R y %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
-      <source>The arc has neither R nor I and K.</source>
-      <translation>El arco no tiene ni R ni I y K.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
@@ -8004,34 +9174,9 @@
       <translation>El centro del arco es su punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
-      <source>Use G90 or G73 for the arc.</source>
-      <translation>Use G90 o G73 para el arco.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>%1 has no number.</source>
-      <translation>%1 no tiene número.</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>%1 is finer than the step of %2 degrees; %3 is used.</source>
       <translation>%1 es más fino que el paso de %2 grados; se usa %3.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>%1 needs a C axis, and the machine file switches it off.</source>
-      <translation>%1 necesita un eje C, y el archivo de máquina lo apaga.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>%1 turns the spindle, which is not locked.</source>
-      <translation>%1 gira el husillo, que no está bloqueado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>%1: C turns at more than 0 and at most %2 rpm.</source>
-      <translation>%1: C gira a más de 0 y a lo más %2 rpm.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/c_axis.py" />
@@ -8045,16 +9190,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>G89 locks the spindle and stands without M codes.</source>
-      <translation>G89 bloquea el husillo y va sin códigos M.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>Keep one of them.</source>
-      <translation>Deje uno de ellos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>Lower F or S.</source>
       <translation>Baje F o S.</translation>
     </message>
@@ -8062,21 +9197,6 @@
       <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>Round the number.</source>
       <translation>Redondee el número.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>Set axis.C.enabled.</source>
-      <translation>Ponga axis.C.enabled.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>Split the line.</source>
-      <translation>Divida la línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>The line holds %1 and %2.</source>
-      <translation>La línea contiene %1 y %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/c_axis.py" />
@@ -8090,38 +9210,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>Write M19 or M89 before.</source>
-      <translation>Escriba antes M19 o M89.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>Write S on the line.</source>
       <translation>Escriba S en la línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>Write the degrees.</source>
-      <translation>Escriba los grados.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/canned_cycles.py" />
-      <source>%1 cannot run while nose compensation is active.</source>
-      <translation>%1 no puede correr con la compensación de punta activa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/canned_cycles.py" />
-      <source>%1 has no feed: none for cutting is in force.</source>
-      <translation>%1 no tiene avance: no hay ninguno de corte vigente.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/canned_cycles.py" />
-      <source>%1 is the first move after the T on line %2: its start point is not known.</source>
-      <translation>%1 es el primer movimiento tras la T de la línea %2: no se conoce su punto de inicio.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/canned_cycles.py" />
-      <source>%1 needs %2, %3.</source>
-      <translation>%1 necesita %2, %3.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/canned_cycles.py" />
@@ -8130,68 +9220,13 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/canned_cycles.py" />
-      <source>%1: %2, %3, must be over 0.</source>
-      <translation>%1: %2, %3, debe ser mayor que 0.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/canned_cycles.py" />
-      <source>%1: U is what the cycle leaves on a side, which is never negative.</source>
-      <translation>%1: U es lo que el ciclo deja por lado, y nunca es negativo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/canned_cycles.py" />
-      <source>Correct %1.</source>
-      <translation>Corrija %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/canned_cycles.py" />
       <source>Look for a lost decimal point in %1.</source>
       <translation>Busque un punto decimal perdido en %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/canned_cycles.py" />
-      <source>Move to X and Z of the start point before it.</source>
-      <translation>Muévase antes a la X y la Z del punto de inicio.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/canned_cycles.py" />
-      <source>Put G40 and a departure before it.</source>
-      <translation>Ponga antes G40 y una salida.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/canned_cycles.py" />
-      <source>Take the sign out.</source>
-      <translation>Quite el signo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/canned_cycles.py" />
-      <source>Write F on the %1 line.</source>
-      <translation>Escriba F en la línea de %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
-      <source>%1: beside G35 only F2 has a meaning (leads to 2 in/rev).</source>
-      <translation>%1: junto a G35 sólo F2 tiene sentido (pasos hasta 2 pulg/rev).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
-      <source>A T stands between G35 and G36.</source>
-      <translation>Hay una T entre G35 y G36.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/coarse_feeds.py" />
       <source>G%1 is not followed by a G92 with X and Z.</source>
       <translation>A G%1 no le sigue un G92 con X y Z.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
-      <source>G%1 stands alone on its line.</source>
-      <translation>G%1 va sola en su línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
-      <source>G35 is in force already.</source>
-      <translation>G35 ya está vigente.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/coarse_feeds.py" />
@@ -8205,33 +9240,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/coarse_feeds.py" />
-      <source>No G35 is in force that G36 could end.</source>
-      <translation>No hay G35 vigente que G36 pueda terminar.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
-      <source>Put the rest on a line of its own.</source>
-      <translation>Ponga lo demás en su propia línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
-      <source>Take the line out.</source>
-      <translation>Quite la línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
       <source>The G92 behind G%1 says another place than radius %2, Z %3.</source>
       <translation>El G92 tras G%1 dice otro lugar que radio %2, Z %3.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
-      <source>Write G35 or G35F2.</source>
-      <translation>Escriba G35 o G35F2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
-      <source>Write G36 before it.</source>
-      <translation>Escriba G36 antes.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/coarse_feeds.py" />
@@ -8250,18 +9260,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
-      <source>%1 makes a corner at the end of a straight move, and the line has none.</source>
-      <translation>%1 hace una esquina al final de una recta, y la línea no tiene ninguna.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
       <source>%1 on line %2 is no straight move</source>
       <translation>%1 en la línea %2 no es una recta</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>%1: a corner's size must be a number over 0.</source>
-      <translation>%1: el tamaño de una esquina debe ser mayor que 0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
@@ -8280,28 +9280,13 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
-      <source>Put it on the line with X or Z.</source>
-      <translation>Póngalo en la línea con X o Z.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
       <source>Take C or R out.</source>
       <translation>Quite C o R.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
-      <source>The line has both C and R.</source>
-      <translation>La línea tiene C y R a la vez.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
       <source>The two moves run in one direction: there is no corner to cut.</source>
       <translation>Los dos movimientos van en una misma dirección: no hay esquina que cortar.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>Write the size in full.</source>
-      <translation>Escriba el tamaño completo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
@@ -8450,16 +9435,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/drilling_cycles.py" />
-      <source>%1 needs Z, the bottom of the hole.</source>
-      <translation>%1 necesita Z, el fondo del barreno.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
-      <source>%1: the rate of the retract goes from over 0 to %2.</source>
-      <translation>%1: la velocidad de retiro va de más de 0 a %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
       <source>Correct Z, or start farther out.</source>
       <translation>Corrija Z, o empiece más afuera.</translation>
     </message>
@@ -8474,26 +9449,6 @@
       <translation>El fondo del barreno en %1 no está más allá del punto de inicio en %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
-      <source>the depth of a peck</source>
-      <translation>la profundidad de un picoteo</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
-      <source>the distance before the cut at which the feed begins</source>
-      <translation>la distancia antes del corte en que empieza el avance</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/dwell.py" />
-      <source>A dwell of %1 s is out of range: 0.1 s to an hour.</source>
-      <translation>Una espera de %1 s está fuera de rango: de 0.1 s a una hora.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/dwell.py" />
-      <source>G04 does not say how long.</source>
-      <translation>G04 no dice cuánto.</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/omniturn/dwell.py" />
       <source>The drive of C does not tell of its arrival, which takes %1 s from here.</source>
       <translation>El servo de C no avisa su llegada, que desde aquí tarda %1 s.</translation>
@@ -8502,16 +9457,6 @@
       <location filename="core/interpreter/omniturn/dwell.py" />
       <source>Write G04F%1 after it, or longer.</source>
       <translation>Escriba después G04F%1, o más.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/dwell.py" />
-      <source>Write G04Fn, n in seconds.</source>
-      <translation>Escriba G04Fn, n en segundos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
-      <source>Feed %1 is out of range: %2 to %3.</source>
-      <translation>El avance %1 está fuera de rango: de %2 a %3.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/feeds.py" />
@@ -8527,16 +9472,6 @@
       <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Feed %1 is very high for cutting.</source>
       <translation>El avance %1 es muy alto para cortar.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
-      <source>G00 stands with F, G94 or G95, each of which ends the rapid.</source>
-      <translation>G00 está con F, G94 o G95, y cada uno termina el rápido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
-      <source>G01 goes back to the last cutting feed, and none has been set after the first line.</source>
-      <translation>G01 vuelve al último avance de corte, y no se puso ninguno después de la primera línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/feeds.py" />
@@ -8557,11 +9492,6 @@
       <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Look for a lost decimal point.</source>
       <translation>Busque un punto decimal perdido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
-      <source>Set one with G95Fn or G94Fn.</source>
-      <translation>Ponga uno con G95Fn o G94Fn.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/feeds.py" />
@@ -8720,18 +9650,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/m_codes.py" />
-      <source>M13 opens the collet while the spindle turns.</source>
-      <translation>M13 abre la boquilla con el husillo girando.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/m_codes.py" />
       <source>Set enabled = true for %1 under [m_codes].</source>
       <translation>Ponga enabled = true para %1 en [m_codes].</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/m_codes.py" />
-      <source>Stop it with M05 first.</source>
-      <translation>Párelo primero con M05.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/m_codes.py" />
@@ -8805,11 +9725,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>End G%1 first: a move off the part, then G40.</source>
-      <translation>Termine primero G%1: un movimiento fuera de la pieza, luego G40.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Enter the nose radius among the offsets.</source>
       <translation>Ponga el radio de punta entre las compensaciones.</translation>
     </message>
@@ -8817,16 +9732,6 @@
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Enter the nose radius without a sign; G41 and G42 say the side.</source>
       <translation>Ponga el radio de punta sin signo; G41 y G42 dicen el lado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>G%1 comes while G%2 is on.</source>
-      <translation>G%1 viene con G%2 activo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>G%1 does not stand alone on its line.</source>
-      <translation>G%1 no va sola en su línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
@@ -9115,6 +10020,11 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
+      <source>Keep one of them.</source>
+      <translation>Deje uno de ellos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>Look it up.</source>
       <translation>Búsquelo en la página del lenguaje.</translation>
     </message>
@@ -9122,6 +10032,11 @@
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>Put it on a line of its own.</source>
       <translation>Póngalo en su propia línea.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
+      <source>Split the line.</source>
+      <translation>Divida la línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
@@ -9140,18 +10055,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>Write C1 or C0.</source>
-      <translation>Escriba C1 o C0.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>Write it alone.</source>
       <translation>Escríbalo solo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>Write the input's number.</source>
-      <translation>Escriba el número de la entrada.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
@@ -9175,16 +10080,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>holds %1, which is neither C1 (on) nor C0 (off)</source>
-      <translation>contiene %1, que no es C1 (encendido) ni C0 (apagado)</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>holds %1, which is no number of an input</source>
-      <translation>contiene %1, que no es número de una entrada</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>holds %1, which nothing on it takes</source>
       <translation>contiene %1, que nada en ella usa</translation>
     </message>
@@ -9202,21 +10097,6 @@
       <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>(~%1) needs the tool on the negative X side, and X is %2.</source>
       <translation>(~%1) necesita la herramienta del lado X negativo, y X es %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>(~%1) turns C, which is not locked.</source>
-      <translation>(~%1) gira C, que no está bloqueado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>(~%1) under G95: a plane is fed in inches a minute.</source>
-      <translation>(~%1) con G95: un plano avanza en pulgadas por minuto.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>(~%1) with nose compensation on.</source>
-      <translation>(~%1) con compensación de punta activa.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/plane_switching.py" />
@@ -9255,18 +10135,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Move there before the plane.</source>
-      <translation>Muévase ahí antes del plano.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>Move to X- before it.</source>
       <translation>Muévase antes a X-.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>The T on line %1 has not been moved to X and Z.</source>
-      <translation>La T de la línea %1 no se ha movido a X y Z.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/plane_switching.py" />
@@ -9287,21 +10157,6 @@
       <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>The way leads through the axis: C turns by %1 degrees there.</source>
       <translation>El camino pasa por el eje: ahí C gira %1 grados.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Write G40 before.</source>
-      <translation>Escriba antes G40.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Write G94 with F before.</source>
-      <translation>Escriba antes G94 con F.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Write M19 before.</source>
-      <translation>Escriba antes M19.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/plane_switching.py" />
@@ -9342,11 +10197,6 @@
       <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>%1 leaves nothing of the box to cut.</source>
       <translation>%1 no deja nada de la caja por cortar.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>%1 needs %2 of the corner opposite to the start point.</source>
-      <translation>%1 necesita %2 de la esquina opuesta al punto de inicio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/roughing_cycles.py" />
@@ -9392,11 +10242,6 @@
       <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>On the way from the start point to the contour and back the tool comes nearer to it than U.</source>
       <translation>En el camino del punto de inicio al contorno y de regreso la herramienta se acerca a menos de U.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>P does not say which subroutine describes the contour.</source>
-      <translation>P no dice qué subrutina describe el contorno.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/roughing_cycles.py" />
@@ -9449,79 +10294,14 @@
       <translation>U es menor que el camino del inicio a X.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>Write its number after P.</source>
-      <translation>Escriba su número tras P.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>the greatest depth of cut</source>
-      <translation>la mayor profundidad de corte</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>%1 is no surface speed that a tool can stand.</source>
-      <translation>%1 no es velocidad superficial que aguante una herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>%1 is over the spindle's %2 rpm.</source>
-      <translation>%1 pasa de las %2 rpm del husillo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>%1: the speed has no sign; M03 and M04 say the direction.</source>
-      <translation>%1: la velocidad no lleva signo; M03 y M04 dicen el sentido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>Close it with M12 first.</source>
-      <translation>Ciérrela primero con M12.</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/omniturn/spindle_speed.py" />
       <source>Correct one of them.</source>
       <translation>Corrija uno de ellos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>G%1 needs S, a speed in rpm.</source>
-      <translation>G%1 necesita S, una velocidad en rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
       <source>G76 (%1 rpm) is over G77 (%2 rpm).</source>
       <translation>G76 (%1 rpm) pasa de G77 (%2 rpm).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>G97 makes S rpm.</source>
-      <translation>G97 hace de S rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>M%1 starts the spindle and no S has said how fast.</source>
-      <translation>M%1 arranca el husillo y ninguna S dijo qué tan rápido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>M%1 starts the spindle with the collet open.</source>
-      <translation>M%1 arranca el husillo con la boquilla abierta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>M%1 starts the spindle, which is locked as the axis C.</source>
-      <translation>M%1 arranca el husillo, que está bloqueado como eje C.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>Release it with M05 first.</source>
-      <translation>Libérelo primero con M05.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
-      <source>Write G%1Sn.</source>
-      <translation>Escriba G%1Sn.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/straight_moves.py" />
@@ -9570,21 +10350,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>%1: %2 stands without a number here.</source>
-      <translation>%1: aquí %2 está sin número.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>%1: the angle of infeed goes from 0 to 30 degrees.</source>
-      <translation>%1: el ángulo de entrada va de 0 a 30 grados.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>%1: the lead must be above 0 and at most %2.</source>
-      <translation>%1: el paso debe ser mayor que 0 y a lo más %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>A larger I takes fewer; look at I and at the X where the tool starts.</source>
       <translation>Una I mayor hace menos; vea I y la X en que empieza la herramienta.</translation>
     </message>
@@ -9595,18 +10360,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Correct C; bare C is 29 degrees.</source>
-      <translation>Corrija C; C sola es 29 grados.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>Correct Z, or move away before the G33.</source>
       <translation>Corrija Z, o aléjese antes del G33.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>G%1 is active, and a thread is cut without nose compensation.</source>
-      <translation>G%1 está activo, y una rosca se corta sin compensación de punta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
@@ -9620,28 +10375,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>G96 is active, and a thread needs one speed from first pass to last.</source>
-      <translation>G96 está activo, y una rosca necesita una sola velocidad de la primera a la última pasada.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>I is missing.</source>
-      <translation>Falta I.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>I, the depth of the first pass, must be above 0.</source>
-      <translation>I, la profundidad de la primera pasada, debe ser mayor que 0.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>K is missing, and %1 is there.</source>
       <translation>Falta K, y está %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>K, the lead, is missing.</source>
-      <translation>Falta K, el paso.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
@@ -9665,11 +10400,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Start it with M03 or M04.</source>
-      <translation>Arránquelo con M03 o M04.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>The flank angle moves the start of the last pass beyond its end.</source>
       <translation>El ángulo de flanco lleva el inicio de la última pasada más allá de su final.</translation>
     </message>
@@ -9677,11 +10407,6 @@
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>The run-up is %1; the slide needs %2 to reach the speed of the lead.</source>
       <translation>La carrera de arranque es %1; el carro necesita %2 para llegar a la velocidad del paso.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>The spindle stands, and a thread is cut by its turns.</source>
-      <translation>El husillo está parado, y una rosca se corta por sus vueltas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
@@ -9705,36 +10430,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Write %1 alone.</source>
-      <translation>Escriba sólo %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Write G97S before it.</source>
-      <translation>Escriba antes G97S.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Write I, the depth of the first pass.</source>
-      <translation>Escriba I, la profundidad de la primera pasada.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Write K, the lead per revolution.</source>
-      <translation>Escriba K, el paso por vuelta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>X of the last pass is missing.</source>
-      <translation>Falta la X de la última pasada.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Z, the end of the thread, is missing.</source>
-      <translation>Falta Z, el final de la rosca.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>the tool stands at radius %1</source>
       <translation>la herramienta está en radio %1</translation>
     </message>
@@ -9742,11 +10437,6 @@
       <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>%1 have no offset; 0 is used, and the machine will refuse to start.</source>
       <translation>%1 no tienen compensación; se usa 0 y la máquina no arrancará.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
-      <source>G%1 needs X or Z.</source>
-      <translation>G%1 necesita X o Z.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
@@ -9772,11 +10462,6 @@
       <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>Set their offsets.</source>
       <translation>Ponga sus compensaciones.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
-      <source>Write the coordinates.</source>
-      <translation>Escriba las coordenadas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/loop_passes.py" />
@@ -10280,6 +10965,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>%1 is over the spindle's %2 rpm.</source>
+      <translation>%1 pasa de las %2 rpm del husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>%1 m/min is no surface speed that a tool can stand.</source>
       <translation>%1 m/min no es velocidad superficial que aguante una herramienta.</translation>
     </message>
@@ -10330,8 +11020,18 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>G97 makes S rpm.</source>
+      <translation>G97 hace de S rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>Start it with M3 or M4, or write G4 F.</source>
       <translation>Arránquelo con M3 o M4, o escriba G4 F.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>Take the sign out.</source>
+      <translation>Quite el signo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
@@ -11405,6 +12105,11 @@
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1 has no number.</source>
+      <translation>%1 no tiene número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>%1 has over %2 digits.</source>
       <translation>%1 tiene más de %2 cifras.</translation>
     </message>
@@ -12284,6 +12989,56 @@
       <translation>los puntos de un perfil van en un solo sentido a lo largo de Z</translation>
     </message>
     <message>
+      <location filename="core/proving/air_checks.py" />
+      <source>%1 where there is no metal, from one rapid to the next.</source>
+      <translation>%1 donde no hay metal, de un rápido al siguiente.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/air_checks.py" />
+      <source>A thread is cut</source>
+      <translation>Se corta una rosca</translation>
+    </message>
+    <message>
+      <location filename="core/proving/air_checks.py" />
+      <source>A tool is fed</source>
+      <translation>Una herramienta avanza</translation>
+    </message>
+    <message>
+      <location filename="core/proving/air_checks.py" />
+      <source>This move feeds for %1 s where there is no metal.</source>
+      <translation>Este movimiento avanza %1 s donde no hay metal.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/air_checks.py" />
+      <source>This move leads away from the part and cuts nothing, and so does the next.</source>
+      <translation>Este movimiento se aleja de la pieza y no corta nada, y el siguiente tampoco.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/air_checks.py" />
+      <source>This move leads out of the part before its face, inside what the stock measures.</source>
+      <translation>Este movimiento sale de la pieza delante de su cara, dentro de lo que mide el material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/air_checks.py" />
+      <source>This move leads out of the part through metal, backwards.</source>
+      <translation>Este movimiento sale de la pieza a través del metal, hacia atrás.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/air_checks.py" />
+      <source>This move turns a larger diameter than the stock has.</source>
+      <translation>Este movimiento tornea un diámetro mayor que el del material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/air_checks.py" />
+      <source>This rapid goes in beside the part, and out again with nothing cut.</source>
+      <translation>Este rápido entra junto a la pieza y vuelve a salir sin cortar nada.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/air_checks.py" />
+      <source>Up to here tools have fed for %1 s where there is no metal.</source>
+      <translation>Hasta aquí las herramientas han avanzado %1 s donde no hay metal.</translation>
+    </message>
+    <message>
       <location filename="core/proving/assumed_tools.py" />
       <source>%1, its diameter as %2 in</source>
       <translation>%1, con %2 in de diámetro</translation>
@@ -12292,6 +13047,11 @@
       <location filename="core/proving/assumed_tools.py" />
       <source>, %1 in</source>
       <translation>, %1 in</translation>
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>, %1 in wide</source>
+      <translation>, %1 in de ancho</translation>
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
@@ -12337,6 +13097,16 @@
       <location filename="core/proving/checks_page.py" />
       <source>Found when: %1  </source>
       <translation>Se halla cuando: %1  </translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks_page.py" />
+      <source>Rests on: %1.  </source>
+      <translation>Se basa en: %1.  </translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks_page.py" />
+      <source>what the machine file says</source>
+      <translation>lo que dice el archivo de máquina</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -12434,6 +13204,66 @@
       <translation>el T0 de la línea %1</translation>
     </message>
     <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1, on the side where it does not stand.</source>
+      <translation>%1, en el lado donde no está.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>T%1 cuts %2 beyond the axis</source>
+      <translation>T%1 corta %2 más allá del eje</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>T%1 cuts %2 deep with the back of its insert.</source>
+      <translation>T%1 corta a %2 de profundidad con la parte trasera de su plaquita.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>T%1 cuts %2 deep; its edge reaches %3.</source>
+      <translation>T%1 corta %2 de profundidad; su filo llega a %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>T%1 cuts at Z %2; the part ends at %3.</source>
+      <translation>T%1 corta en Z %2; la pieza termina en %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>T%1 cuts with the spindle turning the other way than where it has cut before.</source>
+      <translation>T%1 corta con el husillo girando al revés que donde ha cortado antes.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>T%1 feeds %2 with a diameter of %3.</source>
+      <translation>T%1 avanza %2 con un diámetro de %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>T%1 feeds %2 with a nose radius of %3.</source>
+      <translation>T%1 avanza %2 con un radio de punta de %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>T%1 feeds %2 with an edge %3 wide.</source>
+      <translation>T%1 avanza %2 con un filo de %3 de ancho.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>T%1 goes %2 deep; it cuts %3.</source>
+      <translation>T%1 entra %2; corta %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>T%1 goes in at %2°, and the back of its insert clears %3°.</source>
+      <translation>T%1 entra a %2°, y la parte trasera de su plaquita libra %3°.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>T%1, which is %2-hand, cuts while the spindle turns by %3.</source>
+      <translation>T%1, que es de mano %2, corta mientras el husillo gira con %3.</translation>
+    </message>
+    <message>
       <location filename="core/proving/machine_checks.py" />
       <source> (X as a radius)</source>
       <translation> (X como radio)</translation>
@@ -12470,6 +13300,21 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A cut with no tool in force.</source>
+      <translation>Un corte sin herramienta activa.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A cut with the collet open.</source>
+      <translation>Un corte con la pinza abierta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A cut with the spindle stopped.</source>
+      <translation>Un corte con el husillo parado.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A cutting move leads away from the part, and nothing is cut where the program seems to mean it.</source>
       <translation>Un movimiento de corte se aleja de la pieza y no se corta nada donde el programa parece quererlo.</translation>
     </message>
@@ -12485,18 +13330,43 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A feed along Z ends more than .5 in, and more than the part is long, behind the deepest part-off.</source>
+      <translation>Un avance en Z termina más de .5 in, y más que el largo de la pieza, detrás del tronzado más profundo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A feed by time after M05, with no live tool on; an error with a feed per turn, G33 or G96.</source>
+      <translation>Un avance por tiempo tras M05, sin herramienta motorizada; un error con avance por vuelta, G33 o G96.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A feed goes on where there is no metal.</source>
       <translation>Un avance sigue donde no hay metal.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A feed of .1 in and more leads away from the part and cuts nothing, and the next goes on there.</source>
-      <translation>Un avance de .1 in o más se aleja de la pieza y no corta nada, y el siguiente continúa allí.</translation>
+      <source>A feed leads away from the part, or out before its face; feeds between two rapids, or those of a live tool, come near no metal; a rapid goes in and out beside the part with nothing cut; a tool that comes to the part is never fed.</source>
+      <translation>Un avance se aleja de la pieza o sale delante de su cara; los avances entre dos rápidos, o los de una herramienta motorizada, no se acercan al metal; un rápido entra y sale junto a la pieza sin cortar nada; una herramienta que llega a la pieza no avanza nunca.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A feed per turn over .8 of the nose radius along a turned face.</source>
-      <translation>Un avance por vuelta superior a .8 del radio de punta.</translation>
+      <source>A live tool stands while it mills.</source>
+      <translation>Una herramienta motorizada está parada mientras fresa.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A move of plane switching with no live tool on; a warning with the spindle held as C.</source>
+      <translation>Un movimiento de cambio de plano sin herramienta motorizada; un aviso con el husillo sujeto como C.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A move that cuts before the first T or after T0; a warning where the program names no tool at all.</source>
+      <translation>Un movimiento que corta antes de la primera T o tras T0; un aviso si el programa no nombra ninguna herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A parting tool stops just before the axis.</source>
+      <translation>Una herramienta de tronzar se detiene justo antes del eje.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -12510,8 +13380,43 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A tap is drawn out of its thread and not turned out.</source>
+      <translation>Un macho se saca de su rosca sin girarlo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A tap is not fed by its pitch.</source>
+      <translation>Un macho no avanza según su paso.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A thread begins before the slide has the speed of its lead, or ends while it brakes.</source>
+      <translation>Una rosca empieza antes de que el carro tenga la velocidad de su paso, o termina mientras frena.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A thread does not fit its lead.</source>
+      <translation>Una rosca no corresponde a su paso.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A tool, or its holder, runs into chuck, jaws or collet.</source>
       <translation>Una herramienta, o su portaherramientas, choca con el plato, las garras o la pinza.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A tool, or its holder, runs into the tailstock's centre or quill.</source>
+      <translation>Una herramienta, o su portaherramientas, choca con el punto o la caña del contrapunto.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>An insert cuts with its back.</source>
+      <translation>Una plaquita corta con su parte trasera.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>An outline comes into the contour of quill and centre that the machine file gives under [clamping].</source>
+      <translation>Un contorno entra en el de la caña y el punto que el archivo de máquina da en [clamping].</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -12525,6 +13430,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>An outside tool cuts beyond the axis.</source>
+      <translation>Una herramienta exterior corta más allá del eje.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Another tool of the gang plate runs into the stock.</source>
       <translation>Otra herramienta de la placa choca con el material.</translation>
     </message>
@@ -12535,13 +13445,53 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Behind the face it cuts more than .06 in beyond the axis, where it does not stand.</source>
+      <translation>Detrás de la cara corta más de .06 in más allá del eje, donde no está.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Calls by inputs, block delete and loops are followed both ways, as far as the proof goes.</source>
+      <translation>Las llamadas por entradas, el salto de bloques y los bucles se siguen de ambas maneras, hasta donde llega la comprobación.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Change M03 and M04, or the hand that the tool's shape says.</source>
       <translation>Cambie M03 y M04, o la mano que dice la forma de la herramienta.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Check K, X of the last pass, the X where it starts, and the pitch of the insert.</source>
+      <translation>Revise K, la X de la última pasada, la X donde empieza y el paso de la plaquita.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Check the stock, and X as a radius or a diameter.</source>
       <translation>Compruebe el material, y X como radio o como diámetro.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Close the collet with M12.</source>
+      <translation>Cierre la pinza con M12.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Correct the number, or name it under [io.in].</source>
+      <translation>Corrija el número o nómbrelo en [io.in].</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Fed backwards over .02 in and two nose radii deep, or into a wall that is steeper than its back.</source>
+      <translation>Avance hacia atrás a más de .02 in y dos radios de punta de profundidad, o contra una pared más inclinada que su parte trasera.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>G91 before any move to a place: it begins where the slides stand.</source>
+      <translation>G91 antes de cualquier movimiento a un lugar: empieza donde están los carros.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Go on to X0 or a little beyond: look for a lost minus.</source>
+      <translation>Siga hasta X0 o un poco más: busque un signo menos perdido.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -12555,18 +13505,48 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>It comes nearer than .04 in to the axis, not to it, and nothing falls off.</source>
+      <translation>Se acerca a menos de .04 in del eje, no llega a él, y no cae nada.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>It is deeper than a sharp V of the lead; or the lead is no multiple of the pitch of the insert.</source>
+      <translation>Es más profunda que una V aguda de ese paso; o el paso no es múltiplo del de la plaquita.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>It is longer than five times its diameter.</source>
       <translation>Es más larga que cinco veces su diámetro.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>It stays more than .08 in from all metal for 5 s and .2 in of its way.</source>
-      <translation>Queda a más de .08 in de todo metal durante 5 s y .2 in de su recorrido.</translation>
+      <source>It leaves by a rapid, with the spindle stopped or not reversed, by another feed, or the spindle needs more than .5 in to stand. Not asked of a holder that reverses by itself, as its comment says.</source>
+      <translation>Sale en rápido, con el husillo parado o sin invertir, con otro avance, o el husillo necesita más de .5 in para pararse. No se pide a un portamachos que invierte por sí mismo, según su comentario.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Let the part stick out further, or stop earlier.</source>
       <translation>Deje que la pieza sobresalga más, o pare antes.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Lines that no way through the program has reached.</source>
+      <translation>Líneas a las que no llega ningún camino del programa.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Look at the call, or prove again with the inputs that lead there.</source>
+      <translation>Mire la llamada, o compruebe de nuevo con las entradas que llevan allí.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Look at the sign of X, and for a lost decimal point (X-03 for X-.03).</source>
+      <translation>Mire el signo de X y busque un punto decimal perdido (X-03 en vez de X-.03).</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Look for a lost decimal point (Z-3 for Z-.3).</source>
+      <translation>Busque un punto decimal perdido (Z-3 en vez de Z-.3).</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -12585,18 +13565,63 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Lower S, limit G96 by G77, let the part stick out less, or support it.</source>
+      <translation>Baje S, limite G96 con G77, deje que la pieza sobresalga menos o apóyela.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Lower S, or limit G96 by G77.</source>
       <translation>Baje S, o limite G96 con G77.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>M04 with a right-hand drill, tap or reamer; M03 with a left-hand one.</source>
-      <translation>M04 con broca, macho o escariador a derechas; M03 con uno a izquierdas.</translation>
+      <source>M04 with a right-hand drill, reamer or tap, M03 with a left-hand one; or one edge is made to cut both ways.</source>
+      <translation>M04 con broca, escariador o macho a derechas, M03 con uno a izquierdas; o un mismo filo tiene que cortar en ambos sentidos.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>M91 to M97 ask for one that the machine file does not name.</source>
+      <translation>M91 a M97 piden una que el archivo de máquina no nombra.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Metal is cut behind M13; a warning where a feed does not lead away as a bar is pulled, or the next cycle would begin with an open collet.</source>
+      <translation>Se corta metal tras M13; un aviso si un avance no se aleja como al tirar de una barra, o si el siguiente ciclo empezaría con la pinza abierta.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Metal is fed into holder, shank or boring bar.</source>
       <translation>El metal avanza contra el portaherramientas, el mango o la barra de mandrinar.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>More than half of the first critical speed of what sticks out, as a bar of brass held at one end.</source>
+      <translation>Más de la mitad de la primera velocidad crítica de lo que sobresale, como barra de latón sujeta por un extremo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>One stays more than .08 in from all metal for 5 s and .2 in, or several in a row for 20 s.</source>
+      <translation>Uno queda a más de .08 in de todo metal durante 5 s y .2 in, o varios seguidos durante 20 s.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Over .8 of the nose radius; .25 of the width of a groover; .1 of the diameter of a drill.</source>
+      <translation>Más de .8 del radio de punta; .25 del ancho de una ranuradora; .1 del diámetro de una broca.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Reverse the spindle at the bottom and feed out by the pitch.</source>
+      <translation>Invierta el husillo en el fondo y salga avanzando según el paso.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Start farther away, lower S, end in a groove, or pull out with P.</source>
+      <translation>Empiece más lejos, baje S, termine en una ranura o salga con P.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Start it with M03 or M04.</source>
+      <translation>Arránquelo con M03 o M04.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -12610,8 +13635,23 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Switch it on by the M code that the machine file gives.</source>
+      <translation>Conéctela con el código M que da el archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Take another way there, a shorter tool, or another place on the plate.</source>
       <translation>Vaya por otro camino, con una herramienta más corta, o póngala en otro sitio de la placa.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Take another way there, or a slimmer holder; draw the quill back for what needs the face.</source>
+      <translation>Tome otro camino o un portaherramientas más fino; retire la caña para lo que necesita la cara.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The bar is cut far behind where the part is parted off.</source>
+      <translation>La barra se corta muy por detrás de donde se tronza la pieza.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -12620,13 +13660,33 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>The feed is larger than the nose can cut.</source>
-      <translation>El avance es mayor de lo que la punta puede cortar.</translation>
+      <source>The feed of a turn is larger than the edge can cut.</source>
+      <translation>El avance por vuelta es mayor de lo que el filo puede cortar.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>The hole is deeper than the cutting length of the drill.</source>
-      <translation>El agujero es más profundo que la longitud de corte de la broca.</translation>
+      <source>The feed of a turn is off by more than .08 of the pitch that its shape or its comment gives.</source>
+      <translation>El avance por vuelta se aparta más de .08 del paso que da su forma o su comentario.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The first move is incremental.</source>
+      <translation>El primer movimiento es incremental.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The hole is deeper than the cutting length of the drill; without a length the proof says so.</source>
+      <translation>El agujero es más profundo que el largo de corte de la broca; sin largo, la comprobación lo dice.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The machine has no such input.</source>
+      <translation>La máquina no tiene tal entrada.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The metal begins nearer to the start of the pass than v²/2a of the slide; or the pass stops in metal and v²/2a is more than a lead.</source>
+      <translation>El metal empieza más cerca del inicio de la pasada que v²/2a del carro; o la pasada se detiene en metal y v²/2a es más que un paso.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -12642,6 +13702,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>The spindle turns faster than chuck or collet may.</source>
       <translation>El husillo gira más deprisa de lo que permite el plato o la pinza.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The spindle turns so fast that the stock may whirl.</source>
+      <translation>El husillo gira tan rápido que el material puede cabecear.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -12665,6 +13730,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Use a tool of the other hand, a slimmer insert, or cut from the other side.</source>
+      <translation>Use una herramienta de la otra mano, una plaquita más fina, o corte desde el otro lado.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>What is parted off is long and held by nothing.</source>
       <translation>Lo que se tronza es largo y nada lo sujeta.</translation>
     </message>
@@ -12672,6 +13742,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>With [tooling] kind = "gang": its outline, placed by its tool offset, overlaps metal.</source>
       <translation>Con [tooling] kind = "gang": su perfil, situado por su corrector, solapa el metal.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Write F as the pitch: 1 divided by the threads per inch.</source>
+      <translation>Escriba F como el paso: 1 dividido por los hilos por pulgada.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
@@ -12700,28 +13775,23 @@
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
+      <source>Silenced: %1</source>
+      <translation>Silenciado: %1</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
       <source>T%1 beside T%2 on the plate runs into the stock.</source>
       <translation>T%1, junto a T%2 en la placa, choca con el material.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
-      <source>T%1 cuts %2 deep; its edge reaches %3.</source>
-      <translation>T%1 corta %2 de profundidad; su filo llega a %3.</translation>
+      <source>T%1 goes over the axis, through the part.</source>
+      <translation>T%1 pasa sobre el eje, a través de la pieza.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
-      <source>T%1 cuts while the spindle turns backwards (M04).</source>
-      <translation>T%1 corta mientras el husillo gira al revés (M04).</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_findings.py" />
-      <source>T%1 feeds %2 with a nose radius of %3.</source>
-      <translation>T%1 avanza %2 con un radio de punta de %3.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_findings.py" />
-      <source>T%1 goes %2 deep; it cuts %3.</source>
-      <translation>T%1 entra %2; corta %3.</translation>
+      <source>T%1 parts off down to %2, and nothing falls.</source>
+      <translation>T%1 tronza hasta %2, y no cae nada.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
@@ -12730,8 +13800,18 @@
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
+      <source>T%1 runs into the tailstock, %2.</source>
+      <translation>T%1 choca con el contrapunto, %2.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
       <source>The holder of T%1 runs into metal, %2.</source>
       <translation>El portaherramientas de T%1 choca con el metal, %2.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>The live tool T%1 is fed, and never meets metal.</source>
+      <translation>La herramienta motorizada T%1 avanza y nunca toca metal.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
@@ -12740,18 +13820,8 @@
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
-      <source>This move feeds for %1 s where there is no metal.</source>
-      <translation>Este movimiento avanza %1 s donde no hay metal.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_findings.py" />
-      <source>This move leads away from the part and cuts nothing, and so does the next.</source>
-      <translation>Este movimiento se aleja de la pieza y no corta nada, y el siguiente tampoco.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_findings.py" />
-      <source>This move turns a larger diameter than the stock has.</source>
-      <translation>Este movimiento tornea un diámetro mayor que el del material.</translation>
+      <source>The stock sticks out so far that it whirls at %1 rpm; it turns at</source>
+      <translation>El material sobresale tanto que cabecea a %1 rpm; gira a</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
@@ -12759,9 +13829,44 @@
       <translation>Lo que se tronza es %1 veces más largo que grueso.</translation>
     </message>
     <message>
+      <location filename="core/proving/part_history.py" />
+      <source>%1 blocks: the desk makes the part of up to %2; %3</source>
+      <translation>%1 bloques: el puesto hace la pieza de hasta %2; %3</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_history.py" />
+      <source>'turndesk prove --stock' makes that of a longer one</source>
+      <translation>'turndesk prove --stock' hace la de uno más largo</translation>
+    </message>
+    <message>
       <location filename="core/proving/part_proof.py" />
       <source>%1 moves: a part of so many is made where its stock is said</source>
       <translation>%1 movimientos: una pieza de tantos se hace donde se indica su material</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_proof.py" />
+      <source>T%1 is never fed: all its moves are rapids.</source>
+      <translation>T%1 no avanza nunca: todos sus movimientos son rápidos.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_proof.py" />
+      <source>The live tool T%1 is fed, and never comes behind Z0.</source>
+      <translation>La herramienta motorizada T%1 avanza y nunca pasa de Z0.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_proof.py" />
+      <source>This feed leads away from the part, and no other cuts behind Z0.</source>
+      <translation>Este avance se aleja de la pieza, y ningún otro corta detrás de Z0.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_proof.py" />
+      <source>no stock is assumed: no feed cuts behind Z0</source>
+      <translation>no se supone material: ningún avance corta detrás de Z0</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_proof.py" />
+      <source>what T%1 cuts from line %2 on while the spindle stands</source>
+      <translation>lo que corta T%1 desde la línea %2 con el husillo parado</translation>
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />
@@ -12807,6 +13912,91 @@
       <location filename="core/proving/program_timeline.py" />
       <source>change the move that the message names</source>
       <translation>cambie el movimiento que nombra el mensaje</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>%1: more than a holder gives.</source>
+      <translation>%1: más de lo que cede un portamachos.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>T%1 cuts a pitch of %2; the lead is %3.</source>
+      <translation>T%1 corta un paso de %2; el avance de rosca es %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>T%1 feeds %2 a turn; its pitch is %3.</source>
+      <translation>T%1 avanza %2 por vuelta; su paso es %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>T%1 goes in by %2 a turn and out by %3.</source>
+      <translation>T%1 entra a %2 por vuelta y sale a %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>T%1 goes on for %2 until the spindle stands</source>
+      <translation>T%1 sigue %2 hasta que el husillo se para</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>T%1 is drawn out of its thread %2.</source>
+      <translation>T%1 se saca de su rosca %2.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>T%1 is drawn out of its thread with the spindle stopped.</source>
+      <translation>T%1 se saca de su rosca con el husillo parado.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>T%1 is torn out of its thread by a rapid.</source>
+      <translation>T%1 se arranca de su rosca en rápido.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>The metal begins %1 behind the start of the pass; the slide needs %2 to reach the speed of the lead.</source>
+      <translation>El metal empieza %1 detrás del inicio de la pasada; el carro necesita %2 para alcanzar la velocidad del paso.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>The slide needs %1 to stop from the speed of the lead, and metal ends %2 before the end of the pass: its last turns have another lead.</source>
+      <translation>El carro necesita %1 para pararse desde la velocidad del paso, y el metal termina %2 antes del final de la pasada: sus últimas vueltas tienen otro paso.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>The thread is %1 deep; with a lead of %2 and %3° its flanks meet at %4.</source>
+      <translation>La rosca tiene %1 de profundidad; con un paso de %2 y %3° sus flancos se cortan a %4.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>while the spindle turns on as it went in</source>
+      <translation>mientras el husillo sigue girando como al entrar</translation>
+    </message>
+    <message>
+      <location filename="core/proving/unchecked_parts.py" />
+      <source>%1 as neighbours on the plate, without a shape</source>
+      <translation>%1 como vecinas en la placa, sin forma</translation>
+    </message>
+    <message>
+      <location filename="core/proving/unchecked_parts.py" />
+      <source>chuck, jaws and whirling stock, without a diameter under [clamping] and a stick-out</source>
+      <translation>plato, garras y cabeceo del material, sin un diámetro en [clamping] ni un voladizo</translation>
+    </message>
+    <message>
+      <location filename="core/proving/unchecked_parts.py" />
+      <source>holder, edge length and hand of %1, which nobody has described</source>
+      <translation>portaherramientas, largo de filo y mano de %1, que nadie ha descrito</translation>
+    </message>
+    <message>
+      <location filename="core/proving/unchecked_parts.py" />
+      <source>how deep %1 can go, without a flute length</source>
+      <translation>hasta dónde puede entrar %1, sin largo de hélice</translation>
+    </message>
+    <message>
+      <location filename="core/proving/unchecked_parts.py" />
+      <source>the speed that the chuck may turn at, without max_rpm under [clamping]</source>
+      <translation>la velocidad que admite el plato, sin max_rpm en [clamping]</translation>
     </message>
     <message>
       <location filename="core/store/backup.py" />
@@ -12909,39 +14099,34 @@
       <translation>el ajuste %1 no se puede guardar: %2</translation>
     </message>
     <message>
+      <location filename="core/store/measured_parts.py" />
+      <source>%1 has a feature %2 already; give this one another name</source>
+      <translation>%1 ya tiene una característica %2; dé otro nombre a esta</translation>
+    </message>
+    <message>
+      <location filename="core/store/measured_parts.py" />
+      <source>%1 is not measured any more; enter it anew</source>
+      <translation>%1 ya no se mide; introdúzcala de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/store/measured_parts.py" />
+      <source>a reading is a number; measure again</source>
+      <translation>una lectura es un número; mida otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/store/measured_parts.py" />
+      <source>that reading is taken out already</source>
+      <translation>esa lectura ya está quitada</translation>
+    </message>
+    <message>
+      <location filename="core/store/measured_parts.py" />
+      <source>the feature of this reading is not measured any more; nothing was kept</source>
+      <translation>la característica de esta lectura ya no se mide; no se ha guardado nada</translation>
+    </message>
+    <message>
       <location filename="core/store/offset_fields.py" />
       <source>%1…%2 in</source>
       <translation>%1…%2 pulg</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>behind the spindle</source>
-      <translation>detrás del husillo</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>cutting length</source>
-      <translation>longitud de corte</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>entering angle</source>
-      <translation>ángulo de posición</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>nose radius</source>
-      <translation>radio de punta</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>point angle</source>
-      <translation>ángulo de punta</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>tip quadrant</source>
-      <translation>cuadrante de punta</translation>
     </message>
     <message>
       <location filename="core/store/offset_fields.py" />
@@ -12957,11 +14142,6 @@
       <location filename="core/store/offset_fields.py" />
       <source>yes or no</source>
       <translation>sí o no</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>%1 in</source>
-      <translation>%1 pulg</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
@@ -13094,6 +14274,36 @@
       <translation>[zero.%1]  # mm and degrees</translation>
     </message>
     <message>
+      <location filename="core/store/store_rows.py" />
+      <source>behind the spindle</source>
+      <translation>detrás del husillo</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_rows.py" />
+      <source>cutting length</source>
+      <translation>longitud de corte</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_rows.py" />
+      <source>entering angle</source>
+      <translation>ángulo de posición</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_rows.py" />
+      <source>nose radius</source>
+      <translation>radio de punta</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_rows.py" />
+      <source>point angle</source>
+      <translation>ángulo de punta</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_rows.py" />
+      <source>tip quadrant</source>
+      <translation>cuadrante de punta</translation>
+    </message>
+    <message>
       <location filename="core/store/store_writer.py" />
       <source>%1 events had no room while nothing could be written</source>
       <translation>%1 eventos no cupieron mientras no se podía escribir</translation>
@@ -13122,6 +14332,11 @@
       <location filename="core/store/store_writer.py" />
       <source>the store is closed; nothing can be written any more</source>
       <translation>el almacén está cerrado; ya no se puede escribir nada</translation>
+    </message>
+    <message>
+      <location filename="core/store/tool_lives.py" />
+      <source>there is no tool T%1; tools are T%2 to T%3</source>
+      <translation>no hay herramienta T%1; las herramientas son T%2 a T%3</translation>
     </message>
     <message>
       <location filename="core/store/touch_off.py" />
