@@ -149,7 +149,7 @@ class Values:
     def has(self, *paths: str) -> bool:
         return all(path in self.found for path in paths)
 
-    def said(self, path: str) -> bool:
+    def stated(self, path: str) -> bool:
         """Whether the file says it, rightly or wrongly."""
         return path in self.found or path in self.wrong
 

@@ -57,17 +57,17 @@ if sys.platform != "win32":
 _NOT_OPENED: tuple[type[Exception], ...] = (*_FAILURES, ValueError)
 
 
-class Found(NamedTuple):
+class PortInfo(NamedTuple):
     """A serial port of this computer."""
 
     device: str
     what: str
 
 
-def found_ports() -> list[Found]:
+def list_ports() -> list[PortInfo]:
     """The serial ports of this computer, by name."""
     return sorted(
-        Found(port.device, "" if port.description in {None, "n/a"} else port.description)
+        PortInfo(port.device, "" if port.description in {None, "n/a"} else port.description)
         for port in comports()
     )
 

@@ -37,7 +37,7 @@ def prove_many(args: argparse.Namespace, job: ProofJob) -> int:
     with report_file(args) as report:
         run = _Run(args, job, files, _workers(args), report)
         run.prove()
-    return run.told()
+    return run.outcome()
 
 
 def _workers(args: argparse.Namespace) -> WorkerSource:
@@ -94,7 +94,7 @@ class _Run:
             if self._cache is not None:
                 self._cache.trim()
 
-    def told(self) -> int:
+    def outcome(self) -> int:
         """The table or what is left to say, and the exit status."""
         rows = [(path, self._proofs[k]) for k, path in enumerate(self._files.paths)]
         others = self._files.others

@@ -203,14 +203,14 @@ BACKEND = Backend("bus", driven=can_driven, played=_played, play=_play, survey=c
 def written_at_start(machine: Machine) -> dict[str, Objects]:
     """Every object that each node is told at a start, by the node's name. Raises DriverError."""
     try:
-        from drivers.canopen.canopen_setup import standing, stopping, watching
+        from drivers.canopen.canopen_setup import axis_objects, stopping, watching
     except ImportError as error:
         raise DriverError(lacking(error)) from error
     config = canopen_config(machine)
     told: dict[str, Objects] = {}
     for axis in config.axes:
         if axis.node is not None:
-            told[axis.name] = (*standing(axis, config.bus), *axis.node.sdo)
+            told[axis.name] = (*axis_objects(axis, config.bus), *axis.node.sdo)
     if config.spindle is not None:
         told["spindle"] = (*stopping(config.bus), *config.spindle.node.sdo)
     return told | {module.name: (*watching(config.bus), *module.sdo) for module in config.modules}

@@ -72,10 +72,10 @@ def _connect(machine: Machine, clock: Clock) -> Connected:
     controller = GrblMachine(grblhal_config(machine), clock)
     ports, close, encoder = controller.ports, controller.close, controller.encoder
     if has_inverter(machine):
-        ports, close = with_inverter(machine, ports, clock, close, encoder if encoder.there else None)
+        ports, close = with_inverter(machine, ports, clock, close, encoder if encoder.measures else None)
         spindle = ports.spindle
         assert isinstance(spindle, InverterSpindle)
-        encoder.way = lambda: spindle.given
+        encoder.way = lambda: spindle.reported_rpm
     return Connected(ports, controller.panel, None, close)
 
 

@@ -20,7 +20,7 @@ from core.store import backup
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow, RunRow, VersionRow
-from core.store.store_writer import Held
+from core.store.store_writer import Backlog
 
 HELD = 10_000  # events that are kept back while there is no store
 UNDER_WAY = "under_way"  # setting: what a power cut would leave interrupted
@@ -71,11 +71,11 @@ class Journal(Persistence):
         """What is still to be written and waits in memory, in words; empty while nothing has to."""
         store, held = self._store, self._held
         if store is not None:
-            return store.held.words if store.held is not None else ""
+            return store.backlog.words if store.backlog is not None else ""
         if not held:
             return ""
         parts = sum(event.kind == "part" for event in tuple(held))
-        return Held("", events=len(held), parts=parts).words
+        return Backlog("", events=len(held), parts=parts).words
 
     def note(self, what: InterruptedJob | None) -> None:
         """Keep what a power cut would leave interrupted now; None: nothing."""

@@ -23,7 +23,7 @@ def open_wire(settings: LineSettings, *, watch: bool = False) -> FlowWire:
 def serial_ports() -> list[tuple[str, str]]:
     """(device, what it is) of each port of this computer. Raises DriverError."""
     try:
-        from drivers.serial_port import found_ports
+        from drivers.serial_port import list_ports
     except ImportError as error:
         raise DriverError(MISSING) from error
-    return [(found.device, found.what) for found in found_ports()]
+    return [(found.device, found.what) for found in list_ports()]

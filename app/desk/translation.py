@@ -65,7 +65,7 @@ class _Template:
         found = self._pattern.fullmatch(text)
         return dict(zip(self._holes, found.groups(), strict=True)) if found else None
 
-    def made(self, values: dict[str, str]) -> str:
+    def filled(self, values: dict[str, str]) -> str:
         """The other language's sentence with these values."""
         return HOLE.sub(lambda hole: values.get(hole.group(), hole.group()), self._other)
 
@@ -106,5 +106,5 @@ class Catalogue:
             values = template.values(text) if template.joined or not joined else None
             if values is not None:
                 known = {hole: self._look_up(v, depth + 1) or v for hole, v in values.items()}
-                return template.made(known)
+                return template.filled(known)
         return ""

@@ -95,7 +95,7 @@ class FolderChooser:
         except OSError as error:
             raise FileError(f"{self.at.name} CANNOT BE READ: {error.strerror}") from error
 
-    def found(self, lines: tuple[FolderLine, ...]) -> None:
+    def show_lines(self, lines: tuple[FolderLine, ...]) -> None:
         """Take what ``look`` has found."""
         self.lines, self.trouble = lines, ""
         self.marked = min(self.marked, max(0, len(lines) - 1))
@@ -111,7 +111,7 @@ class FolderChooser:
             self.at = line.path
 
     @property
-    def here(self) -> FolderLine | None:
+    def marked_line(self) -> FolderLine | None:
         """The marked line; None where there is none."""
         return self.lines[self.marked] if self.marked < len(self.lines) else None
 

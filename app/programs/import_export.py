@@ -145,12 +145,12 @@ class ImportExport:
         self.open, self._asked = False, ()
 
     def _look(self) -> None:
-        self.worker.queue(self.chooser.look, self.chooser.found, self._unread)
+        self.worker.queue(self.chooser.look, self.chooser.show_lines, self._unread)
 
     def _unread(self, why: str) -> None:
         self.desk.refuse(why)
         self.chooser.at = self.chooser.top = None
-        self.worker.queue(self.chooser.look, self.chooser.found, self.desk.say)
+        self.worker.queue(self.chooser.look, self.chooser.show_lines, self.desk.say)
 
     def sheet(self) -> Sheet:
         """The folder that is looked into."""
@@ -191,7 +191,7 @@ class ImportExport:
             self.choose(row)
 
     def _enter(self) -> None:
-        line = self.chooser.here
+        line = self.chooser.marked_line
         if line is None:
             return
         if line.folder:

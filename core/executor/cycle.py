@@ -103,7 +103,7 @@ class Cycle:
     def why_not_on(self) -> str:
         """Why a stopped cycle cannot go on now; empty when it can."""
         spindle = self._context.spindle
-        return spindle.kept_still.lower() if spindle.waits and self._turns_next() else ""
+        return spindle.start_barred.lower() if spindle.waits and self._turns_next() else ""
 
     def go_on(self, *, starts_spindle: bool = False) -> None:
         """Cycle Start after hold, single block, M00, M01; a spindle that it starts is waited for."""

@@ -97,7 +97,7 @@ class FeedHold:
         self.reason = ""
         within = self.within_section
         self._still.done = within
-        self._still.held(self._context.now - self._since)
+        self._still.shift_for_hold(self._context.now - self._since)
         self._behind = behind
         self._spin_up = self._slow_spindle() if within or starts_spindle else None
         self._since = self._context.now
@@ -119,7 +119,7 @@ class FeedHold:
         if not over:
             return State.WAIT
         self._spin_up = None
-        self._still.held(self._context.now - self._since)
+        self._still.shift_for_hold(self._context.now - self._since)
         if self.within_section:
             self._motion.go_on(self._behind)
         return State.RUN

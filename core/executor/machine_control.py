@@ -146,7 +146,7 @@ class MachineControl:
         """One that waits: in a cycle for the palms alone, between programs for its switch too."""
         spindle = self._context.spindle
         rpm, by_hand = spindle.would_turn, self.state in BY_HAND
-        if rpm and (by_hand or (self.state in STOPPED and not spindle.kept_still)):
+        if rpm and (by_hand or (self.state in STOPPED and not spindle.start_barred)):
             way = "FORWARD" if rpm > 0.0 else "REVERSE"
             text = f"THE SPINDLE STARTS AT {abs(rpm):.0f} RPM {way}"
             yield Starting(SPINDLE, text if spindle.auto else f"SWITCH TO AUTO: {text}", spindle.permit, rpm)

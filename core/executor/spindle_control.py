@@ -182,10 +182,10 @@ class SpindleControl:
         """What keeps it from turning, when that is the operator."""
         if self._ask is None:
             return "SPINDLE STOPPED"
-        return self.kept_still or self.waits
+        return self.start_barred or self.waits
 
     @property
-    def kept_still(self) -> str:
+    def start_barred(self) -> str:
         """What keeps it from being started at all, at the station."""
         if self.guard_open:
             return "GUARD OPEN"
@@ -203,7 +203,7 @@ class SpindleControl:
 
     def permit(self) -> None:
         """Both palms, or the switch by hand: what waits may turn again."""
-        if self._ask is not None and not self.kept_still:
+        if self._ask is not None and not self.start_barred:
             self._forget_waiting()
             self._again, self._in_band_since = True, None
 
@@ -351,8 +351,8 @@ class SpindleControl:
         """A spindle that stands although it is asked to turn must not start when its cause goes away."""
         if self._ask is None:
             return
-        if self.kept_still:
-            self.dropped(self.kept_still)
+        if self.start_barred:
+            self.dropped(self.start_barred)
         elif not self.stopped or abs(self.command) < 2.0 * self._model.stop_below:
             self._turned, self._stands = self._turned or not self.stopped, None
         elif self._turned:

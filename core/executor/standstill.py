@@ -227,7 +227,7 @@ class Standstill:
         if self._wait is None:
             self._wait = Wait(lambda: label, lambda _: False, self._context.now)
 
-    def held(self, seconds: float) -> None:
+    def shift_for_hold(self, seconds: float) -> None:
         """Feed hold has lasted so long, s: it does not count."""
         if self._wait is not None:
             self._wait.shift(seconds)

@@ -65,14 +65,14 @@ class Rotary:
         """Whether the axis can stand there."""
         return self.modulo or self.low - RANGE_END <= angle <= self.high + RANGE_END
 
-    def shown(self, angle: float) -> float:
+    def displayed(self, angle: float) -> float:
         """The angle as displayed: 0 to 360 on a modulo axis."""
         if not self.modulo:
             return angle + 0.0
         rest = angle % TURN
         return 0.0 if TURN - rest < RANGE_END else rest
 
-    def way(self, start: float, target: float) -> float:
+    def travel(self, start: float, target: float) -> float:
         """Degrees to travel; a modulo axis goes the short way, exactly half a turn goes positive."""
         way = target - start
         if not self.modulo:

@@ -171,7 +171,7 @@ def _nearest(machine: Kinematics, made: Solution, present: Mapping[str, float]) 
     for axis in machine.rotaries:
         angle, now = made.angles[axis.name], present.get(axis.name, 0.0)
         if axis.modulo:
-            angles[axis.name] = axis.shown(angle)
+            angles[axis.name] = axis.displayed(angle)
             continue
         nearest = angle + TURN * round((now - angle) / TURN)
         turns = [angle, nearest, nearest - TURN, nearest + TURN]
@@ -184,5 +184,5 @@ def _nearest(machine: Kinematics, made: Solution, present: Mapping[str, float]) 
 
 def _way(machine: Kinematics, made: Solution, present: Mapping[str, float]) -> float:
     return sum(
-        abs(axis.way(present.get(axis.name, 0.0), made.angles[axis.name])) for axis in machine.rotaries
+        abs(axis.travel(present.get(axis.name, 0.0), made.angles[axis.name])) for axis in machine.rotaries
     )

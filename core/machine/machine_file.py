@@ -138,7 +138,7 @@ def _axis_names(reading: Reading) -> tuple[str, ...]:
     rotary = ("C",) if reading.kind == "lathe" else machine_tables.ROTARY[reading.kind]
     return (
         *machine_tables.SLIDES[reading.kind],
-        *(name for name in rotary if reading.values.said(f"axis.{name}.vmax")),
+        *(name for name in rotary if reading.values.stated(f"axis.{name}.vmax")),
     )
 
 

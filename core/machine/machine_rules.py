@@ -68,7 +68,7 @@ def _homing(axis: str) -> Rule:
     path = f"axis.{axis}.absolute"
 
     def wrong(values: Values) -> str:
-        known = values.flag(path) or values.said(f"axis.{axis}.home.order")
+        known = values.flag(path) or values.stated(f"axis.{axis}.home.order")
         known = known or (axis == "C" and values.text("machine.kind") == "lathe")  # M19 finds it
         return "" if known else f"an axis that is not absolute needs axis.{axis}.home = {{ order, speed }}"
 

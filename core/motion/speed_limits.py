@@ -25,7 +25,7 @@ from core.motion.path_pieces import Pieces
 _HALVINGS = 6  # slower speeds at which the same joint is looked at too
 
 
-class Asked(NamedTuple):
+class JointDemand(NamedTuple):
     """Of k joints: squared speed limit (k,), mm²/s², and acceleration (k, axes) that it takes, mm/s²."""
 
     joint: IntArray
@@ -33,9 +33,9 @@ class Asked(NamedTuple):
     acceleration: FloatArray
 
 
-def asked_over_intervals(
-    pieces: Pieces, alone: Asked, fastest: FloatArray, limits: MotionLimits, *, more: bool
-) -> Asked:
+def demand_over_intervals(
+    pieces: Pieces, alone: JointDemand, fastest: FloatArray, limits: MotionLimits, *, more: bool
+) -> JointDemand:
     """What the path asks round the joints of ``alone``, which may be run at ``fastest`` (k,) mm/s.
 
     ``alone`` tells their limits if each stood for itself; no joint gets less. Joint i lies between the pieces
@@ -64,7 +64,7 @@ def asked_over_intervals(
     taken[squared < fastest**2] = share
     kept = (squared <= alone.squared) & (squared > 0.0)
     taken[kept] = alone.acceleration[kept]
-    return Asked(alone.joint, better, taken)
+    return JointDemand(alone.joint, better, taken)
 
 
 def _second_difference(pieces: Pieces, s: FloatArray, at: FloatArray, reach: FloatArray) -> FloatArray:
@@ -176,15 +176,15 @@ def _asked(
     limits: MotionLimits,
     *,
     more: bool,
-) -> Asked:
+) -> JointDemand:
     """What short chords ask over an interval, of the joints that would be slow or ask much by themselves."""
     fastest = np.minimum(speeds[:-1], speeds[1:])
     mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
     alone = turns * (np.minimum(fastest**2, single) / mean)[:, None]
     much = (alone > _MUCH * limits.accelerations).any(axis=1) | (single < fastest**2)
     joints = np.flatnonzero(much & (mean < fastest * limits.interval))
-    given = Asked(joints, single[joints], alone[joints])
-    return asked_over_intervals(pieces, given, fastest[joints], limits, more=more)
+    given = JointDemand(joints, single[joints], alone[joints])
+    return demand_over_intervals(pieces, given, fastest[joints], limits, more=more)
 
 
 def spare_for_chords(
@@ -193,14 +193,14 @@ def spare_for_chords(
     turns: FloatArray,
     single: FloatArray,
     limits: MotionLimits,
-    asked: Asked,
+    asked: JointDemand,
     *,
     more: bool,
 ) -> FloatArray:
     """Acceleration (n,) that chords shorter than one interval may use besides following their curve.
 
     Chords passed within one setpoint interval are a curve to the machine: v²·|Δu|/ℓ of each axis is spoken
-    for, or what the interval as a whole asks (``Asked``), and (amax - that)/|u| remains. At least
+    for, or what the interval as a whole asks (``JointDemand``), and (amax - that)/|u| remains. At least
     a fifth of amax does, by the limit on corners; where ``more`` pieces will follow, the last one gets that,
     so that no later corner can take what a plan has built on. Endless for longer lines and for arcs.
     """

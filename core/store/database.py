@@ -92,7 +92,7 @@ def check_file(path: Path, *, thorough: bool) -> int:
             "it is left as it is. Use the newer TurnDesk"
         )
     if told != "ok":
-        raise Cause.DAMAGED.told(path, told)
+        raise Cause.DAMAGED.error(path, told)
     return version
 
 

@@ -30,7 +30,7 @@ from core.store.store_rows import (
     ZeroRow,
     utc_now,
 )
-from core.store.store_writer import Held, Keeping, Operation, StoreWriter, Unwritten
+from core.store.store_writer import Backlog, Keeping, Operation, StoreWriter, Unwritten
 from core.store.touch_off import Touch
 
 __all__ = ["Store", "StoreError"]
@@ -85,9 +85,9 @@ class Store:
         return self._writer.trouble if self._writer else ""
 
     @property
-    def held(self) -> Held | None:
+    def backlog(self) -> Backlog | None:
         """What waits in memory for a disk that takes nothing; None while nothing has to."""
-        return self._writer.held if self._writer else None
+        return self._writer.backlog if self._writer else None
 
     # --- reading: answers at once, from any thread; raises StoreError where the file is found damaged -----
 
@@ -171,7 +171,7 @@ class Store:
     def parts(self, program: str) -> int:
         """Parts of this program that were counted, those that are still to be written too."""
         with self.read() as connection:
-            stored, held = program_records.parts(connection, program), self.held
+            stored, held = program_records.parts(connection, program), self.backlog
         reset, more = held.counts.get(program, (False, 0)) if held is not None else (False, 0)
         return max(0, (0 if reset else stored) + more)
 

@@ -37,7 +37,7 @@ class Cause(Enum):
     )
     OTHER = "{path} cannot be used ({error}); it is left as it is"
 
-    def told(self, path: Path, error: object) -> StoreError:
+    def error(self, path: Path, error: object) -> StoreError:
         """The sentence for it."""
         made = StoreError(self.value.format(path=path, error=" ".join(str(error).split())))
         made.passing = self in {Cause.FULL, Cause.LOCKED}
@@ -75,7 +75,7 @@ def cause_of(path: Path, error: sqlite3.Error | OSError) -> Cause:
 def why(path: Path, error: sqlite3.Error | OSError) -> StoreError:
     """The sentence for what went wrong with the store in ``path``."""
     said = error.strerror or str(error) if isinstance(error, OSError) else str(error)
-    return cause_of(path, error).told(path, said)
+    return cause_of(path, error).error(path, said)
 
 
 def _trial(folder: Path) -> OSError | None:

@@ -25,7 +25,7 @@ Deferred = Callable[[sqlite3.Connection], object]
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
+class Backlog:
     """How much waits in memory, and why."""
 
     why: str
@@ -103,12 +103,12 @@ class Unwritten:
         self._latest.pop(name, None)  # what comes last is written last
         self._latest[name] = operation
 
-    def held(self, why: str) -> Held:
+    def backlog(self, why: str) -> Backlog:
         """How much there is of everything."""
         parts = sum(abs(each.more) for each in self._parts.values())
         others = len(self._latest) + len(self._cycles) + sum(each.reset for each in self._parts.values())
         counts = {program: (each.reset, each.more) for program, each in self._parts.items()}
-        return Held(why, len(self._events), parts, others, self._dropped, counts)
+        return Backlog(why, len(self._events), parts, others, self._dropped, counts)
 
     def write(self, connection: sqlite3.Connection) -> None:
         """Everything, inside the caller's transaction. What the store would never take is told in its log."""
@@ -182,7 +182,7 @@ class StoreWriter:
 
     def __init__(self, connection: sqlite3.Connection, path: Path) -> None:
         self.trouble = ""
-        self.held: Held | None = None
+        self.backlog: Backlog | None = None
         self._connection, self._path = connection, path
         self._unwritten = Unwritten()
         self._waiting: list[Future[None]] = []  # for what is not on the disk yet
@@ -248,11 +248,11 @@ class StoreWriter:
             self._in_transaction(self._unwritten.write)
         except Exception as error:  # noqa: BLE001 - whatever it is becomes the answer; the thread goes on
             told = self._failed(error)
-            self.held = self._unwritten.held(self.trouble or str(told))
+            self.backlog = self._unwritten.backlog(self.trouble or str(told))
             self._tell(lambda future: future.set_exception(told))
             return
         self._unwritten.clear()
-        self.trouble, self.held = "", None
+        self.trouble, self.backlog = "", None
         self._tell(lambda future: future.set_result(None))
 
     def _in_transaction(self, operation: Operation[T]) -> T:

@@ -58,7 +58,7 @@ class CanEncoder:
         if self._drive is None:
             self.node.nmt.state = "OPERATIONAL"
 
-    def asked(self) -> None:
+    def sync_sent(self) -> None:
         """A SYNC goes out now."""
         self.missing, self._asked = self.missing + 1, self._bus.clock.now()
 

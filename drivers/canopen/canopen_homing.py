@@ -136,7 +136,7 @@ class Referencing:
         self._drive.setup.write(od.HOME_METHOD, 0, _INDEX)
         self._begin(0, now)
 
-    def here(self, place: int, now: float) -> None:
+    def set_position(self, place: int, now: float) -> None:
         """It counts ``place`` where it stands. Raises DriverError."""
         self._limit, self._why = _CHANGE, "it does not take its position"
         try:
@@ -180,7 +180,7 @@ class Phase:
         self._last = 0
         self.counts: int | None = None
 
-    def found(self, position: int) -> None:
+    def index_found(self, position: int) -> None:
         """The drive counts from its index now."""
         self.counts, self._last = position % self._per_turn, position
 

@@ -169,7 +169,7 @@ class CanopenMachine:
         if self.spindle is not None and self.spindle.drive not in self.axes.drives.drives:
             self.spindle.drive.command()
         if self.encoder is not None:
-            self.encoder.asked()
+            self.encoder.sync_sent()
         for module in self.io.modules.values():
-            module.asked()
+            module.sync_sent()
         self.bus.synchronise()

@@ -175,7 +175,7 @@ class Setup:
 # --- What every drive is told at each start unless the machine file says otherwise: stops, limits, watching.
 
 
-def standing(config: AxisConfig, bus: BusConfig) -> Objects:
+def axis_objects(config: AxisConfig, bus: BusConfig) -> Objects:
     """For one axis drive."""
     return (
         *stopping(bus),

@@ -99,7 +99,7 @@ class CanopenSpindle:
         return self._config.node.counts_per_rev
 
     @property
-    def wanted(self) -> bool:
+    def commanded(self) -> bool:
         """Whether it is told to turn."""
         return self.drive.target != 0
 

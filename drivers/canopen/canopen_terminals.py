@@ -81,7 +81,7 @@ class Module401:
         self.analog[:words] = [_signed(self.setup.read(od.ANALOG_IN, i + 1)) for i in range(words)]
         self.heard, self.missing, self.trouble = self._bus.clock.now(), 0, ""
 
-    def asked(self) -> None:
+    def sync_sent(self) -> None:
         """A SYNC is about to go out; who has nothing to send is known by its heartbeat alone."""
         if self.sizes[od.DIGITAL_IN] or self.sizes[od.ANALOG_IN]:
             self.missing += 1

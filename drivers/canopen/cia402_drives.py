@@ -22,7 +22,7 @@ from drivers.canopen.canopen_objects import (
     state_of,
     towards_enabled,
 )
-from drivers.canopen.canopen_setup import Setup, standing
+from drivers.canopen.canopen_setup import Setup, axis_objects
 from drivers.canopen.canopen_table import CanNode, Objects
 
 _FOLLOWING = 0x8611  # EMCY
@@ -170,7 +170,7 @@ class Drive402:
 
 _POWER = 1.5  # s in which the drives must come on, or leave their faults
 _CUBIC = -1  # 0x60C0: position, velocity and time
-_REST = 2  # counts from one answer to the next; less is standing
+_REST = 2  # counts from one answer to the next; less is axis_objects
 _REACTION = 1.0  # s in which a drive that has lost its host is at rest: three heartbeats and its ramp
 _FAULTS = frozenset((DriveState.FAULT, DriveState.REACTING))
 
@@ -320,7 +320,7 @@ class DriveSet:
         queued = self._mode == IP
         cubic: Objects = ((od.IP_SUBMODE, 0, _CUBIC),) if queued else ()
         own = config.node.sdo if config.node is not None else ()
-        values = (*standing(config, self._bus.config), *cubic, *own)
+        values = (*axis_objects(config, self._bus.config), *cubic, *own)
         axis.drive.connect((od.PVT_RECORD,) if queued else (), needed, values)
         axis.homed, axis.last = config.absolute, axis.drive.position
         axis.drive.mode = self._mode

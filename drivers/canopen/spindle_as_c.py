@@ -69,7 +69,7 @@ class SpindleC:
                 raise DriverError(
                     "C is the spindle's drive, and the drives are off; switch them on first", "c-coupling"
                 )
-            if self.step is Step.FREE and (self._spindle.wanted or abs(self._drive.more) >= _STANDS):
+            if self.step is Step.FREE and (self._spindle.commanded or abs(self._drive.more) >= _STANDS):
                 raise DriverError(
                     "C is the spindle's drive, and the spindle turns; stop it first", "c-coupling"
                 )
@@ -130,7 +130,7 @@ class SpindleC:
 
     def _search(self, now: float) -> None:
         if self._referenced(now):
-            self._phase.found(self._drive.position)
+            self._phase.index_found(self._drive.position)
             self._tell_place(now)
 
     def _tell_place(self, now: float) -> None:
@@ -138,7 +138,7 @@ class SpindleC:
         self._off = self._beside()
         place = self._place() - self._off
         self._spindle.blind = True
-        self._homing.here(round(place / self._axis.config.count), now)
+        self._homing.set_position(round(place / self._axis.config.count), now)
         self._enter(Step.HERE, now)
 
     def _here(self, now: float) -> None:

@@ -75,7 +75,7 @@ class GrblBlocks:
         if self.overrides.level and not self.overrides.true_to(c.overrides):
             return None
         ticket = self._last + 1
-        line = line_of(op, ticket, self._rapid(), self.overrides.wanted[0] / 100.0, c.origin)
+        line = line_of(op, ticket, self._rapid(), self.overrides.commanded[0] / 100.0, c.origin)
         if not c.stream.fits(line):
             return None
         c.send(line, ticket)

@@ -199,7 +199,7 @@ class Controller:
         elif line.startswith("[") and line.endswith("]"):
             self._told(line)
         elif _SETTING.fullmatch(line):
-            self.stream.told(line)
+            self.stream.message(line)
         elif line.lower().startswith("grbl"):
             self._restarted()
         elif line and not line.startswith((">", "$")):
@@ -311,7 +311,7 @@ class Controller:
         if self.stream.stale and line.startswith("[GC:"):
             self.stream.stale = False
         if not line.startswith("[MSG:"):
-            self.stream.told(line)
+            self.stream.message(line)
 
     def _answer(self, error: int) -> None:
         self.answered_at = self.listened

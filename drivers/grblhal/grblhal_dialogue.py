@@ -79,7 +79,7 @@ class Stream:
         ask.done, ask.error = True, error
         return ask
 
-    def told(self, line: str) -> None:
+    def message(self, line: str) -> None:
         """Something that the controller says before it answers for a line."""
         if self.unanswered:
             self.unanswered[0].lines.append(line)

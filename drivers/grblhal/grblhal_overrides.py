@@ -59,7 +59,7 @@ class Overrides:
         self.level = False  # a thread: at 100 % whatever is asked, for it would run beside its lead
 
     @property
-    def wanted(self) -> list[int]:
+    def commanded(self) -> list[int]:
         """Per cent: feed, rapid, spindle."""
         return [100, self._asked[1], 100] if self.level else self._asked
 
@@ -73,7 +73,7 @@ class Overrides:
 
     def true_to(self, reported: tuple[int, ...] | None) -> bool:
         """Whether the controller does what is wanted."""
-        return reported is not None and list(reported[:3]) == self.wanted
+        return reported is not None and list(reported[:3]) == self.commanded
 
     def correct(self, reported: tuple[int, ...] | None, told: int, now: float) -> None:
         """Send what differs, from a word of the controller that is younger than what was sent.
@@ -89,7 +89,7 @@ class Overrides:
         self._since = now if self._since is None else self._since
         if now - self._since > _PATIENCE:
             self._fail(
-                f"the controller does not take an override: {self.wanted} asked, {list(reported)} told",
+                f"the controller does not take an override: {self.commanded} asked, {list(reported)} told",
                 "controller-refuses",
             )
             return
@@ -97,7 +97,7 @@ class Overrides:
         self._write(self._steps(reported))
 
     def _steps(self, reported: tuple[int, ...]) -> bytes:
-        feed, rapid, spindle = self.wanted
+        feed, rapid, spindle = self.commanded
         data = steps_to(feed, reported[0])
         data += bytes([grblhal_codes.RAPIDS[rapid]]) if reported[1] != rapid else b""
         return data + (steps_to(spindle, reported[2], grblhal_codes.SPINDLE) if len(reported) > 2 else b"")

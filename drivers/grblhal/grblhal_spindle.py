@@ -26,7 +26,7 @@ class GrblEncoder:
         self._sign = 1.0
 
     @property
-    def there(self) -> bool:
+    def measures(self) -> bool:
         """Whether the controller measures at all."""
         return self._c.report is not None and self._c.report.measured is not None
 

@@ -78,7 +78,7 @@ class Attendant:
             f"the inverter answers, but not {self._familiar.warm_up} times in a row: {self.missed}"
         )
 
-    def round(self) -> None:
+    def exchange(self) -> None:
         """One exchange; what goes wrong is trouble, never an exception."""
         try:
             if self._family is None:
@@ -158,7 +158,7 @@ class Attendant:
         turns = want == 0.0 and look is not None and (look.run or look.output > STANDS)
         if want == self._told and not turns:
             return
-        self._obedience.told(self._clock.now(), want, look)
+        self._obedience.command(self._clock.now(), want, look)
         if want == 0.0:
             self._familiar.stop()
         else:
@@ -240,4 +240,4 @@ class Keeper:
 
     def _keep(self) -> None:
         while not self._ended.is_set():
-            self._attendant.round()
+            self._attendant.exchange()

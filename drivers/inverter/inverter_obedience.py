@@ -20,7 +20,7 @@ class Obedience:
         self._lowest: float = 0.0  # Hz, on the way down
         self._asked = 0.0
 
-    def told(self, now: float, asked: float, seen: Look | None) -> None:
+    def command(self, now: float, asked: float, seen: Look | None) -> None:
         """A command in Hz, signed. Another setpoint of the same direction is not a new start of the clock."""
         if asked == self._asked:
             return

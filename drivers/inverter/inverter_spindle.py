@@ -89,13 +89,13 @@ class InverterSpindle:
         The inverter's word also while the encoder is lost; of two that disagree the higher.
         """
         if self._encoder is None or self._lost():
-            return self.given
+            return self.reported_rpm
         if self._unmeasured:
-            return max(self._encoder.speed(), self.given, key=abs)
+            return max(self._encoder.speed(), self.reported_rpm, key=abs)
         return self._encoder.speed()
 
     @property
-    def given(self) -> float:
+    def reported_rpm(self) -> float:
         """rpm, signed, as the inverter last said."""
         seen = self._attendant.seen
         return seen.look.signed / self._config.hz_per_rpm if seen else 0.0
@@ -131,10 +131,10 @@ class InverterSpindle:
 
     def _wrong(self, encoder: Encoder) -> bool:
         """Whether it turns, or has to, and nobody measures it."""
-        needed = self._attendant.want != 0.0 or self.given != 0.0
+        needed = self._attendant.want != 0.0 or self.reported_rpm != 0.0
         if needed and not self._unmeasured:
             now = self._clock.now()
-            self._unmeasured = self._lost() or self._agreement.look(encoder.speed(), self.given, now)
+            self._unmeasured = self._lost() or self._agreement.look(encoder.speed(), self.reported_rpm, now)
         return bool(self._unmeasured)
 
     def status(self) -> str:

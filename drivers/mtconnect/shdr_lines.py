@@ -50,7 +50,7 @@ def pong(heartbeat: float) -> bytes:
     return b"* PONG %d\n" % min(max(round(1000 * heartbeat), 1), _LONGEST_BEAT)
 
 
-def shown(item: DataItem, value: Value) -> str:
+def text_of(item: DataItem, value: Value) -> str:
     """A value as text."""
     if value is None:
         return UNAVAILABLE
@@ -130,7 +130,7 @@ class AgentsState:
             if not _differs(item, self._last[key], value):
                 continue
             self._last[key] = value
-            text = shown(item, value)
+            text = text_of(item, value)
             if text != self._shown[key]:
                 self._shown[key] = text
                 yield key, text

@@ -135,14 +135,14 @@ def test_the_chooser_goes_in_and_up_to_the_places(tmp_path: Path) -> None:
     (tmp_path / "stick" / "jobs" / ".hidden.nc").write_text("")
     (tmp_path / "stick" / "jobs" / "photo.jpg").write_text("")
     chooser = FolderChooser(tmp_path, lambda: (Stick("STICK", tmp_path / "stick", 5),))
-    chooser.found(chooser.look())
+    chooser.show_lines(chooser.look())
     assert [line.name for line in chooser.lines] == ["STICK", "THIS CONTROL"]
     for name in ("STICK", "jobs"):
         chooser.go(next(line for line in chooser.lines if line.name == name))
-        chooser.found(chooser.look())
+        chooser.show_lines(chooser.look())
     assert [line.name for line in chooser.lines] == [UP, "a.nc"]
     assert [path.name for path in chooser.programs] == ["a.nc"]
     for _ in range(2):
         chooser.go(chooser.lines[0])
-        chooser.found(chooser.look())
+        chooser.show_lines(chooser.look())
     assert chooser.at is None

@@ -39,7 +39,7 @@ def fill_up(store: Store, disk: Disk) -> None:
         store.log_event("filler", "x" * 3000)
     with pytest.raises(StoreError):
         store.log_event("filler", "last").result(60)
-    assert store.held is not None
+    assert store.backlog is not None
 
 
 # --- nothing is lost ----------------------------------------------------------------------------------------
@@ -58,12 +58,12 @@ def test_parts_and_events_of_a_full_disk_are_written_when_there_is_room(disk: Di
         with pytest.raises(StoreError, match="the disk is full"):
             store.set_setting("theme", "light").result(60)
         assert store.trouble.startswith("the disk is full: ")
-        assert store.held is not None
-        assert store.held.parts == 33
+        assert store.backlog is not None
+        assert store.backlog.parts == 33
         assert store.parts("pin.nc") == 36  # what is held counts on the screen
         disk.make_room()
         store.log_event("end", "after").result(60)
-        assert (store.trouble, store.held) == ("", None)
+        assert (store.trouble, store.backlog) == ("", None)
     with Store.open(disk.path / "home") as store:
         assert store.parts("pin.nc") == 36
         told = [event.text for event in reversed(store.events(limit=1000))]
@@ -81,7 +81,7 @@ def test_it_is_written_by_itself_without_another_word(disk: Disk, monkeypatch: p
         store.count_part("pin.nc")
         disk.make_room()
         tick = threading.Event()
-        while store.held is not None:
+        while store.backlog is not None:
             tick.wait(0.01)
         assert store.parts("pin.nc") == 1
 
@@ -196,7 +196,7 @@ def test_a_store_that_nobody_may_write(tmp_path: Path) -> None:
         with pytest.raises(sqlite3.Error) as caught:
             connection.execute("DELETE FROM settings")
         assert cause_of(path, caught.value) is Cause.FORBIDDEN
-    told = str(Cause.FORBIDDEN.told(path, caught.value))
+    told = str(Cause.FORBIDDEN.error(path, caught.value))
     assert "check its rights" in told
     assert "damaged" not in told
 
@@ -215,7 +215,7 @@ def test_counts_and_settings_do_not_grow_with_the_days() -> None:
     for number in range(100_000):
         held.count_parts("pin.nc", 1)
         held.latest(("setting", "theme"), lambda _c: number)  # noqa: B023
-    assert (held.held("").parts, held.held("").others) == (100_000, 1)
+    assert (held.backlog("").parts, held.backlog("").others) == (100_000, 1)
 
 
 def test_events_beyond_the_bound_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -234,7 +234,7 @@ def test_a_name_that_can_never_be_kept_holds_nothing_up(tmp_path: Path) -> None:
         store.keep_program("bad/name", b"M30", "x")
         store.count_part("pin.nc")
         store.log_event("end", "after").result(60)
-        assert store.held is None
+        assert store.backlog is None
         assert store.parts("pin.nc") == 1
         assert any("cannot name a program" in event.text for event in store.events())
 

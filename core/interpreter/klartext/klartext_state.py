@@ -86,10 +86,10 @@ class State:
         self.point = self.place.point(self.slides)
 
     @property
-    def shown(self) -> Angles:
+    def displayed(self) -> Angles:
         """A B C as they are displayed, None for axes the machine lacks."""
         if self._shown is None:
-            axes = {axis.name: axis.shown(self.at[axis.name]) for axis in self.kinematics.rotaries}
+            axes = {axis.name: axis.displayed(self.at[axis.name]) for axis in self.kinematics.rotaries}
             self._shown = (axes.get("A"), axes.get("B"), axes.get("C"))
         return self._shown
 
@@ -108,7 +108,7 @@ class State:
         """The effective angle of each rotary axis: that of the plane in force, else where it stands."""
         if self.plane is not None:
             return dict(self.plane.targets)
-        return {axis.name: axis.shown(self.at[axis.name]) for axis in self.kinematics.rotaries}
+        return {axis.name: axis.displayed(self.at[axis.name]) for axis in self.kinematics.rotaries}
 
     def derive(self) -> None:
         """Work out again what follows from plane, datum and tool."""
@@ -184,7 +184,7 @@ class State:
             offset_x=slides[0] - end[0], offset_z=slides[2] - end[2],
             modal=self.modal, feed=feed, rpm=self.modal.rpm * self.modal.spindle,
             action=action, travel=travel,
-            swivel=Swivel(before, end, slides, self.shown, self._system()),
+            swivel=Swivel(before, end, slides, self.displayed, self._system()),
         )  # fmt: skip
 
     def _system(self) -> PlaneSystem:

@@ -72,7 +72,7 @@ def _rotary(state: State, node: Move) -> dict[str, float]:
         if word is not None:
             value, now = word_values.coordinate(state, word), state.at[axis.name]
             state.table_known = state.table_known or not word.incremental
-            goal[axis.name] = now + (value if word.incremental else axis.way(now, value))
+            goal[axis.name] = now + (value if word.incremental else axis.travel(now, value))
     return goal
 
 
@@ -85,7 +85,7 @@ def _demand_no_compensation(state: State, node: Move) -> None:
         if word is not None:
             raise unsupported(state.line, word.column, f"A move of {axis.name} with M128")
         aim = state.plane.targets[axis.name] if state.plane is not None else 0.0
-        if abs(axis.way(aim, state.at[axis.name])) > AT_TARGET:
+        if abs(axis.travel(aim, state.at[axis.name])) > AT_TARGET:
             raise unsupported(state.line, node.axes[0].column, f"A move with M128 and {axis.name} swivelled")
 
 
@@ -103,7 +103,7 @@ def _warn(state: State, node: Move) -> None:
     off = [
         axis.name
         for axis in state.kinematics.rotaries
-        if abs(axis.way(plane.targets[axis.name], state.at[axis.name])) > AT_TARGET
+        if abs(axis.travel(plane.targets[axis.name], state.at[axis.name])) > AT_TARGET
     ]
     if off:
         state.reported.add(("table", plane.line))

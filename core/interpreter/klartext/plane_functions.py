@@ -88,7 +88,7 @@ def _axial(state: State, node: Plane) -> WorkingPlane:
         if not axis.inside(angle):
             text = f"{axis.name} {angle:+.7g} is not between {axis.low:g} and {axis.high:g}."
             raise state.refuse(word.column, ANGLE, text, "Correct the angle.")
-        angles[axis.name] = axis.shown(angle)
+        angles[axis.name] = axis.displayed(angle)
     return WorkingPlane(state.kinematics.frame(angles), angles, state.line)
 
 
@@ -197,7 +197,7 @@ def _pivot(state: State, distance: float) -> Vector:
 
 def _goal(state: State, targets: Mapping[str, float]) -> dict[str, float]:
     return {
-        axis.name: state.at[axis.name] + axis.way(state.at[axis.name], targets[axis.name])
+        axis.name: state.at[axis.name] + axis.travel(state.at[axis.name], targets[axis.name])
         for axis in state.kinematics.rotaries
     }
 

@@ -87,7 +87,7 @@ def _unknown(state: State, made: Statement) -> Diagnostic:
         text = f"{name} is defined, and not switched on in the machine file."
         hint = f"Set enabled = true for {made.m} under [m_codes]."
         return refusal(made.line, column, "m-disabled", text, hint)
-    habit, hint = other_controls.here(name) or ("", "The machine file assigns the outputs.")
+    habit, hint = other_controls.meaning_here(name) or ("", "The machine file assigns the outputs.")
     text = f"{name} is no code of this machine. {habit}".rstrip()
     return refusal(made.line, column, "m-unknown", text, hint)
 

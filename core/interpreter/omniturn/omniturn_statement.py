@@ -169,7 +169,7 @@ def _sort_g(made: Statement, word: Word, modal: list[Word]) -> None:
     code = int(word.value or 0)
     entry = G_CODES.get(code)
     if entry is None:
-        habit, hint = other_controls.here(word.text.upper()) or ("", "Look it up.")
+        habit, hint = other_controls.meaning_here(word.text.upper()) or ("", "Look it up.")
         message = f"{word.text} is no code of this control. {habit}".rstrip()
         raise made.refuse(word, "g-unknown", message, hint)
     if entry.acts is _MODE:
@@ -212,7 +212,7 @@ def _check_words(made: Statement, line: Line) -> None:
         return
     for letter, word in made.words.items():
         if letter not in allowed:
-            habit = other_controls.here(letter)
+            habit = other_controls.meaning_here(letter)
             if habit is not None:
                 message = f"{word.text} has no meaning here. {habit[0]}"
                 raise made.refuse(word, "word-unused", message, habit[1])

@@ -172,7 +172,7 @@ class ContourView(NamedTuple):
     z: float
     backwards: bool
 
-    def seen(self, contour: Sequence[Element]) -> list[Element]:
+    def from_start(self, contour: Sequence[Element]) -> list[Element]:
         """The contour in depths and ways, so that the tool is on its left."""
         elements = [self._element(element) for element in contour]
         return [element.reversed() for element in reversed(elements)] if self.backwards else elements
@@ -229,7 +229,7 @@ def contour_moves(state: State, made: Statement, lines: Sequence[Statement]) -> 
         raise made.refuse("G", "cycle-contour-long", text, "Run it with fewer, longer moves.")
     view = _view(state, made, contour)
     try:
-        area = Area(view.seen(contour), left)
+        area = Area(view.from_start(contour), left)
     except TrimError:
         text = f"{name(made)} finds no unbroken way along the contour at the distance U."
         raise made.refuse("U", "cycle-no-way", text, "Lower U, or open the narrow place.") from None

@@ -50,7 +50,7 @@ class Visits:
             nth -= 1
         return anchor, number - nth + 1
 
-    def told(self, number: int) -> LineVisit:
+    def line_visit(self, number: int) -> LineVisit:
         """The visit in the operator's words: passes and calls, outermost first."""
         return LineVisit(number, len(self.blocks), tuple(_within(self.program, self.places[number - 1])))
 

@@ -104,7 +104,7 @@ def retract(cut: CutRecord, place: Place, done: int) -> Retract:
     if row >= 0 and int(cut.tool[row]) == place.tool:
         row, on = _on_row(cut, row, place)
         if on:
-            return _Search(cut, place, row, done).found()
+            return _Search(cut, place, row, done).retract_there()
     return Retract(ToolPlace.CLEAR if _clear(cut, place) else ToolPlace.UNKNOWN)
 
 
@@ -158,7 +158,7 @@ class _Search:
         left = hypot(float(cut.x[row]) - self.x, float(cut.z[row]) - self.z)
         self.within = left > _END and place.block <= int(cut.n[row])  # and not at its end
 
-    def found(self) -> Retract:  # noqa: PLR0911 - one answer for each way of standing in the work
+    def retract_there(self) -> Retract:  # noqa: PLR0911 - one answer for each way of standing in the work
         how = self.how
         if how & (FACE | SIDE):
             return self._off_the_mill(how & (FACE | SIDE))

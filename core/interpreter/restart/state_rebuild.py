@@ -87,9 +87,9 @@ class StateRebuild:
         why = why or self._pass_to_line(anchor)
         if why:
             return why.replace(f"line {anchor}", f"line {line}").replace(f"Line {anchor}", f"Line {line}")
-        found = self._within(line, anchor, nth, visits.told(number), broken)
+        found = self._within(line, anchor, nth, visits.line_visit(number), broken)
         if isinstance(found, RestartPoint) and broken is not None:
-            return replace(found, was=visits.told(visits.at(broken.block)))
+            return replace(found, was=visits.line_visit(visits.at(broken.block)))
         return found
 
     def _visits_of(self, line: int) -> Visits:

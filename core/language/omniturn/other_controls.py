@@ -75,7 +75,7 @@ _NUMBERED = re.compile(r"\s*[Oo:]\s*[0-9]{1,8}\s*")
 _TOOL = re.compile(r"T0*([0-9]{1,2})([0-9]{2})")
 
 
-def here(word: str) -> tuple[str, str] | None:
+def meaning_here(word: str) -> tuple[str, str] | None:
     """What a code or a letter of other controls is here, and what to write; None where it is no habit."""
     return _HERE.get(word)
 

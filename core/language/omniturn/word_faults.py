@@ -162,7 +162,7 @@ def _unknown_letter(line: int, column: int, letter: str) -> Diagnostic:
         return refusal(
             line, column, "n-word", "Lines have no numbers here: N is not allowed.", "Take the N word out."
         )
-    habit = other_controls.here(letter)
+    habit = other_controls.meaning_here(letter)
     if habit is not None:
         return refusal(
             line, column, "unknown-letter", f"{letter} is no word of the language. {habit[0]}", habit[1]

@@ -56,7 +56,7 @@ class Bench:
         for _ in range(round(seconds / TICK)):
             self.clock.advance(TICK)
             for module in self.io.modules.values():
-                module.asked()
+                module.sync_sent()
             self.bus.synchronise()
             self.module.pump(TICK)
             self.bus.pump()

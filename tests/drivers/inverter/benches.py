@@ -37,7 +37,7 @@ class Bench:
         end = self.clock.now() + seconds
         while self.clock.now() < end:
             before = self.clock.now()
-            self.attendant.round()
+            self.attendant.exchange()
             if self.clock.now() == before:
                 self.clock.advance(0.01)
 

@@ -141,13 +141,13 @@ def talk(family: str, opened: str, stands: str, *turns: tuple[float, str, str]) 
     for hz, script, stop in turns:
         line.expect(script)
         one.want = hz
-        one.round()
+        one.exchange()
         assert not line.left
         assert one.seen is not None
         assert (one.seen.look.signed, one.seen.look.current) == (hz, 2.5)
         line.expect(stop + stands.format(set="07D0"))
         one.want = 0.0
-        one.round()
+        one.exchange()
         assert not line.left
     assert one.trouble == ""
     return one

@@ -72,7 +72,7 @@ def test_huanyang_is_trusted_after_ten_good_answers() -> None:
     one = bench("huanyang")
     assert one.attendant.warm
     one.wire.loses = 1
-    one.attendant.round()
+    one.attendant.exchange()
     assert not one.attendant.warm
     with pytest.raises(DriverError, match="not yet answered often enough"):
         one.spindle.run(100.0)

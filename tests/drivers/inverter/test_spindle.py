@@ -29,7 +29,7 @@ def test_a_stop_goes_before_everything(turning: Bench) -> None:
     turning.spindle.run(0.0)
     before, stops = turning.clock.now(), turning.inverter.stops
     while turning.inverter.stops == stops:
-        turning.attendant.round()
+        turning.attendant.exchange()
     assert turning.clock.now() - before < 0.2
     turning.run(1.5)
     assert turning.rpm == 0.0
@@ -38,10 +38,10 @@ def test_a_stop_goes_before_everything(turning: Bench) -> None:
 def test_a_stop_waits_for_one_answer_at_most(turning: Bench) -> None:
     """A line that has gone silent: the stop is sent although nothing comes back."""
     turning.wire.silent = True
-    turning.attendant.round()
+    turning.attendant.exchange()
     turning.spindle.run(0.0)
     sent = len(turning.wire.sent)
-    turning.attendant.round()
+    turning.attendant.exchange()
     first = turning.wire.sent[sent]
     assert first[1] in (3, 5, 6)
     assert first[-3] in (0x08, 0x01, 0x00)  # stop of each family

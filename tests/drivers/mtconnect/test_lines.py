@@ -14,8 +14,8 @@ from drivers.mtconnect.shdr_lines import (
     clean,
     cleared_line,
     pong,
-    shown,
     stamp,
+    text_of,
     unknown_line,
     values_line,
 )
@@ -66,7 +66,7 @@ def test_a_program_without_line_ends_makes_no_endless_line() -> None:
     ],
 )
 def test_values_as_text(value: str | float | None, told: str) -> None:
-    assert shown(PLACE, value) == told
+    assert text_of(PLACE, value) == told
 
 
 def test_lines() -> None:
