@@ -30,6 +30,7 @@ def known_part(
         drives=Drives(machine.axes[1].amax, machine.spindle.decel),
         gang={n: (tool.z, tool.x) for n, tool in tools.items()} if machine.tooling == "gang" else {},
         silenced=dict.fromkeys(machine.silenced, OF_MACHINE),
+        travel=_travel(machine),
     )
 
 
@@ -40,6 +41,12 @@ def with_kept_clamping(
     if kept.stick_out is not None and not said and machine.clamping.diameter:
         setting = replace(setting, clamping=_clamping(machine, kept.stick_out))
     return replace(setting, silenced={**setting.silenced, **kept.silenced})
+
+
+def _travel(machine: Machine) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    """How far X and Z go; None where one of them is endless."""
+    x, z = machine.axes[0].travel, machine.axes[1].travel
+    return (x, z) if x is not None and z is not None else None
 
 
 def _clamping(machine: Machine, stick_out: float | None) -> Clamping | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QPainter, QPolygonF
@@ -127,6 +127,7 @@ class PartPane(Pane):
         painter.setPen(look.pen("alarm", 0.3))
         for area in self._hits:
             painter.drawPolygon(area)
+        self._reach(painter, shown)
         self._tool(painter, shown, projection)
         self._scales(painter, projection)
 
@@ -156,6 +157,14 @@ class PartPane(Pane):
         painter.setBrush(brush)
         for area in areas:
             painter.drawPolygon(area)
+
+    def _reach(self, painter: QPainter, shown: Shown) -> None:
+        """How far the machine lets the tip go, where that is in sight."""
+        if shown.instant.reach is None:
+            return
+        (z0, x0), (z1, x1) = shown.instant.reach
+        corners = [self.spot(z, x) for z, x in ((z0, x0), (z1, x0), (z1, x1), (z0, x1), (z0, x0))]
+        draw_reach(painter, self.look, corners)
 
     def _tool(self, painter: QPainter, shown: Shown, projection: Projection) -> None:
         tool, look = shown.instant.tool, self.look
@@ -202,6 +211,15 @@ class PartPane(Pane):
             if 1.5 * u < at < bottom - 3.5 * u:
                 painter.drawLine(QPointF(0, at), QPointF(0.6 * u, at))
                 put(painter, QRectF(0.9 * u, at - u, 8 * u, 2 * u), LEFT, _figure(abs(value * step)))
+
+
+def draw_reach(painter: QPainter, look: Look, corners: Sequence[QPointF]) -> None:
+    """The limits of the machine, as a line of long and short strokes."""
+    pen = look.pen("alarm", 0.16)
+    pen.setDashPattern([10, 4, 2, 4])
+    painter.setPen(pen)
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.drawPolyline(list(corners))
 
 
 def _ticks(middle: float, length: float, step: float) -> range:

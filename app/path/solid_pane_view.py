@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 from PySide6.QtCore import QPointF
 from PySide6.QtGui import QImage, QPainter
 
-from app.path.part_pane_view import PartPane
+from app.path.part_pane_view import PartPane, draw_reach
 from app.path.part_player import PartPlayer, SolidLook
 from app.path.path_aspects import Aspect, Tip
 from app.path.path_pane_view import Place
@@ -25,6 +26,7 @@ class SolidPane(PartPane):
 
     def __init__(self, look: Look, aspect: Aspect, polyline: Polyline, player: PartPlayer) -> None:
         self._azimuth, self._tilt, self._roll = 30.0, 35.0, 0.0
+        self._view: SolidView | None = None  # that was asked for last
         super().__init__(look, aspect, polyline, player)
 
     # --- what is seen --------------------------------------------------------------------------------
@@ -50,6 +52,7 @@ class SolidPane(PartPane):
             return
         opening = quarter(self._tilt) if self.aspect is Aspect.OPEN else None
         view = SolidView(self._azimuth, self._tilt, self._roll, projection.scale, projection.z, opening)
+        self._view = view
         self.player.look_at(SolidLook(view, projection.width, projection.height))
 
     def place_of(self, tip: Tip) -> Place | None:
@@ -97,7 +100,18 @@ class SolidPane(PartPane):
             )
 
     def draw_run(self, painter: QPainter) -> None:
-        """Nothing: the tool is in the picture."""
+        """The limits of the machine in the plane of turning; the tool is in the picture."""
+        shown, view, projection = self.player.shown, self._view, self.projection
+        if shown is None or shown.instant.reach is None or view is None or projection is None:
+            return
+        (z0, x0), (z1, x1) = shown.instant.reach
+        # (In the part's frame the operator's side lies at 180 degrees less C.)
+        places = [[x, z, 180.0 - view.roll] for z, x in ((z0, x0), (z1, x0), (z1, x1), (z0, x1), (z0, x0))]
+        wide, high = (
+            (self.projection.width, self.projection.height) if self.projection is not None else (1, 1)
+        )
+        corners = view.on_screen(np.array(places), wide, high)
+        draw_reach(painter, self.look, [QPointF(x, y) for x, y in corners.tolist()])
 
 
 def quarter(tilt: float) -> tuple[float, float]:

@@ -46,6 +46,7 @@ class PartFindings:
     silenced: Mapping[str, str] = field(default_factory=dict)  # why, by check
     parted_at: float | None = None  # Z of the deepest part-off
     _left: tuple[int, TipMove] | None = None  # T, and its part-off that has stopped before the axis
+    held: dict[tuple[str, int], Cut] = field(default_factory=dict)  # of chuck or tailstock, by check and line
     _edges: EdgeChecks = field(init=False)
     _airs: AirChecks = field(init=False)
     _found: dict[tuple[str, int], Diagnostic] = field(default_factory=dict)
@@ -109,8 +110,10 @@ class PartFindings:
         if self.clamping is None:
             return
         if met := _reached(self._chuck, move, cutter):
+            self.held["into-chuck", move.line] = met
             self._add("into-chuck", move, f"T{tool} runs into the chuck, {_depth(met, move)}.")
         if met := _reached(self._tailstock, move, cutter):
+            self.held["into-tailstock", move.line] = met
             self._add("into-tailstock", move, f"T{tool} runs into the tailstock, {_depth(met, move)}.")
         highest = self.clamping.max_rpm
         if highest and abs(move.rpm) > highest:

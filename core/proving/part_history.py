@@ -25,17 +25,24 @@ from core.part.surface_points import Solid, solid_of, turned_solid
 from core.part.swept_edge import FloatArray, Point
 from core.part.tool_outline import ToolOutline, outline
 from core.part.tool_shape import ToolShape
-from core.part.turned_part import TurnedPart
+from core.part.turned_part import Cut, TurnedPart
 from core.proving.milling import Milling
 from core.proving.part_proof import MOST_MOVES, Making, PartSetting, Tools
 from core.proving.program_timeline import MotionSpan, Part, RestSpan
-from core.proving.tip_moves import LiveStep, Step, Steps, TipMove
+from core.proving.tip_moves import LiveStep, Step, Steps, TipMove, zero_of
 
 _EVERY = 16  # blocks from one copy to the next, at first
 _MOST_COPIES = 96
 _MOST_BYTES = 96e6  # of all copies
 _LOOKED = 20  # blocks between two looks at whether the work is still wanted
 _TOUCH = 1e-6  # mm
+
+_PLACES = 40  # along a hit in chuck or tailstock
+_OF_CLAMPING = frozenset({"into-chuck", "into-tailstock"})
+# What a block that is found to be wrong for another reason takes off is what it shall take off.
+_OF_METAL = frozenset(
+    {"rapid-into-stock", "feed-into-holder", "holder-into-stock", "through-part", "neighbour-tool"}
+)
 
 Go = Callable[[], None]
 
@@ -119,7 +126,8 @@ class PartInstant(NamedTuple):
     """The part when ``block`` blocks are done and ``share`` of the next.
 
     ``near`` is the side of the section at X+, ``far`` that beyond the axis; None: there is no metal.
-    ``hits`` and ``findings`` are those that have come up by then.
+    ``hits`` and ``findings`` are those that have come up by then. ``reach`` is how far the tip may go, from
+    and to which Z and r.
     """
 
     block: int
@@ -134,6 +142,7 @@ class PartInstant(NamedTuple):
     pieces: int
     clamping: Clamping | None = None
     is_open: bool = False
+    reach: tuple[Point, Point] | None = None
 
 
 class PartHistory:
@@ -150,6 +159,7 @@ class PartHistory:
         self._hits: dict[tuple[str, int], Hit] = {}
         self._kept = _Copies()
         self._clamping = moves.setting.clamping
+        self._travel = moves.setting.travel
         self._chuck: Solid | None = None
         held = self._clamping
         if held is not None and (held.diameter or held.quill) and self.stock is not None:
@@ -242,12 +252,29 @@ class PartHistory:
             if found.severity is not Severity.ERROR:
                 continue
             hit = None
-            if isinstance(step, LiveStep):
+            if found.check in _OF_CLAMPING:
+                hit = self._held_hit(found, making.findings.held.get((found.check, found.line)))
+            elif found.check not in _OF_METAL:
+                pass
+            elif isinstance(step, LiveStep):
                 hit = _milled_hit(found, making.met)
             elif before is not None and making.part is not None:
                 hit = _hit(found, before, making.part)
             if hit is not None:
                 self._hits[found.check, found.line] = hit
+
+    def _held_hit(self, found: Diagnostic, met: Cut | None) -> Hit | None:
+        """Where a tool would come into chuck, collet or tailstock: from its outside as deep as it does."""
+        held = self._clamping
+        if met is None or held is None or self.stock is None:
+            return None
+        body = held.tailstock if found.check == "into-tailstock" else held.around(self.stock)
+        if body is None:
+            return None
+        low, high = max(min(met.back, met.front), body.back), min(max(met.back, met.front), body.front)
+        z = np.linspace(low, high, _PLACES)
+        outside = body.outside_at(z)
+        return Hit(found, z, np.maximum(outside - met.depth, 0.0), outside, (high - low) / (_PLACES - 1))
 
     # --- what is to be seen
 
@@ -278,6 +305,7 @@ class PartHistory:
             pieces=making.fallen,
             clamping=self._clamping,
             is_open=making.is_open,
+            reach=self._reach(under_way),
         )
 
     def _milled(self, step: LiveStep, share: float) -> Making:
@@ -289,6 +317,17 @@ class PartHistory:
             ahead.mill(step, gone, share)
         self._ahead = self._done, share, ahead
         return ahead
+
+    def _reach(self, under_way: Step | None) -> tuple[Point, Point] | None:
+        """The limits of the machine as the tip meets them, by the offset of the last block that moves."""
+        last = self.steps[max(0, self._done - 200) : self._done]
+        for step in (*((under_way,) if under_way is not None else ()), *reversed(last)):
+            if self._travel is None or not isinstance(step, TipMove | LiveStep):
+                continue
+            x, z = step.zero if isinstance(step, TipMove) else zero_of(step.block, step.place)
+            (x0, x1), (z0, z1) = self._travel
+            return (z0 - z, x0 - x), (z1 - z, x1 - x)
+        return None
 
     def _place(self) -> Point | None:
         """Where the last block that moves has ended."""

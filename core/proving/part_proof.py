@@ -69,6 +69,7 @@ class PartSetting:
     drives: Drives = UNKNOWN
     step: float = STEP  # width of a column of the part, mm
     silenced: Mapping[str, str] = field(default_factory=dict)  # why, by check
+    travel: tuple[Point, Point] | None = None  # of X and of Z, from home, mm
 
     @property
     def may_refuse(self) -> bool:

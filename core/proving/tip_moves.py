@@ -25,6 +25,7 @@ class TipMove(NamedTuple):
     """One elementary block: its points are Z and r, mm, from part zero; ``speed`` is along the path, mm/s.
 
     ``quick``: a rapid, or a feed per minute as fast as one. ``per_rev`` is the feed of a turn, mm, 0 by time.
+    ``zero`` is where the slides stand, machine X and Z, when the tip is on part zero.
     """
 
     n: int
@@ -36,6 +37,7 @@ class TipMove(NamedTuple):
     per_rev: float
     rpm: float
     modal: Modal
+    zero: tuple[float, float] = (0.0, 0.0)
 
     @property
     def length(self) -> float:
@@ -90,7 +92,8 @@ class Steps:
                 yield block
             elif block.kind in _TURNED and block.travel is None and not block.modal.c_locked:
                 self._moved = True
-                yield _move(block, block.n, block.line, tuple(_points(block, *self._part_zero(block))))
+                place = self._part_zero(block)
+                yield _move(block, block.n, block.line, tuple(_points(block, *place)), place)
             elif block.travel is None:
                 yield LiveStep(block, self._part_zero(block))
 
@@ -113,14 +116,21 @@ class Steps:
         dx, dz = self._part_zero(like)
         columns = (series.n, series.line, series.x0 + dx, series.z0 + dz, series.x + dx, series.z + dz)
         for n, line, x0, z0, x, z in zip(*(column.tolist() for column in columns), strict=True):
-            yield _move(like, n, line, ((z0, x0), (z, x)))
+            yield _move(like, n, line, ((z0, x0), (z, x)), (dx, dz))
 
 
-def _move(block: Block, n: int, line: int, points: tuple[Point, ...]) -> TipMove:
+def zero_of(block: Block, place: Place) -> Place:
+    """Where the slides stand, machine X and Z, when the tip is on part zero."""
+    return block.offset_x - place[0], block.offset_z - place[1]
+
+
+def _move(block: Block, n: int, line: int, points: tuple[Point, ...], place: Place) -> TipMove:
     per_rev = block.feed if block.per_rev and not block.rapid else 0.0
     speed = per_rev * abs(block.rpm) / 60.0 if per_rev else block.feed
     quick = block.rapid or (not per_rev and block.feed >= QUICK and block.kind is not Kind.THREAD)
-    return TipMove(n, line, block.kind, points, speed, quick, per_rev, block.rpm, block.modal)
+    return TipMove(
+        n, line, block.kind, points, speed, quick, per_rev, block.rpm, block.modal, zero_of(block, place)
+    )
 
 
 def _points(block: Block, dx: float, dz: float) -> Iterator[Point]:

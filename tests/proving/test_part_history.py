@@ -304,3 +304,31 @@ def test_what_stands_round_the_part() -> None:
     assert around.tool is not None
     assert around.tool.round is Round.ACROSS
     assert history(MILLED, MILL).around(instant).chuck is None
+
+
+@pytest.mark.parametrize(
+    ("program", "setting", "limits"),
+    [(SHAFT, SETTING, [[-149.2, -87.3], [50.8, 22.7]]), (MILLED, MILL, [[-200.0, -100.0], [0.0, 10.0]])],
+)
+def test_the_limits_of_the_machine_as_the_tip_meets_them(
+    program: str, setting: PartSetting, limits: list[list[float]]
+) -> None:
+    """T1 stands at machine X-12.7 Z-50.8 with its tip on part zero; T6 has no offset."""
+    seen = history(program, replace(setting, travel=((-100.0, 10.0), (-200.0, 0.0))))
+    assert seen.at(0).reach is None
+    reach = seen.at(len(seen.steps)).reach
+    assert reach is not None
+    assert np.array(reach) == pytest.approx(np.array(limits))
+    assert history(program, setting).at(len(seen.steps)).reach is None
+
+
+def test_what_runs_into_the_chuck_is_red_in_the_chuck_and_not_in_the_part() -> None:
+    """The jaws' face stands at Z-10 mm, .394 in; T1 turns on to Z-.5."""
+    held = Clamping(60.0, 10.0, 5.0, 40.0)
+    seen = history(SHAFT, replace(SETTING, clamping=held))
+    hits = {hit.finding.check: hit for hit in seen.at(len(seen.steps)).hits}
+    hit = hits["into-chuck"]
+    assert hit.z.max() == pytest.approx(-10.0, abs=0.1)
+    assert hit.z.min() < -12.0
+    assert hit.high[-1] == pytest.approx(20.0, abs=0.01)  # of the jaws
+    assert set(hits) == {"into-chuck"}
