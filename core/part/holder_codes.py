@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 
 MM_PER_INCH = 25.4
 
@@ -69,12 +68,12 @@ def outline_points(text: str) -> tuple[tuple[float, float], ...] | None:
 
 
 _NUMBER = r"(\d+\s*/\s*\d+|\d*\.?\d+)"
-_SIZES = re.compile(rf"{_NUMBER}(?:\s*x\s*{_NUMBER})?\s*(mm|in|inch|\"|)")
+_SIZES = rf"{_NUMBER}(?:\s*x\s*{_NUMBER})?\s*(mm|in|inch|\"|)"
 
 
 def _size(words: str) -> Holder | None:
     """``20x20``, ``3/4"``, ``.75 in``, ``16mm``; a fraction is inches, a bare number is none."""
-    found = _SIZES.fullmatch(words)
+    found = re.fullmatch(_SIZES, words)
     if not found:
         return None
     height, width, unit = found.groups()
@@ -83,9 +82,10 @@ def _size(words: str) -> Holder | None:
         return None
     inches = fraction or unit in {"in", "inch", '"'}
     figure = (width or height).replace(" ", "")
-    if figure.endswith("/0"):
+    if float(figure.partition("/")[2] or 1.0) == 0.0:
         return None
-    wide = float(Fraction(figure)) * (MM_PER_INCH if inches else 1.0)
+    above, _, under = figure.partition("/")
+    wide = float(above) / float(under or 1.0) * (MM_PER_INCH if inches else 1.0)
     return shank(wide) if 0.0 < wide <= 100.0 else None
 
 
@@ -99,19 +99,19 @@ def _reach(width: float) -> float:
 # --- codes: clamping, insert shape, style, clearance, hand; then the shank and the size of the insert -------
 
 _HEAD = r"[CDMPSWX][CDEKMPRSTVWHO]([A-Y])[A-Z][RLN]"
-_ISO_SHANK = re.compile(rf"{_HEAD}[\s-]*(\d\d)[\s-]*(\d\d)\s*[A-Z]?\s*(?:\d\d)?\b.*")
-_INCH_SHANK = re.compile(rf"{_HEAD}[\s-]*(\d\d)[\s-]*\d[A-Z]?\b.*")
-_BAR = re.compile(rf"[ACES](\d\d)[A-Z]?[\s-]*{_HEAD}[\s-]*(\d\d?)\b.*")
+_ISO_SHANK = rf"{_HEAD}[\s-]*(\d\d)[\s-]*(\d\d)\s*[A-Z]?\s*(?:\d\d)?\b.*"
+_INCH_SHANK = rf"{_HEAD}[\s-]*(\d\d)[\s-]*\d[A-Z]?\b.*"
+_BAR = rf"[ACES](\d\d)[A-Z]?[\s-]*{_HEAD}[\s-]*(\d\d?)\b.*"
 
 
 def _coded(words: str) -> Holder | None:
-    if bar := _BAR.fullmatch(words):
+    if bar := re.fullmatch(_BAR, words):
         metric = len(bar[3]) == 2  # an ISO bar names the edge in mm, an inch bar the circle in eighths
         across = float(bar[1]) * (1.0 if metric else MM_PER_INCH / 16.0)
         return Holder(bar=across, entry={**_TURNS, **_FACES}.get(bar[2], 0.0))
-    if found := _ISO_SHANK.fullmatch(words):
+    if found := re.fullmatch(_ISO_SHANK, words):
         return _styled(found[1], float(found[3]))
-    if found := _INCH_SHANK.fullmatch(words):
+    if found := re.fullmatch(_INCH_SHANK, words):
         return _styled(found[1], _inch_width(found[2]))
     return None
 

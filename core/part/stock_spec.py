@@ -6,7 +6,6 @@ Lengths are inches; with ``mm`` behind them millimetres. The face stands at Z0, 
 
 from __future__ import annotations
 
-import csv
 import io
 import re
 from dataclasses import dataclass
@@ -117,6 +116,8 @@ def profile_stock(given: str, text: str, scale: float, allowance: float) -> Stoc
 
 def _rows(text: str) -> list[list[float]]:
     """The numbers; a head and lines that begin with # are left out."""
+    import csv
+
     return [
         _numbers(row, number)
         for number, row in enumerate(csv.reader(io.StringIO(text)), start=1)

@@ -22,37 +22,37 @@ _USUAL, _SMALLEST, _ALLOWANCE = 6.35, 1.0, 0.5  # mm; diameter of a drill that n
 _BAR = 5.0  # mm; the bar of a grooving or threading tool in a bore
 _SLIM = "VNMG160404"  # reaches into contours that a stouter insert would not: a doubt speaks for the program
 _MILL = 3.175  # mm; diameter of a mill that nobody has given
-_WIDTH = re.compile(r"(\d+\.\d*|\.\d+|\d{3}|\d+(?=\s*MM))\s*(MM)?\s*(?:IN\b\.?|INCH)?\s*WIDE\b")
+_WIDTH = r"(\d+\.\d*|\.\d+|\d{3}|\d+(?=\s*MM))\s*(MM)?\s*(?:IN\b\.?|INCH)?\s*WIDE\b"
 _AT_FACE = 0.1  # mm
 _WIDE = 1.6  # widths; what feeds further along Z than that turns
 
 _OPENS = frozenset({ToolKind.DRILL, ToolKind.REAMER})
 
-# Words of shop comments, the more telling first.
+# Words of shop comments, the more telling first; as text, since few programs need one of them compiled.
 _WORDS = (
-    (re.compile(r"\b(WORK|BAR)? ?STOP(PER)?\b|\bGRIPPER\b|\bPULLER\b"), None),
-    (re.compile(r"\bCENT(ER|RE)[ -]?DRILL|\bSPOT"), ToolKind.CENTRE_DRILL),
-    (re.compile(r"\bREAM"), ToolKind.REAMER),
-    (re.compile(r"\bTAP(PING)?\b"), ToolKind.TAP),
-    (re.compile(r"\bTHREAD"), ToolKind.THREADING),
-    (re.compile(r"\bPART(ING|[ -]?OFF)?\b|\bCUT[ -]?OFF\b"), ToolKind.PARTING),
-    (re.compile(r"\bGROOV"), ToolKind.GROOVING),
-    (re.compile(r"\bBOR(E|ING)\b"), ToolKind.BORING),
-    (re.compile(r"\bDRILL"), ToolKind.DRILL),
-    (re.compile(r"\bEND ?MILL|\bMILL"), ToolKind.END_MILL),
-    (re.compile(r"\bTURN|\bFAC(E|ING)\b"), ToolKind.TURNING),
+    (r"\b(WORK|BAR)? ?STOP(PER)?\b|\bGRIPPER\b|\bPULLER\b", None),
+    (r"\bCENT(ER|RE)[ -]?DRILL|\bSPOT", ToolKind.CENTRE_DRILL),
+    (r"\bREAM", ToolKind.REAMER),
+    (r"\bTAP(PING)?\b", ToolKind.TAP),
+    (r"\bTHREAD", ToolKind.THREADING),
+    (r"\bPART(ING|[ -]?OFF)?\b|\bCUT[ -]?OFF\b", ToolKind.PARTING),
+    (r"\bGROOV", ToolKind.GROOVING),
+    (r"\bBOR(E|ING)\b", ToolKind.BORING),
+    (r"\bDRILL", ToolKind.DRILL),
+    (r"\bEND ?MILL|\bMILL", ToolKind.END_MILL),
+    (r"\bTURN|\bFAC(E|ING)\b", ToolKind.TURNING),
 )
-_SIZE = re.compile(r"(?:(\d+)/(\d+)|(\d*\.\d+))\s*(?:IN(?:CH)?\b|\")?(?=[^/]*\bDRILL|\s*DIA)")
-_MILLIMETRES = re.compile(r"(\d+(?:\.\d+)?)\s*MM\b")
-_TAP_NUMBER = re.compile(r"(?:^|[^\d/.])#?(\d{1,2})\s*-\s*(\d{2})\b")  # 10-32
-_TAP_INCH = re.compile(r"(?:(\d+)/(\d+)|(\d*\.\d+))\s*-\s*(\d{1,2})\b")  # 1/4-20
-_TAP_METRIC = re.compile(r"\bM(\d+(?:\.\d+)?)(?:\s*X\s*(\d*\.?\d+))?")  # M6X1
+_SIZE = r"(?:(\d+)/(\d+)|(\d*\.\d+))\s*(?:IN(?:CH)?\b|\")?(?=[^/]*\bDRILL|\s*DIA)"
+_MILLIMETRES = r"(\d+(?:\.\d+)?)\s*MM\b"
+_TAP_NUMBER = r"(?:^|[^\d/.])#?(\d{1,2})\s*-\s*(\d{2})\b"  # 10-32
+_TAP_INCH = r"(?:(\d+)/(\d+)|(\d*\.\d+))\s*-\s*(\d{1,2})\b"  # 1/4-20
+_TAP_METRIC = r"\bM(\d+(?:\.\d+)?)(?:\s*X\s*(\d*\.?\d+))?"  # M6X1
 _METRIC_COARSE = {
     **{2.0: 0.4, 2.5: 0.45, 3.0: 0.5, 4.0: 0.7, 5.0: 0.8, 6.0: 1.0, 8.0: 1.25, 10.0: 1.5, 12.0: 1.75},
     **{14.0: 2.0, 16.0: 2.0, 20.0: 2.5, 24.0: 3.0},
 }  # ISO 261, mm
-_RELEASES = re.compile(r"TAPMATIC|REVERSING|RELEAS|COLLAPS|DIE ?HEAD|SELF[ -]?REV")
-_LEFT_HAND = re.compile(r"\bL\.?H\b|\bLEFT[ -]?HAND")
+_RELEASES = r"TAPMATIC|REVERSING|RELEAS|COLLAPS|DIE ?HEAD|SELF[ -]?REV"
+_LEFT_HAND = r"\bL\.?H\b|\bLEFT[ -]?HAND"
 
 
 @dataclass(slots=True)
@@ -68,12 +68,16 @@ class ToolUse:
     live: list[LiveStep] = field(default_factory=list)  # with C held, or in a plane of the virtual mill
 
     @property
+    def live_blocks(self) -> list[Block]:
+        """The blocks of a live tool that go along; C alone only indexes."""
+        return [b for b, _ in self.live if b.plane is not None or (b.x, b.z) != (b.x0, b.z0)]
+
+    @property
     def never_fed(self) -> TipMove | Block | None:
         """Where a tool comes to the part whose moves are all rapids, with the spindle or C in work."""
         if self.pushes_bar:
             return None
-        if self.live:
-            blocks = [block for block, _ in self.live]
+        if blocks := self.live_blocks:
             fed = any(not (b.rapid or b.feed >= QUICK) for b in blocks) or not all(
                 m.quick for m in self.moves
             )
@@ -127,8 +131,8 @@ def assumed_tool(use: ToolUse) -> Assumed:
 
 def _kind(use: ToolUse) -> tuple[ToolKind | None, str]:
     text = " ".join(use.comments).upper()
-    for words, kind in _WORDS:
-        if words.search(text):
+    for words, kind in _WORDS if text.strip() else ():
+        if re.search(words, text):
             return kind, "by its comment"
     if use.pushes_bar:
         return None, "by its moves"
@@ -212,7 +216,7 @@ def _groover(kind: ToolKind, use: ToolUse, *, rear: bool) -> ToolShape:
 
 def edge_width(comment: str) -> float:
     """mm, as a comment gives it: .045 WIDE, 045 WIDE (thousandths), 3MM WIDE; 0 where none does."""
-    found = _WIDTH.search(comment.upper())
+    found = re.search(_WIDTH, comment.upper())
     if found is None:
         return 0.0
     figure = float(found[1])
@@ -223,7 +227,7 @@ def edge_width(comment: str) -> float:
 
 def _round_tool(kind: ToolKind, use: ToolUse) -> ToolShape:
     comment = " ".join(use.comments).upper()
-    diameter, hand = _diameter(comment), Hand.LEFT if _LEFT_HAND.search(comment) else Hand.RIGHT
+    diameter, hand = _diameter(comment), Hand.LEFT if re.search(_LEFT_HAND, comment) else Hand.RIGHT
     if kind is ToolKind.TAP:
         across, pitch = tap_size(comment)
         return ToolShape(kind, hand, diameter=across or diameter, pitch=pitch)
@@ -235,20 +239,20 @@ def _round_tool(kind: ToolKind, use: ToolUse) -> ToolShape:
 def tap_size(comment: str) -> tuple[float, float]:
     """Diameter and pitch, mm, of a tap as a comment names it: 1/4-20, 10-32, M6X1; 0 where it does not."""
     text = comment.upper()
-    if found := _TAP_METRIC.search(text):
+    if found := re.search(_TAP_METRIC, text):
         across = float(found[1])
         return across, float(found[2]) if found[2] else _METRIC_COARSE.get(across, 0.0)
-    if found := _TAP_INCH.search(text):
+    if found := re.search(_TAP_INCH, text):
         inches = float(found[3]) if found[3] else int(found[1]) / max(int(found[2]), 1)
         return inches * 25.4, 25.4 / max(int(found[4]), 1)
-    if found := _TAP_NUMBER.search(text):  # ASME B1.1: .060 and .013 for each number
+    if found := re.search(_TAP_NUMBER, text):  # ASME B1.1: .060 and .013 for each number
         return (0.060 + 0.013 * int(found[1])) * 25.4, 25.4 / max(int(found[2]), 1)
     return 0.0, 0.0
 
 
 def releases(use: ToolUse) -> bool:
     """Whether a comment says that the holder of a tap turns it back, or lets it go, by itself."""
-    return _RELEASES.search(" ".join(use.comments).upper()) is not None
+    return re.search(_RELEASES, " ".join(use.comments).upper()) is not None
 
 
 def _rear(moves: Sequence[TipMove]) -> bool:
@@ -286,9 +290,9 @@ def _edge(use: ToolUse, *, rear: bool) -> int:
 def _diameter(comment: str) -> float:
     """mm, as a comment such as 1/4 DRILL or DRILL .250 DIA gives it; 0 where none does."""
     text = comment.upper()
-    if found := _MILLIMETRES.search(text):
+    if found := re.search(_MILLIMETRES, text):
         return float(found[1])
-    if found := _SIZE.search(text):
+    if found := re.search(_SIZE, text):
         inches = float(found[3]) if found[3] else int(found[1]) / max(int(found[2]), 1)
         return inches * 25.4
     return 0.0

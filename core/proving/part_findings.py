@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.modal_state import Modal
@@ -14,16 +15,18 @@ from core.part.bar_whirl import whirling_rpm
 from core.part.clamping import Clamping
 from core.part.cutter import Cutter
 from core.part.neighbours import Neighbours
-from core.part.polar_field import Taken
 from core.part.stock import Stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import NOTHING, Cut, Piece, TurnedPart
 from core.proving.air_checks import AirChecks
 from core.proving.edge_checks import EdgeChecks
-from core.proving.mill_moves import MillMove
 from core.proving.part_checks import CHECKS, Check
 from core.proving.thread_checks import Found, ThreadChecks
 from core.proving.tip_moves import TipMove
+
+if TYPE_CHECKING:
+    from core.part.polar_field import Taken
+    from core.proving.mill_moves import MillMove
 
 _MOST = 100
 _CHUCK_STEP = 0.05  # mm

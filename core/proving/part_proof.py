@@ -9,6 +9,7 @@ import copy
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from core.interpreter.actions import (
     AskInput,
@@ -34,8 +35,6 @@ from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import STEP, Piece, TurnedPart
 from core.proving.assumed_stock import assumed_stock
 from core.proving.assumed_tools import Assumed, ToolUse, assumed_tool, releases
-from core.proving.mill_moves import MillMove, between, mill_move
-from core.proving.milling import Milling
 from core.proving.part_checks import STOCK, TOOL, Check
 from core.proving.part_findings import PartFindings
 from core.proving.program_timeline import MotionSpan, Part, RestSpan
@@ -44,6 +43,10 @@ from core.proving.prove_program import Progress, prove
 from core.proving.thread_checks import UNKNOWN, Drives, ThreadChecks
 from core.proving.tip_moves import QUICK, LiveStep, Place, Step, Steps, TipMove
 from core.proving.unchecked_parts import unchecked
+
+if TYPE_CHECKING:
+    from core.proving.mill_moves import MillMove
+    from core.proving.milling import Milling
 
 MOST_MOVES = 50_000
 """Of a longer program the part is made when somebody has said its stock: a million take half a minute.
@@ -192,8 +195,8 @@ class Tools:
         self.assumed: dict[int, Assumed] = {
             n: assumed_tool(use)
             for n, use in self.uses.items()
-            if n not in setting.shapes and (use.moves or use.live)
-        }
+            if n not in setting.shapes and (use.moves or use.live) and (n or len(self.uses) == 1)
+        }  # T0 is none, but where the program names none at all
         self._give_drills_a_size()
 
     def _gather(self, steps: Sequence[Step]) -> None:
@@ -286,7 +289,7 @@ class Tools:
         if (lost := self.fed_away) is not None:
             yield lost.line, lost.n, "This feed leads away from the part, and no other cuts behind Z0."
         for use in cutting:
-            fed = [block for block, _ in use.live if not block.rapid and block.feed < QUICK]
+            fed = [block for block in use.live_blocks if not block.rapid and block.feed < QUICK]
             if fed:
                 yield fed[0].line, fed[0].n, f"The live tool T{use.number} is fed, and never comes behind Z0."
 
@@ -425,6 +428,9 @@ class Making:
         move, shape = self.mill_move(step), self._tools.shape(self._tool)
         if move is None or shape is None or self.part is None or self._is_open:
             return
+        from core.proving.mill_moves import between
+        from core.proving.milling import Milling
+
         if last - first < 1.0:
             move = move._replace(path=between(move.path, first, last))
         if self.milling is None:
@@ -438,6 +444,8 @@ class Making:
         shape = self._tools.shape(self._tool)
         if shape is None or not shape.diameter:
             return None
+        from core.proving.mill_moves import mill_move
+
         return mill_move(step.block, step.place, shape)
 
     def _cutter(self) -> Cutter | None:
