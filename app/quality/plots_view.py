@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QPainter, QPaintEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
@@ -57,12 +57,18 @@ class PlotsPane(QWidget):
                 self._draw(plot, (min(across), max(across)))
         self._chart.dress()
         self._chart.share_left(9.0)
+        for drawn in self._chart.plots:
+            drawn.layout.activate()  # else a hidden window keeps the room of before
         self._lay_out()
 
     def dress(self) -> None:
         """The theme has changed: what is drawn is drawn anew."""
         if self._shown is not None:
             self.show_drawing(self._shown)
+
+    def showEvent(self, _event: QShowEvent) -> None:
+        """What was drawn while it was hidden has no layout: the next frame draws it anew."""
+        self._shown = None
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """All of it is the chart's."""
@@ -117,7 +123,7 @@ class PlotsPane(QWidget):
         values = [float(each) for curve in plot.curves for each in curve.y]
         values += [level.value for level in plot.levels]
         low, high = min(values), max(values)
-        room = _ROOM * (high - low) or max(abs(high) * 0.01, 1e-6)
+        room = _ROOM * (high - low) or max(abs(high) * 0.01, 1e-4)
         drawn.setYRange(low - room, high + 3.0 * room, padding=0)
         side = max(0.5, 0.02 * (across[1] - across[0]))
         drawn.setXRange(across[0] - side, across[1] + side, padding=0)

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from app.quality.readings_section import ReadingsSection
 from app.special.special_functions import SpecialFunctions
 
 
-@dataclass(slots=True)
 class QualityFunctions(SpecialFunctions):
-    """As the special functions are; what a gauge sends is taken up while the page is shown."""
+    """As the special functions are; what a gauge sends counts while the section of readings is shown."""
+
+    __slots__ = ()
 
     def look(self) -> None:
-        """Once a frame: a gauge speaks to the section of readings, whichever is open."""
+        """Once a frame: of which feature and part a reading is must be seen when it comes."""
         for function in self.functions:
             if isinstance(function, ReadingsSection):
-                function.look()
+                function.look(seen=function is self.shown)
+
+    def opened(self) -> None:
+        """The page comes up: what a gauge has sent meanwhile is of nobody knows which part."""
+        super().opened()
+        for function in self.functions:
+            if isinstance(function, ReadingsSection):
+                function.look(seen=False)
 
     def close(self) -> None:
         """End what a section has under way; the worker is the book's."""

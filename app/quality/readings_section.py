@@ -186,10 +186,12 @@ class ReadingsSection(QualitySection):
         if why:
             self.desk.say(why)
 
-    def look(self) -> None:
-        """Once a frame: what the gauge has sent goes to the marked feature."""
+    def look(self, *, seen: bool) -> None:
+        """Once a frame: what the gauge has sent goes to the marked feature, where that is seen."""
         for found in self.gauge.taken():
-            if isinstance(found, Reading):
+            if isinstance(found, Reading) and not seen:
+                self.desk.say(tr("A READING CAME WHILE THE READINGS WERE NOT SHOWN: MEASURE AGAIN"))
+            elif isinstance(found, Reading):
                 self._measured(found)
             else:
                 self.desk.say(found)

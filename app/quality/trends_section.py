@@ -193,17 +193,18 @@ class TrendsSection(QualitySection):
 
     def _wear_plots(self) -> tuple[Plot, ...]:
         """X of tools as a diameter; each correction holds until the next one of the same offset."""
-        unit = self.mode.unit
+        unit, made = self.mode.unit, float(max((row.part for row in self.data.cycles), default=0))
         curves: list[list[Curve]] = [[], []]
         for number, (kind, offset) in enumerate(sorted({(r.kind, r.number) for r in self.data.corrections})):
             rows = [row for row in self.data.corrections if (row.kind, row.number) == (kind, offset)]
-            parts = np.asarray([float(row.part) for row in rows])
+            first, last = rows[0], rows[-1]
+            parts = np.asarray([0.0, *(float(row.part) for row in rows), max(made, float(last.part))])
             name = f"{'T' if kind == 'tool' else 'D'}{offset}"
             factor = 2.0 if kind == "tool" else 1.0
-            x = np.asarray([factor * row.x / unit for row in rows])
-            z = np.asarray([row.z / unit for row in rows])
-            curves[0].append(Curve(parts, x, number, name=name, steps=True))
-            curves[1].append(Curve(parts, z, number, name=name, steps=True))
+            x = np.asarray([first.was_x, *(row.x for row in rows), last.x]) * factor / unit
+            z = np.asarray([first.was_z, *(row.z for row in rows), last.z]) / unit
+            curves[0].append(Curve(parts, x, number, name=name, dots=False, steps=True))
+            curves[1].append(Curve(parts, z, number, name=name, dots=False, steps=True))
         if not curves[0]:
             return ()
         titles = (f"{tr('WEAR X')}, {self.mode.name}", f"{tr('WEAR Z')}, {self.mode.name}")

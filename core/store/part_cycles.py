@@ -43,6 +43,8 @@ class CorrectionRow(NamedTuple):
     part: int
     why: str
     who: str
+    was_x: float
+    was_z: float
 
 
 _CYCLE = ", ".join(CycleRow._fields)
@@ -95,7 +97,7 @@ def stops(connection: sqlite3.Connection, program: str | None, limit: int) -> tu
 def corrections(connection: sqlite3.Connection, program: str, limit: int) -> tuple[CorrectionRow, ...]:
     """Changes of wear and of secondary offsets in their order, with how many parts were begun before.
 
-    What they are after the change: wear of a tool, X and Z of a secondary offset.
+    What they are after the change and were before it: wear of a tool, X and Z of a secondary offset.
     """
     rows = connection.execute(
         "SELECT id, at, kind, number,"
@@ -103,7 +105,9 @@ def corrections(connection: sqlite3.Connection, program: str, limit: int) -> tup
         " CASE kind WHEN 'tool' THEN new_wear_z ELSE new_z END,"
         " (SELECT coalesce(max(c.part), 0) FROM part_cycles AS c"
         "   WHERE c.program = ?1 AND c.offset_change < offset_changes.id),"
-        " why, who FROM offset_changes"
+        " why, who,"
+        " coalesce(CASE kind WHEN 'tool' THEN old_wear_x ELSE old_x END, 0),"
+        " coalesce(CASE kind WHEN 'tool' THEN old_wear_z ELSE old_z END, 0) FROM offset_changes"
         " WHERE (kind = 'tool' AND (coalesce(old_wear_x, 0) IS NOT new_wear_x"
         "   OR coalesce(old_wear_z, 0) IS NOT new_wear_z) AND new_wear_x IS NOT NULL)"
         " OR (kind = 'secondary' AND new_x IS NOT NULL)"

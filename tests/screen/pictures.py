@@ -31,8 +31,12 @@ from app.screen.look import Look, dress, load_fonts
 from app.screen.main_window import MainWindow
 from app.screen.theme import PALETTES
 from core.executor.snapshot import State
+from core.store import measured_parts, part_cycles, tool_lives
+from core.store.measured_parts import FeatureRow, ReadingRow
+from core.store.part_cycles import CycleRow, StopRow
 from core.store.store import Store
 from core.store.store_rows import Kind
+from core.store.tool_lives import LifeRow
 
 SIZES = ((1024, 600), (1920, 1080), (3840, 2160))
 THEMES = ("dark", "light")
@@ -78,6 +82,7 @@ class Stage:
         store.set_offset(Kind.SHAPE, 1, "entered", sheet)
         for number, x, z, why in CORRECTIONS:
             store.set_secondary(number, why, x=x * 25.4, z=z * 25.4).result()
+        _fill_parts(store)
 
     def close(self) -> None:
         """End the threads, forget the folder."""
@@ -122,6 +127,56 @@ class Stage:
         desk.hands.palm("right", down=True)
         self.tick(lambda: desk.snapshot().state is not State.IDLE, 5.0)
         desk.hands.let_go()
+
+
+SIZES_MEASURED = (
+    0,
+    1,
+    -1,
+    2,
+    0,
+    1,
+    2,
+    1,
+    3,
+    2,
+    3,
+    4,
+    3,
+    5,
+    4,
+    5,
+    6,
+    5,
+    7,
+    6,
+)  # ten thousandths off, a diameter
+STOPS = (("BETWEEN CYCLES", 900.0), ("FEED HOLD", 95.0), ("PROGRAM STOP (M00)", 410.0), ("E-STOP", 240.0))
+
+
+def _fill_parts(store: Store) -> None:
+    """Twenty parts whose diameter grows as the insert wears, three stops, two lives."""
+    name = f"{PROGRAM}.nc"
+    rows = (
+        FeatureRow(0, name, "OUTSIDE", "diameter", 22.225, -0.0254, 0.0254, "tool", 1, 1, 5, 1),
+        FeatureRow(0, name, "LENGTH", "length", 19.05, -0.0508, 0.0508, "tool", 1, -1, 10, 1),
+    )
+    features = [store.write(lambda c, row=row: measured_parts.save_feature(c, row)).result() for row in rows]
+    for part, off in enumerate(SIZES_MEASURED, start=1):
+        at = f"2026-03-02T08:{part:02d}:00.000Z"
+        made = CycleRow(f"{part}", name, part, at, at, 41.0 + off % 3, "COMPLETE")
+        store.write(lambda c, made=made: part_cycles.save_cycle(c, made)).result()
+        size = 22.225 + off * 0.00254
+        reading = ReadingRow(0, features[0], part, size, "in", at, "gauge", "micrometer")
+        store.write(lambda c, reading=reading: measured_parts.add_reading(c, reading)).result()
+    for number, (reason, seconds) in enumerate(STOPS):
+        row = StopRow(f"{number}", "", name, f"2026-03-02T09:{number:02d}:00.000Z", seconds, reason)
+        store.write(lambda c, row=row: part_cycles.save_stop(c, row)).result()
+    for life in (LifeRow(1, 200, 0.0, 0.9, True), LifeRow(3, 0, 1800.0)):
+        store.write(lambda c, life=life: tool_lives.set_limits(c, life)).result()
+    store.write(lambda c: tool_lives.set_use(c, 1, 184, 4020.0)).result()
+    store.write(lambda c: tool_lives.set_use(c, 3, 61, 732.0)).result()
+    store.correct_parts(name, len(SIZES_MEASURED)).result()
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -207,6 +262,10 @@ SCENES = (
     Scene("seccmp", 'F9 "1 Enter "-.002+.0005'),
     Scene("history", "F9 F5"),
     Scene("zero", "F1 G"),
+    Scene("readings", "F1 W 2"),
+    Scene("charts", "F1 W 3"),
+    Scene("life", "F1 W 4"),
+    Scene("trends", "F1 W 5 Enter Down Down"),
     Scene("speed", 'F10 1 "1500'),
     Scene("parts", "F10 2"),
     Scene("outputs", "F10 3 Down"),

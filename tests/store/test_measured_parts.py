@@ -121,9 +121,9 @@ def test_corrections_stand_between_the_parts(store: Store) -> None:
     store.set_secondary(4, "D", x=0.02).result(5)
     with store.read() as connection:
         rows = part_cycles.corrections(connection, "pin.nc", 100)
-    assert [(row.kind, row.number, row.x, row.part) for row in rows] == [
-        ("tool", 3, -0.01, 2),
-        ("secondary", 4, 0.02, 3),
+    assert [(row.kind, row.number, row.was_x, row.x, row.part) for row in rows] == [
+        ("tool", 3, 0.0, -0.01, 2),
+        ("secondary", 4, 0.0, 0.02, 3),
     ]
 
 
