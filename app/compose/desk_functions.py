@@ -17,6 +17,7 @@ from app.programs.import_export import ImportExport
 from app.programs.preview import DrawThumbnail, Preview
 from app.programs.program_list import ProgramList
 from app.programs.run_history import RunHistory
+from app.quality.parts_function import MeasuredPartsFunction
 from app.scope.scope_function import ScopeFunction
 from app.special.backup_and_restore import BackupAndRestore
 from app.special.drive_status import DriveStatus
@@ -95,6 +96,7 @@ def furnish(
     functions.append(_transfer(desk, machine, persistence, workshop, own))
     functions.append(_setup_sheet(desk, machine, persistence, worker))
     functions.append(ScopeFunction(desk))
+    functions.append(MeasuredPartsFunction(desk))
     desk.attach(SpecialFunctions(functions, worker))
     desk.attach(_files(desk, persistence, Preview(workshop, thumbnail), own))
 
