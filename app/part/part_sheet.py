@@ -258,6 +258,8 @@ class PartSheet:
         """Whether nothing may be changed now; says why."""
         if not self.name:
             self.desk.say(tr("LOAD A PROGRAM FIRST: ITS STOCK IS KEPT WITH IT"))
+        elif self.desk.lathe is not None and self.desk.lathe.kind != "lathe":
+            self.desk.say(tr("NO PART IS PROVED ON A MILL"))
         elif self.desk.snapshot().state in UNDER_WAY:
             self.desk.say(tr("WHAT THE PART IS PROVED ON CHANGES BETWEEN TWO CYCLES ONLY"))
         elif self.worker.busy or self.loaded.busy:

@@ -110,7 +110,8 @@ class PartPage(ListPage):
     def _show_part(self, loaded: Loaded) -> None:
         if loaded is not self._loaded:
             self._loaded = loaded
-            self.path.show_picture(loaded.picture)
+            picture = loaded.picture
+            self.path.show_picture(None if picture is not None and picture.scene is not None else picture)
             self.path.show_part()
             first = self.model.finding
             if first is not None and loaded.picture is not None and first is not self._shown:

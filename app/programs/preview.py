@@ -29,7 +29,7 @@ class Thumbnail(NamedTuple):
     height: int
 
 
-DrawThumbnail = Callable[[Job, Watch], "Thumbnail | None"]
+DrawThumbnail = Callable[[Job, Watch], Thumbnail | None]
 
 
 @dataclass(slots=True)

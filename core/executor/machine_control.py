@@ -14,7 +14,7 @@ from core.executor.handwheel import Handwheel
 from core.executor.homing_order import Homing
 from core.executor.interrupted_job import CLOSED, ESTOP, InterruptedJob
 from core.executor.interruption_watch import Note
-from core.executor.job import WARNING, Job
+from core.executor.job import Job
 from core.executor.jogging import jogger_of
 from core.executor.machine_context import MachineContext
 from core.executor.program_run import ProgramRun
@@ -29,6 +29,7 @@ from core.interpreter.modal_state import Modal
 
 _GOES_ON = frozenset({State.RUN, State.WAIT, State.IDLE, State.DISABLED, State.JOG, State.HOME})
 MEANT = 0.8  # s from an answer to a start by hands: half a second between two palms, and time to read
+_AT_REST = frozenset({State.IDLE, State.DISABLED})
 _STOPPED = frozenset({State.ESTOP, State.FAULT, State.DISABLED})
 
 
@@ -155,10 +156,11 @@ class MachineControl:
         """What the proof of the program that would begin has warned of: it is read before it is begun."""
         status = self.status
         job, proof = status.job, status.proof
-        begins = self.state is State.IDLE and status.starts is not Starts.LINE
+        begins = self.state in _AT_REST and status.starts is not Starts.LINE
         if begins and job is not None and proof is not None and proof.digest == job.digest and proof.warned:
             more = f" ({len(proof.warned) - 1} MORE)" if len(proof.warned) > 1 else ""
-            yield Starting(f"warned {job.digest}", f"{WARNING}{proof.warned[0]}{more}", lambda: None)
+            said = f"{proof.warned[0]}{more}"
+            yield Starting("warned" + job.digest, f"WARNING: {said}", lambda: None)
 
     def feed_hold(self, reason: str, by: str = "") -> None:
         """Hold the cycle, end a jog, brake a homing, take the handwheel away.

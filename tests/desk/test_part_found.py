@@ -16,6 +16,7 @@ from app.desk.kept_part import KeptPart
 from app.desk.latest import Watch
 from app.desk.program_loading import Loaded, PartProved, Phase, ProgramLoader
 from app.desk.program_renewal import RunningRenewal
+from app.desk.prompt_line import announced, remedy
 from app.path.path_picture import Picture
 from core.executor.commands import Command, GiveProof, LoadJob, Renew
 from core.executor.snapshot import Snapshot, State
@@ -238,3 +239,20 @@ def test_changed_offsets_are_taken_up_with_what_the_part_says(
     assert given == [("LINE 11: RAPID-INTO-STOCK",)] * (1 - errors)
     assert renewing.taken(Snapshot(state=State.IDLE, job=renewed.job.digest))
     assert len([c for c in bench.posted if isinstance(c, GiveProof)]) == 1 - errors
+
+
+# --- on the prompt line -------------------------------------------------------------------------------
+
+
+def test_what_was_warned_of_is_told_where_cycles_are_started() -> None:
+    shot = Snapshot(announced=("WARNING: LINE 11: RAPID-INTO-STOCK", "THE SPINDLE STARTS AT 900 RPM FORWARD"))
+    here = "WARNING: LINE 11: RAPID-INTO-STOCK · THE SPINDLE STARTS AT 900 RPM FORWARD · "
+    assert announced(shot) == here
+    assert announced(shot, starts_here=False) == "THE SPINDLE STARTS AT 900 RPM FORWARD · "
+
+
+def test_beside_the_warning_stands_what_to_do(desk: Make) -> None:
+    loaded = desk().load(SLIP)
+    words = remedy(loaded, "WARNING: LINE 11: RAPID-INTO-STOCK · TO START PRESS BOTH PALM BUTTONS")
+    assert words.startswith("LINE 11: A rapid goes into metal")
+    assert "G00 left on" in words

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine_files import load_machine
+import resources
+from app.compose.machine_files import load_machine, parse_machine
 from app.compose.workshop import workshop
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
@@ -201,6 +202,14 @@ def test_under_a_running_program_nothing_is_changed(bench: Bench) -> None:
     assert not bench.page.has_keyboard
     bench.press("F2", "Right")
     assert bench.cells["STOCK"][0] == "–"
+    assert bench.kept == KeptPart()
+
+
+def test_on_a_mill_no_stock_is_said(bench: Bench) -> None:
+    bench.load(SHAFT)
+    bench.desk.lathe = parse_machine(resources.machine_file("ac-table-mill.toml"), "mill")
+    bench.press("F2", "Right")
+    assert bench.desk.notice == "NO PART IS PROVED ON A MILL"
     assert bench.kept == KeptPart()
 
 

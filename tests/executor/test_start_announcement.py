@@ -377,6 +377,18 @@ def test_what_was_warned_of_is_read_before_the_first_start() -> None:
     assert rig.shot.announced == ()
 
 
+def test_it_is_read_while_the_drives_are_off_too() -> None:
+    rig = Rig()
+    job = rig.load(CUT)
+    rig.post(GiveProof(Proof(job.digest, (), warned=("LINE 3: RAPID-INTO-STOCK",))))
+    assert rig.state is State.DISABLED
+    assert rig.shot.announced == ("WARNING: LINE 3: RAPID-INTO-STOCK",)
+    rig.run(1.0)
+    rig.ready()
+    rig.post(CycleStart())
+    assert rig.state in {State.RUN, State.WAIT}
+
+
 def test_it_stands_again_between_two_parts_and_keeps_nobody_from_the_next() -> None:
     rig = warned("LINE 3: RAPID-INTO-STOCK")
     rig.run(TIME_TO_READ)

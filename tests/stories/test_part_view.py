@@ -36,5 +36,5 @@ def test_the_part_follows_the_run_and_stays_when_it_is_over(story: Story) -> Non
     operator.find("LINE 8", on="PathView")
     operator.reaches("READY")
     operator.find("LINE 9", on="PathView")
-    operator.keys("v", "v")
+    operator.keys("v", "v", "v")
     operator.find("to come", on="PathView")
