@@ -49,5 +49,6 @@ def give_scope(desk: Desk, live: LiveSamples | None = None) -> None:
     shelf = RecordShelf(data_folder() / RECORDS, save_record, open_record, write_csv)
     scope = Scope(desk, live, shelf)
     desk.attach(scope)
+    desk.open_record = scope.open_alarm
     slides = {axis.name: axis for axis in desk.lathe.axes} if desk.lathe is not None else {}
-    desk.attach(Analyses(scope, slides["Z"].vmax if "Z" in slides else 0.0))
+    desk.attach(Analyses(scope, slides))

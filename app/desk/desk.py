@@ -105,6 +105,7 @@ class Desk:
     settings: SettingsBook = field(default_factory=SettingsBook)
     counter: PartCounter = field(default_factory=PartCounter)
     record: RunHistory = field(default_factory=RunHistory)
+    open_record: Callable[[str], None] = field(default=lambda _name: None)  # of an alarm, in the scope
     recorder: Recorder | None = None  # of the scope: the last minutes of samples
     restoring: bool = False  # a backup takes the place of what is kept
     book: OffsetBook = field(default_factory=lambda: OffsetBook(locked=NONE_KEPT))

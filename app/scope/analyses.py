@@ -7,6 +7,7 @@ what cannot be told is a sentence.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 
@@ -18,7 +19,10 @@ from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.sheet import STEPS, Row, Sheet
 from app.desk.translation import tr
+from app.scope.axis_response import AxisResponse, last_move, response_drawing, response_sheet
+from app.scope.drawing import Drawing
 from app.scope.scope_model import Scope
+from core.machine.machine_model import Axis
 from core.records.analysis_errors import AnalysisError
 from core.records.ball_bar import BallBar, arcs_in, ball_bar
 from core.records.path_error import PathError, WorstPlace, of_samples, worst_places
@@ -38,20 +42,7 @@ class Kind(Enum):
     PATH = "PATH ERROR"
     THREAD = "THREAD"
     BALL_BAR = "BALL BAR"
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Drawing:
-    """Lines to be drawn: ``soft`` is what was programmed, then a curve each; units inside. ``equal`` axes.
-
-    ``below`` are curves of a second plot. ``marks`` are places with their words.
-    """
-
-    soft: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
-    curves: tuple[FloatArray, ...] = ()
-    below: tuple[FloatArray, ...] = ()
-    marks: tuple[tuple[float, float, str], ...] = ()
-    equal: bool = True
+    RESPONSE = "RESPONSE"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,6 +56,7 @@ class Found:
     thread: Thread | None = None
     speeds: tuple[FloatArray, ...] = ()  # of the passes, rpm
     ball: BallBar | None = None
+    response: AxisResponse | None = None
     arc: tuple[int, int, int] = (0, 0, 0)  # its number, of how many, its line
     vmax: float = 0.0  # of the slide along a thread, mm/s
     axes: tuple[str, str] = ("Z", "X")
@@ -75,7 +67,7 @@ class Analyses:
     """``marked`` row of the table, ``magnified`` how many times an error is drawn larger."""
 
     scope: Scope
-    vmax: float = 0.0  # of the slide along the spindle, mm/s
+    drives: Mapping[str, Axis] = field(default_factory=dict)  # by letter
     worker: Latest = field(default_factory=lambda: Latest("editing-analyses"))
     kind: Kind = Kind.PATH
     arc: int = 0
@@ -132,20 +124,20 @@ class Analyses:
         """Once a frame: what the worker has found; it is asked once."""
         self.worker.poll()
         if self._of is None and not self.worker.busy:
-            kind, arc, vmax = self.kind, self.arc, self.vmax
+            kind, arc, drives = self.kind, self.arc, self.drives
             self._of = (kind, arc)
             frozen, window, live = self.scope.frozen, self.scope.window, self.scope.live
 
             def work(_request: object) -> Found:
                 if frozen is not None:
                     begin, end = frozen.zero + window.begin, frozen.zero + window.end
-                    return analysed(kind, frozen.record.between(begin, end), arc, vmax)
+                    return analysed(kind, frozen.record.between(begin, end), arc, drives)
                 if live is None or not math.isfinite(live.last):
                     return Found(kind, tr("NOTHING IS RECORDED ON THIS MACHINE: OPEN A RECORD WITH F9"))
                 names = {each.name for each in live.channels if each.unit in {"mm", "deg"}}
                 names |= {"line", "spindle turns", "spindle speed"}
                 record = live.between(live.last - live.lasts, live.last, names)
-                return analysed(kind, last_run(record), arc, vmax)
+                return analysed(kind, record if kind is Kind.RESPONSE else last_run(record), arc, drives)
 
             self.worker.ask(work, self._take, self.desk.say)
 
@@ -168,6 +160,8 @@ class Analyses:
             return _path_drawing(found, self.magnified, self.marked)
         if found.thread is not None:
             return _thread_drawing(found)
+        if found.response is not None:
+            return response_drawing(found.response)
         return _ball_drawing(found, self.magnified) if found.ball is not None else Drawing()
 
     def sheet(self) -> Sheet:
@@ -182,6 +176,8 @@ class Analyses:
             return _thread_sheet(title, found.thread, found.vmax, metric, self.marked)
         if found.ball is not None:
             return _ball_sheet(title, found.ball, found, metric)
+        if found.response is not None:
+            return response_sheet(title, found.response, metric)
         return Sheet(title, ("",), (1.0,), ())
 
     @property
@@ -194,6 +190,8 @@ class Analyses:
             return found.why
         if found.thread is not None:
             return tr("passes over each other by the spindle's angle: way beside the thread, and speed")
+        if found.response is not None:
+            return tr("asked and done of the last move, and its following error, over seconds")
         return tr("error drawn {times} times as large; Z changes that").format(times=f"{self.magnified:g}")
 
 
@@ -209,15 +207,17 @@ def last_run(record: Record) -> Record:
     return record.between(float(record.times[first]), float(record.times[on[-1]]))
 
 
-def analysed(kind: Kind, record: Record, arc: int, vmax: float) -> Found:
+def analysed(kind: Kind, record: Record, arc: int, drives: Mapping[str, Axis]) -> Found:
     """Work it out; what cannot be is told by ``why``."""
     try:
-        return _analysed(kind, record, arc, vmax)
+        return _analysed(kind, record, arc, drives)
     except AnalysisError as error:
         return Found(kind, str(error))
 
 
-def _analysed(kind: Kind, record: Record, arc: int, vmax: float) -> Found:
+def _analysed(kind: Kind, record: Record, arc: int, drives: Mapping[str, Axis]) -> Found:
+    if kind is Kind.RESPONSE:
+        return Found(kind, response=last_move(record, drives))
     columns = record.columns
     letters = [each.name[0] for each in record.channels if each.name[1:] == " demand" and each.unit == "mm"]
     if len(letters) < 2 or not len(record.times):
@@ -232,6 +232,7 @@ def _analysed(kind: Kind, record: Record, arc: int, vmax: float) -> Found:
     if kind is Kind.THREAD:
         speed = columns.get("spindle speed", np.full(len(lines), np.nan))
         turns = columns.get("spindle turns", np.full(len(lines), np.nan))
+        vmax = drives[axes[0]].vmax if axes[0] in drives else 0.0
         thread = find_thread(turns, actual[:, 0], actual[:, 1], speed)
         speeds = tuple(speed[each.first : each.last + 1] for each in thread.passes)
         return Found(kind, thread=thread, speeds=speeds, vmax=vmax, axes=axes)
@@ -375,4 +376,5 @@ def scaled(drawing: Drawing, factor: float) -> Drawing:
     by = np.array([factor if drawing.equal else 1.0, factor])
     marks = tuple((x * by[0], y * by[1], word) for x, y, word in drawing.marks)
     curves = tuple(each * by for each in drawing.curves)
-    return replace(drawing, soft=drawing.soft * by, curves=curves, marks=marks)
+    below = tuple(each * by for each in drawing.below) if drawing.lengths_below else drawing.below
+    return replace(drawing, soft=drawing.soft * by, curves=curves, marks=marks, below=below)

@@ -71,6 +71,7 @@ class AnalysesPage(ListPage):
             "F3": Key("THREAD", partial(choose, Kind.THREAD)),
             "F4": Key("BALL BAR", partial(choose, Kind.BALL_BAR)),
             "F5": Key("NEXT ARC", self.analyses.next_arc),
+            "F6": Key("RESPONSE", partial(choose, Kind.RESPONSE)),
             "F8": Key("SCOPE", self._back),
         }
 

@@ -17,6 +17,7 @@ from app.desk.formats import file_size, local_time
 from core.records.record import Record
 from core.records.record_file import ENDING
 
+ALARM_TIME = "alarm time"  # of the words of an alarm's record: on the clock of its samples
 INSTANT = "instant"  # of a record's words: seconds from its first sample to the trigger or the alarm
 MOST = 500
 _ROOM = 20_000_000  # bytes that are left free: the store and the log need the disk more
@@ -165,6 +166,8 @@ def instant_of(record: Record) -> float:
     if not len(record.times):
         return 0.0
     try:
+        if not told and ALARM_TIME in record.about:
+            return float(record.about[ALARM_TIME])
         return float(record.times[0]) + float(told)
     except ValueError:
         return float(record.times[-1])

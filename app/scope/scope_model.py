@@ -366,6 +366,20 @@ class Scope:
     def _listed(self, files: tuple[Kept, ...]) -> None:
         self.shelf.files = files
 
+    def open_alarm(self, name: str) -> None:
+        """The seconds before an alarm; it may still be being written."""
+        recorder = self.desk.recorder
+        folder, shelf = self.shelf.folder, self.shelf
+        self.side = Side.READINGS
+
+        def work() -> Record:
+            return recorder.alarm_record(name) if recorder is not None else shelf.open(folder / name)
+
+        def done(record: Record) -> None:
+            self.show_record(record, name)
+
+        self.filing.queue(work, done, self.desk.refuse)
+
     def open(self, kept: Kept) -> None:
         """Look at a record of the disk."""
         path, shelf = kept.path, self.shelf

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from PySide6.QtCore import QRectF, Qt
@@ -20,6 +20,7 @@ from core.executor.snapshot import Alarm
 
 WRAP = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 WORDS = int(Qt.TextFlag.TextWordWrap.value)
+_RECORD = 12.0  # units: the key of its record
 _HIGH, _WHEN, _FOOT = 7.0, 17.0, 6.8  # units: an entry, its column of times, the row of keys
 
 
@@ -106,11 +107,13 @@ class Notice(Panel):
 class AlarmList(Panel):
     """Every alarm, E-stop and stop, newest on top: when, what, why, what to do."""
 
-    title = "ALARMS AND STOPS  ·  ESC CLOSES  ·  PAGE DOWN: OLDER"
-    _top = Shown(0)
+    title = "ALARMS AND STOPS  ·  ESC CLOSES  ·  CTRL+ARROWS MARK  ·  SHIFT+F10: ITS RECORD"
+    _top, _marked = Shown(0), Shown(0)
 
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+    def __init__(self, look: Look, open_record: Callable[[str], None], parent: QWidget | None = None) -> None:
+        """``open_record`` shows what was recorded before an entry, by the name of the file."""
         super().__init__(look, parent)
+        self._open = open_record
         self.entries: tuple[LoggedStop, ...] = ()
         self.hide()
 
@@ -118,7 +121,7 @@ class AlarmList(Panel):
         """The log as it stands."""
         if entries is not self.entries:
             self.entries = tuple(entries)
-            self._top = 0
+            self._top = self._marked = 0
             self.update()
 
     @property
@@ -129,6 +132,17 @@ class AlarmList(Panel):
     def look_at(self, by: int) -> None:
         """Older ones, or newer ones."""
         self._top = max(0, min(self._top + by, len(self.entries) - self.rows))
+        self._marked = max(self._top, min(self._marked, self._top + self.rows - 1))
+
+    def mark(self, by: int) -> None:
+        """The next entry, or the one before; it stays in sight."""
+        self._marked = max(0, min(self._marked + by, len(self.entries) - 1))
+        self._top = min(max(self._top, self._marked - self.rows + 1), self._marked)
+
+    @property
+    def record(self) -> str:
+        """The name of the marked entry's record; empty: it has none."""
+        return self.entries[self._marked].record if self._marked < len(self.entries) else ""
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """The mouse wheel goes through the entries, as Page up and down do."""
@@ -143,6 +157,8 @@ class AlarmList(Panel):
             return
         for number, entry in enumerate(self.entries[self._top : self._top + self.rows]):
             y = room.y() + number * _HIGH * u
+            if self._top + number == self._marked:
+                painter.fill(QRectF(room.x(), y, 0.4 * u, (_HIGH - 0.5) * u), "lit")
             self._entry(painter, QRectF(room.x(), y, room.width(), _HIGH * u), entry)
         self._pages(painter, QRectF(room.x(), room.bottom() - _FOOT * u, room.width(), _FOOT * u))
 
@@ -150,6 +166,13 @@ class AlarmList(Panel):
         u, alarm = self.look.u, entry.alarm
         grave = CATALOGUE[alarm.code].reaction in {Reaction.OFF, Reaction.STOP} or alarm.code == "estop"
         left, wide = row.x() + _WHEN * u, row.width() - _WHEN * u
+        row.setLeft(row.left() + 0.8 * u)
+        if entry.record:
+            wide -= _RECORD * u
+            box = QRectF(
+                row.right() - (_RECORD - 0.8) * u, row.y() + 0.2 * u, (_RECORD - 0.8) * u, (_HIGH - 0.8) * u
+            )
+            self.key(painter, box, "SCOPE", 1.9, partial(self._open, entry.record), ink="accent")
         painter.fill(QRectF(row.x(), row.bottom() - 0.3 * u, row.width(), 0.1 * u), "frame")
         when, ink = QRectF(row.x(), row.y(), _WHEN * u, 2.4 * u), "alarm" if grave else "text"
         painter.write(when, entry.at, 1.8, "soft", bold=False, raw=True, margin=1.0)

@@ -66,7 +66,7 @@ class Frame(QWidget):
         self.prompt = PromptLine(look, press, self)
         self.keys = FunctionKeys(look, lambda number: press(f"F{number}"), self)
         self.notice = Notice(look, self)
-        self.log = AlarmList(look, self)
+        self.log = AlarmList(look, self.open_record, self)
         self._docked = True
         host = Host(look, desk, press, self.go, self.log.hide)
         self._host = host
@@ -94,6 +94,14 @@ class Frame(QWidget):
         self.page = page
         self._front()
         return True
+
+    def open_record(self, name: str) -> None:
+        """What was recorded before an alarm, in the scope."""
+        before = self.page.NAME
+        if before == page_table.SCOPE or self.go(page_table.SCOPE):
+            self._before_scope = self._before_scope if before == page_table.SCOPE else before
+            self.log.hide()
+            self.desk.open_record(name)
 
     def toggle_scope(self) -> None:
         """The scope from any page, and back to that page."""
@@ -132,7 +140,18 @@ class Frame(QWidget):
         return {
             "Page up": lambda: log.look_at(-log.rows),
             "Page down": lambda: log.look_at(log.rows),
+            "Pan up": lambda: log.mark(-1),
+            "Pan down": lambda: log.mark(1),
+            "Scope": self._open_marked,
         }
+
+    def _open_marked(self) -> None:
+        """The record of the marked entry; one that has none says so."""
+        name = self.log.record
+        if name:
+            self.open_record(name)
+        else:
+            self.desk.say(tr("NOTHING WAS RECORDED BEFORE THIS ONE: ALARMS AND E-STOPS HAVE A RECORD"))
 
     def toggle_log(self) -> None:
         """The log of alarms over the page, or away again."""

@@ -22,7 +22,7 @@ def turned_arc() -> object:
 
 
 def test_a_ball_bar_of_the_arc_of_a_record() -> None:
-    found = analysed(Kind.BALL_BAR, turned_arc(), 0, 0.0)  # type: ignore[arg-type]
+    found = analysed(Kind.BALL_BAR, turned_arc(), 0, {})  # type: ignore[arg-type]
     assert found.ball is not None
     assert found.arc == (0, 1, 4)
     assert found.ball.radius == pytest.approx(10.0, abs=1e-3)
@@ -30,20 +30,20 @@ def test_a_ball_bar_of_the_arc_of_a_record() -> None:
 
 
 def test_the_path_error_of_its_line() -> None:
-    found = analysed(Kind.PATH, turned_arc(), 0, 0.0)  # type: ignore[arg-type]
+    found = analysed(Kind.PATH, turned_arc(), 0, {})  # type: ignore[arg-type]
     assert [each.line for each in found.worst] == [4]
     assert abs(found.worst[0].distance) == pytest.approx(0.01, abs=1e-4)  # the play where X goes radially
 
 
 def test_what_is_not_there_is_told() -> None:
     record = record_of(seconds(0.0, 3.0))
-    assert "no arc" in analysed(Kind.BALL_BAR, record, 0, 0.0).why
+    assert "no arc" in analysed(Kind.BALL_BAR, record, 0, {}).why
     still = record_of(seconds(0.0, 3.0), spindle_turns=np.full(3001, 7.0))
-    assert "does not turn" in analysed(Kind.THREAD, still, 0, 0.0).why
-    assert "two slides" in analysed(Kind.PATH, record_of(seconds(0.0, 3.0), {"line"}), 0, 0.0).why
+    assert "does not turn" in analysed(Kind.THREAD, still, 0, {}).why
+    assert "two slides" in analysed(Kind.PATH, record_of(seconds(0.0, 3.0), {"line"}), 0, {}).why
     nothing = np.full(3001, np.nan)
     deaf = record_of(seconds(0.0, 3.0), spindle_turns=nothing)
-    assert "no encoder" in analysed(Kind.THREAD, deaf, 0, 0.0).why
+    assert "no encoder" in analysed(Kind.THREAD, deaf, 0, {}).why
 
 
 def test_of_live_samples_the_last_run_is_taken() -> None:

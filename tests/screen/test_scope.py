@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -26,8 +27,9 @@ from app.screen.main_window import MainWindow
 from app.screen.theme import CURVES, DARK
 from app.screen.window_layout import FINGER
 from core.executor.commands import FeedHold
-from core.executor.snapshot import State
-from core.records.record_file import open_record
+from core.executor.raised_alarm import make_alarm
+from core.executor.snapshot import Event, State
+from core.records.record_file import open_record, save_record
 from tests.scope.played_record import PlayedSamples, record_of, seconds
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
@@ -428,3 +430,36 @@ def test_the_analyses_stand_behind_f8(hands: Hands) -> None:
     hands.sees(lambda: page.chart is not None and not page.chart.drawing.curves)
     hands.key(Key.Key_F8)
     assert hands.frame.page.NAME == page_table.SCOPE
+
+
+def test_f7_opens_what_was_recorded_before_an_alarm(hands: Hands, tmp_path: Path) -> None:
+    record = record_of(seconds(90.0, 101.0))
+    told = {**record.about, "alarm time": "100.0"}
+    save_record(replace(record, about=told), tmp_path / "records" / "one-alarm301.scope")
+    alarm = make_alarm("following", "X is .2 mm off its setpoint", 7, 0.0)
+    stop = make_alarm("estop", "", 0, 0.0)
+    hands.desk.hear(Event(100.0, "alarm", alarm.text, 7, alarm, "one-alarm301.scope"))
+    hands.desk.hear(Event(100.0, "stop", stop.text, 0, stop))
+    hands.key(Key.Key_F7)
+    hands.sees(lambda: len(hands.frame.log.entries) == 2)
+    hands.key(Key.Key_F10, SHIFT)  # the newest has none
+    hands.sees(lambda: "NOTHING WAS RECORDED BEFORE" in hands.prompt())
+    hands.key(Key.Key_Down, CTRL)
+    hands.key(Key.Key_F10, SHIFT)
+    scope = hands.desk.attached(Scope)
+    assert scope is not None
+    hands.sees(lambda: scope.name == "one-alarm301.scope")
+    assert hands.frame.page.NAME == page_table.SCOPE
+    assert not hands.frame.log.isVisible()
+    assert scope.frozen is not None
+    assert scope.frozen.zero == 100.0
+    assert scope.window.begin == pytest.approx(-10.0)
+
+
+def test_a_record_that_is_gone_is_told(hands: Hands) -> None:
+    alarm = make_alarm("following", "X is .2 mm off its setpoint", 7, 0.0)
+    hands.desk.hear(Event(100.0, "alarm", alarm.text, 7, alarm, "gone-alarm301.scope"))
+    hands.key(Key.Key_F7)
+    hands.sees(lambda: len(hands.frame.log.entries) == 1)
+    hands.key(Key.Key_F10, SHIFT)
+    hands.sees(lambda: hands.prompt().startswith("REFUSED") and "gone-alarm301" in hands.prompt())

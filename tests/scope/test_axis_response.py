@@ -1,0 +1,77 @@
+"""The response of an axis to a step of the Jog page, of a drive with a known lag."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.compose.machine_files import load_machine
+from app.scope.analyses import Kind, analysed
+from app.scope.axis_response import last_move, response_sheet
+from core.records.analysis_errors import AnalysisError
+from tests.scope.played_record import record_of, seconds
+
+DRIVES = {axis.name: axis for axis in load_machine(None).axes}
+TAU = 0.004
+
+
+def moved(speed: float = 20.0, way: float = 2.0, tau: float = TAU) -> object:
+    """Z goes ``way`` mm at ``speed`` mm/s from 2 s on, its drive behind by speed · τ · (1 − e^(−t/τ))."""
+    times = seconds(0.0, 5.0)
+    t = np.maximum(times - 2.0, 0.0)
+    end = way / speed
+
+    def lagged(since: np.ndarray) -> np.ndarray:
+        s = np.maximum(since, 0.0)
+        return speed * (s - tau * (1.0 - np.exp(-s / tau)))
+
+    demand = speed * np.minimum(t, end)
+    still = np.full(len(times), 3.0)
+    actual = lagged(t) - lagged(t - end)
+    return record_of(times, X_demand=still, X_actual=still, Z_demand=demand, Z_actual=actual)
+
+
+def figures_of(record: object) -> dict[str, str]:
+    sheet = response_sheet("", last_move(record, DRIVES), True)  # type: ignore[arg-type]
+    return {row.cells[0]: row.cells[1] for row in sheet.rows}
+
+
+def test_the_last_move_is_found_with_its_lag() -> None:
+    found = last_move(moved(), DRIVES)  # type: ignore[arg-type]
+    assert found.letter == "Z"
+    assert found.step.way == pytest.approx(2.0)
+    assert found.speed == pytest.approx(20.0, rel=1e-3)
+    assert found.lag == pytest.approx(TAU, rel=0.05)  # less the two ends, where it builds up and goes
+    assert np.abs(found.error).max() == pytest.approx(20.0 * TAU, rel=1e-3)
+    assert found.step.overshoot == pytest.approx(0.0, abs=1e-6)
+    # it is within the window of in position after τ·ln(error / window)
+    band = DRIVES["Z"].in_position
+    assert found.step.settling == pytest.approx(TAU * np.log(20.0 * TAU / band), abs=0.002)
+
+
+def test_at_twice_the_speed_it_is_twice_as_far_behind() -> None:
+    found = last_move(moved(), DRIVES)  # type: ignore[arg-type]
+    assert np.abs(found.faster(2.0)).max() == pytest.approx(2.0 * np.abs(found.error).max(), rel=0.05)
+
+
+def test_what_would_trip_is_said() -> None:
+    """A lag of a tenth of a second: far outside a quarter of any window."""
+    words = figures_of(moved(tau=0.1, way=8.0))
+    assert words["WITH 25 % OF THE WINDOW"].startswith("trips at")
+    assert figures_of(moved(tau=1e-5))["WITH 25 % OF THE WINDOW"] == "holds"
+
+
+def test_without_a_move_there_is_nothing() -> None:
+    times = seconds(0.0, 3.0)
+    still = np.full(len(times), 3.0)
+    record = record_of(times, X_demand=still, Z_demand=still)
+    with pytest.raises(AnalysisError, match="make a step on the Jog page"):
+        last_move(record, DRIVES)
+    assert "Jog page" in analysed(Kind.RESPONSE, record, 0, DRIVES).why
+
+
+def test_a_move_that_still_goes_on_is_no_response() -> None:
+    times = seconds(0.0, 3.0)
+    record = record_of(times, X_demand=np.full(len(times), 3.0), Z_demand=5.0 * times)
+    with pytest.raises(AnalysisError, match="from rest to rest"):
+        last_move(record, DRIVES)
