@@ -20,6 +20,7 @@ class SampleLog:
         self._kept = kept
         self._bytes = bytearray(kept * self._row.size)
         self._added = self._taken = 0
+        self._none = np.empty((0, self.width))
         self.last = -np.inf  # time of the newest row
 
     def add(self, t: float, *figures: float) -> None:
@@ -32,6 +33,8 @@ class SampleLog:
         """The oldest rows that have not been taken, ``most`` at a time."""
         first = max(self._taken, self._added - self._kept)
         count = min(self._added - first, most)
+        if not count:
+            return self._none
         self._taken = first + count
         at = first % self._kept
         data = np.frombuffer(self._bytes, dtype=np.float64).reshape(self._kept, self.width)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import queue
 from collections.abc import Callable, Iterator
@@ -30,6 +31,7 @@ from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionError
 from core.ports import DriverError, MachinePorts, TrippedError
 
+_log = logging.getLogger(__name__)
 TICK = 0.01  # s from the end of one to the beginning of the next
 _STALL = 0.2  # s between two ticks that tell of a stalled host
 _STALE = 0.5  # s after which nobody expects a press to move the machine any more
@@ -69,6 +71,7 @@ class Executor:
         self._ports = ports
         self._tell = tell
         self._due = ports.clock.now()  # when the next tick is expected
+        self._missed = False  # the scope could not be told something
         self._late = 0.0  # s, the worst since the last that was handed over
         self._seen: tuple[object, ...] = ()  # what the last tick has seen, but for the time
         self._same = 0  # ticks since anything of that has changed
@@ -184,12 +187,15 @@ class Executor:
         """What the scope records; that nothing can be recorded stops nothing."""
         if self._tell is None:
             return
-        with Attempt():
+        with Attempt() as trial:
             now, source = self._context.now, self._ports.samples
             late, self._late = self._late, 0.0
             samples = source.take() if source is not None else None
             queued = math.nan if source is not None else max(self._ports.axes.horizon() - now, 0.0)
             self._tell(Tick(self.snapshot, late, queued, self._context.spindle.angle.turns, samples))
+        if trial.error is not None and not self._missed:
+            self._missed = True  # once: it would come a hundred times a second
+            _log.error("the scope misses what the machine does", exc_info=trial.error)
 
     def _blind(self) -> None:
         """Something cannot be read: what was seen before starts nothing, and E-stop is still obeyed."""

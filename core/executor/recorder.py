@@ -32,7 +32,7 @@ _NAN = float("nan")
 _LOOK = 0.1  # s between two looks at what was handed over
 _AT_REST = 0.1  # s between two rows of a machine on which nothing changes
 _GRAIN = 0.005  # s; half a tick
-_MOST = 60_000  # ticks that wait for a recorder that does not come: ten minutes
+_MOST = 12_000  # ticks that wait for a recorder that does not come: two minutes
 BEFORE, BEHIND = 10.0, 2.0  # s before an alarm and after it that are kept with it
 _SOON = 0.2  # s; a machine that stands is waited for so long
 KEPT = 50  # records of alarms
@@ -187,6 +187,7 @@ class Recorder:
                 self._file.write(rows, parts)
             except RecordError as error:
                 self.trouble = f"the record is kept in memory alone: {error}"
+                _log.warning("%s", self.trouble)
                 self._file.close()
                 self._file = None
 

@@ -117,7 +117,7 @@ def test_a_driver_that_cannot_tell_its_samples_stops_nothing(monkeypatch: pytest
     assert it.shot.alarms == ()
 
 
-def test_a_recorder_that_raises_stops_nothing() -> None:
+def test_a_recorder_that_raises_stops_nothing_and_is_told_once(caplog: pytest.LogCaptureFixture) -> None:
     it = Rig()
 
     def raises(_tick: Tick) -> None:
@@ -128,6 +128,7 @@ def test_a_recorder_that_raises_stops_nothing() -> None:
     it.run(0.1)
     assert it.state is State.IDLE
     assert it.shot.alarms == ()
+    assert [each.message for each in caplog.records] == ["the scope misses what the machine does"]
 
 
 # --- alarms ----------------------------------------------------------------------------------------------

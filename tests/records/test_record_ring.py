@@ -89,6 +89,17 @@ def test_rows_that_are_being_written_over_are_not_read() -> None:
     assert rows.between(-1.0, 1000.0)[:, 0].tolist() == list(range(30, 100))
 
 
+def test_rows_that_are_written_over_while_they_are_copied_are_left_out() -> None:
+    begun = iter((100, 130))  # before they are copied, and behind
+
+    class Overtaken(Rows):
+        begun = property(lambda _: next(begun), lambda _self, _value: None)  # type: ignore[assignment]
+
+    rows = Overtaken(100, 1)
+    rows.write(np.arange(100.0)[:, None])
+    assert rows.between(-1.0, 1000.0)[:, 0].tolist() == list(range(30, 100))
+
+
 def test_a_torn_row_is_left_out() -> None:
     ring = filled()
     ring.samples.data[20, -1] = 19.0  # of another round
