@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -277,10 +277,14 @@ class PartPlayer:
             if solid is None:
                 return None
             self._solid, self._draws = (instant, solid), self._draws + 1
-        spans = tuple((float(hit.z.min()), float(hit.z.max())) for hit in instant.hits)
+        # While the run leads, the view has C as it is measured.
+        view = look.view if self.bound else replace(look.view, roll=instant.c)
+        spans = tuple(
+            (float(hit.z.min()) - hit.wide / 2, float(hit.z.max()) + hit.wide / 2) for hit in instant.hits
+        )
         return self._painter.draw(
             self._solid[1],
-            look.view,
+            view,
             look.width,
             look.height,
             version=self._draws,

@@ -143,6 +143,7 @@ class PartInstant(NamedTuple):
     clamping: Clamping | None = None
     is_open: bool = False
     reach: tuple[Point, Point] | None = None
+    c: float = 0.0  # degrees at which the part is held, or was last
 
 
 class PartHistory:
@@ -306,6 +307,7 @@ class PartHistory:
             clamping=self._clamping,
             is_open=making.is_open,
             reach=self._reach(under_way),
+            c=self._c(under_way, share),
         )
 
     def _milled(self, step: LiveStep, share: float) -> Making:
@@ -328,6 +330,15 @@ class PartHistory:
             (x0, x1), (z0, z1) = self._travel
             return (z0 - z, x0 - x), (z1 - z, x1 - x)
         return None
+
+    def _c(self, under_way: Step | None, share: float) -> float:
+        """C of the block under way, or of the last one that held the part."""
+        if isinstance(under_way, LiveStep):
+            return _c_at(under_way, share)
+        for step in reversed(self.steps[max(0, self._done - 200) : self._done]):
+            if isinstance(step, LiveStep):
+                return _c_at(step, 1.0)
+        return 0.0
 
     def _place(self) -> Point | None:
         """Where the last block that moves has ended."""
@@ -465,6 +476,14 @@ def _at(step: LiveStep, share: float) -> Point:
         return z + step.place[1] + step.block.modal.secondary_z, x
     start, end = _ends(step)
     return start[0] + (end[0] - start[0]) * share, start[1] + (end[1] - start[1]) * share
+
+
+def _c_at(step: LiveStep, share: float) -> float:
+    """C on the way of a live tool's block, degrees."""
+    block = step.block
+    if block.plane is not None:
+        return float(block.plane.machine(np.array([share]))[0, 2])
+    return block.c0 + (block.c - block.c0) * share
 
 
 def _ends(step: LiveStep) -> tuple[Point, Point]:

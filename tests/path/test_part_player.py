@@ -9,11 +9,12 @@ import pytest
 import resources
 from app.compose.machine_files import load_machine, parse_machine
 from app.compose.workshop import workshop
-from app.path.part_player import FAST, PartPlayer, PartPlayers
+from app.path.part_player import FAST, PartPlayer, PartPlayers, SolidLook
 from app.path.path_aspects import Aspect, views_of
 from app.path.path_picture import Picture
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
+from core.part.solid_view import SolidView
 
 HEAD = "G90G94F300\nM03S1500\nT1\n"
 SHAFT = HEAD + "X.6Z.05\nX.4\nG95F.004Z-.5\nX.45Z-.6\nX.55\nG94F300Z.05\nX.3\nG95F.004Z-.3\nX.55\nM30\n"
@@ -227,3 +228,24 @@ def test_to_a_block(player: PartPlayer) -> None:
     player.to_block(9)
     player.look()
     assert line(player) == 5
+
+
+MILLED = HEAD + (
+    "X.6Z.05\nX.45\nG95F.004Z-.5\nX.55\nG94F300X.6Z.1\nT2(END MILL)\nX-.6Z-.4\nM05\nM15\nM19\nX-.4\n"
+    "X-.6\nZ1\nM16\nM30\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("program", "red"), [(MILLED, True), (MILLED.replace("X-.4\n", "F4X-.4\nF300"), False)]
+)
+def test_what_a_live_tool_hits_at_a_rapid_is_red_in_space(
+    player: PartPlayer, program: str, red: bool
+) -> None:
+    player.show(picture(program))
+    player.look_at(SolidLook(SolidView(scale=5.0, centre=-10.0), 200, 150))
+    shown = settled(player).shown
+    assert shown is not None
+    assert shown.image is not None
+    r, g = ((shown.image >> off) & 255 for off in (16, 8))
+    assert bool(((r > 90) & (r > 2.5 * g)).sum() > 50) is red

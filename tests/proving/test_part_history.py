@@ -332,3 +332,12 @@ def test_what_runs_into_the_chuck_is_red_in_the_chuck_and_not_in_the_part() -> N
     assert hit.z.min() < -12.0
     assert hit.high[-1] == pytest.approx(20.0, abs=0.01)  # of the jaws
     assert set(hits) == {"into-chuck"}
+
+
+def test_c_is_told_along_a_block_that_turns_the_part() -> None:
+    """From C0 to C90 with C locked: half way it is 45, and it stays at 90 behind it."""
+    seen = history(MILLED.replace("Z-.8\nX.6\n", "C90\nX.6\n"), MILL)
+    turning = next(k for k, step in enumerate(seen.steps) if part_history._line(step) == 16)
+    assert seen.at(turning).c == pytest.approx(0.0)
+    assert seen.at(turning, 0.5).c == pytest.approx(45.0)
+    assert seen.at(turning + 2).c == pytest.approx(90.0)
