@@ -10,7 +10,7 @@ from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.omniturn import omniturn_program
 from core.interpreter.omniturn.omniturn_interpreter import LONG
-from core.interpreter.omniturn.omniturn_statement import statement
+from core.interpreter.omniturn.omniturn_statement import statement_of
 from core.interpreter.omniturn.plain_moves import read_lines, read_move
 from core.language.omniturn import lex_line
 from core.language.source import Source
@@ -70,7 +70,7 @@ def test_what_is_wrong_with_the_text_is_told_by_every_pass() -> None:
 def test_what_a_pass_notes_of_a_line_is_its_own() -> None:
     steps = read_lines(["X1Z0", "X1Z-1", "X1Z-2"], lambda _, text: read_move(text), in_order=False)
     own = steps.copy()
-    own[1] = statement(lex_line(2, "X1Z-1"))
+    own[1] = statement_of(lex_line(2, "X1Z-1"))
     assert not isinstance(own[1], tuple)
     assert steps[1] == (1.0, -1.0, None, -1, False)
     assert (own.moves_until(0), steps.moves_until(0)) == (1, 3)

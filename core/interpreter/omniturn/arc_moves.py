@@ -17,59 +17,60 @@ _TOLERANCE = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)
 _SAME = 1e-9  # mm
 
 
-def arc_move(state: State, made: Statement) -> Block:
+def arc_move(state: State, statement: Statement) -> Block:
     """The arc of a line. Raises ProgramError where its words give no arc."""
-    x, z = on_step(state, made, "X"), on_step(state, made, "Z")
+    x, z = on_step(state, statement, "X"), on_step(state, statement, "Z")
     start, programmed = (state.x, state.z), (state.px, state.pz)
     go(state, x, z)  # before any refusal, so that the lines after it are judged from the right point
-    check_tool(state, made.line, x, z)
-    check_when(state, made, made.entry)
-    check_together(made, made.entry)
-    clockwise = made.one_shot == 2
-    if "R" in made.words:
-        centre = _centre_by_radius(state, made, start, clockwise=clockwise)
+    check_tool(state, statement.line, x, z)
+    check_when(state, statement, statement.entry)
+    check_together(statement, statement.entry)
+    clockwise = statement.one_shot == 2
+    if "R" in statement.words:
+        centre = _centre_by_radius(state, statement, start, clockwise=clockwise)
     else:
-        centre = _centre_by_words(state, made, programmed)
-        _check_radii(state, made, dist(start, centre), dist((state.x, state.z), centre))
+        centre = _centre_by_words(state, statement, programmed)
+        _check_radii(state, statement, dist(start, centre), dist((state.x, state.z), centre))
     length = arc_length(start, (state.x, state.z), centre, clockwise=clockwise)
-    check_move(state, made.line, start[0], state.x, length)
-    warn_of_title_rapid(state, made.line)
+    check_move(state, statement.line, start[0], state.x, length)
+    warn_of_title_rapid(state, statement.line)
     return state.move(
-        Kind.ARC, made.line, made.part("move"), (*start, state.c), state.feed, per_rev=state.per_rev,
-        rpm=state.rpm_at(state.x), css=state.modal.css_speed, centre=centre, clockwise=clockwise,
+        Kind.ARC, statement.line, statement.part("move"), (*start, state.c), state.feed,
+        per_rev=state.per_rev, rpm=state.rpm_at(state.x), css=state.modal.css_speed,
+        centre=centre, clockwise=clockwise,
     )  # fmt: skip
 
 
-def _centre_by_radius(state: State, made: Statement, start: Point, *, clockwise: bool) -> Point:
-    radius = checked(state, made, "R", on_step(state, made, "R")) or 0.0
+def _centre_by_radius(state: State, statement: Statement, start: Point, *, clockwise: bool) -> Point:
+    radius = checked(state, statement, "R", on_step(state, statement, "R")) or 0.0
     chord = dist(start, (state.x, state.z))
     if chord <= _SAME:
         text = "The arc by R ends where it starts."
-        raise made.refuse("R", "arc-no-chord", text, "A full circle takes I and K.")
+        raise statement.refuse("R", "arc-no-chord", text, "A full circle takes I and K.")
     if chord > 2 * radius + _TOLERANCE:
         shown, half = state.modal.length_text(radius), state.modal.length_text(chord / 2)
         text = f"R is {shown}, and the ends are so far apart that it takes {half} at least."
-        raise made.refuse("R", "arc-radius", text, "Correct R or the end point.")
+        raise statement.refuse("R", "arc-radius", text, "Correct R or the end point.")
     return centre_from_radius(start, (state.x, state.z), radius, clockwise=clockwise)
 
 
-def _centre_by_words(state: State, made: Statement, start: Point) -> Point:
+def _centre_by_words(state: State, statement: Statement, start: Point) -> Point:
     """Centre by I and K: coordinates under G90 G73, else distances from the start of the arc."""
-    i, k = on_step(state, made, "I"), on_step(state, made, "K")
+    i, k = on_step(state, statement, "I"), on_step(state, statement, "K")
     if state.modal.diameter or not state.absolute:
         return start[0] + (i or 0.0) + state.dx, start[1] + (k or 0.0) + state.dz
     if i is None or k is None:
         letter = "I" if i is None else "K"
         given = "K" if i is None else "I"
         text = f"{letter} is missing: under G90 and G73, I and K are the centre's coordinates."
-        raise made.refuse(given, "arc-coordinate-missing", text, f"Add {letter}.")
+        raise statement.refuse(given, "arc-coordinate-missing", text, f"Add {letter}.")
     return i + state.dx, k + state.dz
 
 
-def _check_radii(state: State, made: Statement, first: float, last: float) -> None:
+def _check_radii(state: State, statement: Statement, first: float, last: float) -> None:
     if first <= _SAME:
         text = "The centre of the arc is its start point."
-        raise made.refuse("", "arc-no-radius", text, "Correct I and K.")
+        raise statement.refuse("", "arc-no-radius", text, "Correct I and K.")
     if abs(first - last) <= _TOLERANCE:
         return
     text = (
@@ -80,4 +81,4 @@ def _check_radii(state: State, made: Statement, first: float, last: float) -> No
         hint = "I and K are distances from the start here."
     else:
         hint = "I and K are the centre's coordinates here."
-    raise made.refuse("", "arc-radius", text, hint)
+    raise statement.refuse("", "arc-radius", text, hint)

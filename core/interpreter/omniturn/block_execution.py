@@ -27,7 +27,7 @@ _ARC = Acts.ARC  # asked of every line
 
 def execute(
     state: State,
-    made: Statement,
+    statement: Statement,
     use: ToolUse,
     ahead: Ahead,
     *,
@@ -39,61 +39,61 @@ def execute(
     ``ahead``: the next few lines; ``contour``: those that describe the contour of G75 or G78.
     Raises ProgramError at the first word that cannot be executed.
     """
-    if made.simple:
-        feed_words(state, made, first=first)
-        warn_of_crash_feed(state, made, ahead)
-        yield from _motion(state, made)
+    if statement.simple:
+        feed_words(state, statement, first=first)
+        warn_of_crash_feed(state, statement, ahead)
+        yield from _motion(state, statement)
         return
-    if coarse_line(state, made, ahead):
+    if coarse_line(state, statement, ahead):
         return
-    geometry_modes(state, made)
-    if made.comment is not None:
-        state.adopt(state.modal._replace(comment=made.comment))
-    feed_words(state, made, first=first)
-    spindle_modes(state, made)
-    of_c = positions(state, made)
+    geometry_modes(state, statement)
+    if statement.comment is not None:
+        state.adopt(state.modal._replace(comment=statement.comment))
+    feed_words(state, statement, first=first)
+    spindle_modes(state, statement)
+    of_c = positions(state, statement)
     if not of_c:
-        speed_word(state, made)
-    tool = made.words.get("T")
+        speed_word(state, statement)
+    tool = statement.words.get("T")
     if tool is not None:
-        yield tool_change(state, made, tool, use)
+        yield tool_change(state, statement, tool, use)
     else:
-        secondary(state, made)
-    if made.entry.acts is Acts.FRAME:
-        yield from carry_out(made.entry)(state, made)
+        secondary(state, statement)
+    if statement.entry.acts is Acts.FRAME:
+        yield from carry_out(statement.entry)(state, statement)
     if not of_c:
-        yield from run_block(state, made)
-    warn_of_crash_feed(state, made, ahead)
-    yield from _start(state, made)
-    yield from _motion(state, made, contour)
-    if made.m is not None:
-        yield from after_motion(state, made)
+        yield from run_block(state, statement)
+    warn_of_crash_feed(state, statement, ahead)
+    yield from _start(state, statement)
+    yield from _motion(state, statement, contour)
+    if statement.m is not None:
+        yield from after_motion(state, statement)
 
 
-def _start(state: State, made: Statement) -> Iterator[Block]:
+def _start(state: State, statement: Statement) -> Iterator[Block]:
     """What an M code does before the motion, M03 and M04 apart."""
-    if made.locks:
-        yield from lock(state, made)
-    elif made.m is not None:
-        yield from before_motion(state, made)
+    if statement.locks:
+        yield from lock(state, statement)
+    elif statement.m is not None:
+        yield from before_motion(state, statement)
 
 
-def _motion(state: State, made: Statement, contour: Sequence[Statement] = ()) -> Iterator[Block]:
-    acts = made.entry.acts
+def _motion(state: State, statement: Statement, contour: Sequence[Statement] = ()) -> Iterator[Block]:
+    acts = statement.entry.acts
     if acts is _ARC:
-        yield arc_move(state, made)
+        yield arc_move(state, statement)
     elif acts is Acts.MOTION:
-        yield from carry_out(made.entry)(state, made)
+        yield from carry_out(statement.entry)(state, statement)
     elif acts is Acts.CYCLE or acts is Acts.CONTOUR:
-        check_ready(state, made)
+        check_ready(state, statement)
         described = (contour,) if acts is Acts.CONTOUR else ()
-        yield from blocks_of_moves(state, made, carry_out(made.entry)(state, made, *described))
-    elif made.turns and (state.modal.c_locked or not made.moves or "C" not in made.words):
-        refuse_radius(state, made)
-        yield from c_move(state, made)
-    elif made.moves:
-        block = statement_move(state, made)
-        read_corner(state, made)
+        yield from blocks_of_moves(state, statement, carry_out(statement.entry)(state, statement, *described))
+    elif statement.turns and (state.modal.c_locked or not statement.moves or "C" not in statement.words):
+        refuse_radius(state, statement)
+        yield from c_move(state, statement)
+    elif statement.moves:
+        block = statement_move(state, statement)
+        read_corner(state, statement)
         yield block
-    elif made.one_shot is None:
-        refuse_radius(state, made)
+    elif statement.one_shot is None:
+        refuse_radius(state, statement)

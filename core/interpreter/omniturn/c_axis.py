@@ -22,82 +22,84 @@ _TURN = 360.0
 _SAME = 1e-9  # degrees, mm
 
 
-def positions(state: State, made: Statement) -> bool:
+def positions(state: State, statement: Statement) -> bool:
     """Whether S on this line is the speed of C and not of the spindle."""
-    return made.locks or (made.turns and state.modal.c_locked)
+    return statement.locks or (statement.turns and state.modal.c_locked)
 
 
-def lock(state: State, made: Statement) -> Iterator[Block]:
+def lock(state: State, statement: Statement) -> Iterator[Block]:
     """M19, M89, G89: stop and lock; M19 then turns to 0 and counts from there."""
-    word = made.m_word if made.m in {19, 89} else made.code
-    code = made.m_code if made.m_code is not None and made.m in {19, 89} else made.entry
-    check_when(state, made, code, word=word)
-    if made.one_shot == 89:
-        check_when(state, made, made.entry, word=word)
-    rpm = speed_of_c(state, made, code)
+    word = statement.m_word if statement.m in {19, 89} else statement.code
+    code = statement.m_code if statement.m_code is not None and statement.m in {19, 89} else statement.entry
+    check_when(state, statement, code, word=word)
+    if statement.one_shot == 89:
+        check_when(state, statement, statement.entry, word=word)
+    rpm = speed_of_c(state, statement, code)
     modal = state.modal
     state.adopt(modal._replace(spindle=0, c_locked=True, c_rpm=rpm))
-    yield state.action(made.line, made.part("m"), SpindleLock(orient=made.m == 19))
-    if made.m == 19:
-        yield from _to_zero(state, made)
+    yield state.action(statement.line, statement.part("m"), SpindleLock(orient=statement.m == 19))
+    if statement.m == 19:
+        yield from _to_zero(state, statement)
 
 
-def _entry(state: State, made: Statement) -> Code:
+def _entry(state: State, statement: Statement) -> Code:
     """Of the word that turns C; C alone counts like CA under G90 and like CI under G91."""
-    return LETTERS["CI" if "CI" in made.words or ("C" in made.words and not state.absolute) else "CA"]
+    return LETTERS[
+        "CI" if "CI" in statement.words or ("C" in statement.words and not state.absolute) else "CA"
+    ]
 
 
-def speed_of_c(state: State, made: Statement, code: Code) -> float | None:
+def speed_of_c(state: State, statement: Statement, code: Code) -> float | None:
     """S of the line in rpm, unsigned; None without S. Raises ProgramError beyond what C can do."""
-    speed = made.value("S")
-    return None if speed is None else checked(state, made, "S", abs(speed), code)
+    speed = statement.value("S")
+    return None if speed is None else checked(state, statement, "S", abs(speed), code)
 
 
-def _to_zero(state: State, made: Statement) -> Iterator[Block]:
+def _to_zero(state: State, statement: Statement) -> Iterator[Block]:
     """Turn to 0 by the sign of S, without S by the short way. C then counts from 0 again."""
     at = state.c + state.modal.offset_c
     over = at % _TURN
     if min(over, _TURN - over) <= _SAME:
         over = 0.0
-    sign = made.value("S") or 0.0
+    sign = statement.value("S") or 0.0
     back = sign < 0.0 or (sign == 0.0 and over < _TURN / 2)
     whole = at - over + (0.0 if back or over == 0.0 else _TURN)
     offset = round(whole / _TURN) * _TURN
     state.adopt(state.modal._replace(offset_c=offset))
     state.c = at - offset
     if over:
-        yield rotation(state, made.line, made.part("m"), 0.0)
+        yield rotation(state, statement.line, statement.part("m"), 0.0)
     state.c = 0.0
 
 
-def c_move(state: State, made: Statement) -> Iterator[Block]:
+def c_move(state: State, statement: Statement) -> Iterator[Block]:
     """A line with C: alone it turns C, with X or Z it is one move of all of them."""
-    word = _c_word(state, made)
+    word = _c_word(state, statement)
     warn_of_short_dwell(state)
     c0, x0, z0 = state.c, state.x, state.z
-    goal = _goal(state, made, word)
-    if made.moves:
-        x, z = on_step(state, made, "X"), on_step(state, made, "Z")
+    goal = _goal(state, statement, word)
+    if statement.moves:
+        x, z = on_step(state, statement, "X"), on_step(state, statement, "Z")
         go(state, x, z)
-        check_tool(state, made.line, x, z)
-    rpm = speed_of_c(state, made, _entry(state, made))
+        check_tool(state, statement.line, x, z)
+    rpm = speed_of_c(state, statement, _entry(state, statement))
     if rpm is not None:
         state.adopt(state.modal._replace(c_rpm=rpm))
     way = hypot(state.x - x0, state.z - z0)
     if way <= _SAME:
-        yield rotation(state, made.line, made.part("move"), goal)
-        expect_arrival(state, made.line, word.column, abs(goal - c0))
+        yield rotation(state, statement.line, statement.part("move"), goal)
+        expect_arrival(state, statement.line, word.column, abs(goal - c0))
         return
     state.c = goal
     if state.per_rev and state.modal.feed is not None:
-        _check_turns(state, made, word, way, abs(goal - c0))
+        _check_turns(state, statement, word, way, abs(goal - c0))
         rpm = copysign(state.modal.c_rpm or 0.0, goal - c0)
     else:
-        check_move(state, made.line, x0, state.x, way)
+        check_move(state, statement.line, x0, state.x, way)
         rpm = 0.0
-    warn_of_title_rapid(state, made.line)
-    start, text = (x0, z0, c0), made.part("move")
-    yield state.move(state.kind, made.line, text, start, state.feed, per_rev=state.per_rev, rpm=rpm)
+    warn_of_title_rapid(state, statement.line)
+    start, text = (x0, z0, c0), statement.part("move")
+    yield state.move(state.kind, statement.line, text, start, state.feed, per_rev=state.per_rev, rpm=rpm)
 
 
 def rotation(state: State, line: int, text: str, goal: float) -> Block:
@@ -108,43 +110,43 @@ def rotation(state: State, line: int, text: str, goal: float) -> Block:
     return state.move(Kind.ROTATE, line, text, start, rpm * 6.0, rpm=copysign(rpm, goal - c0))
 
 
-def _c_word(state: State, made: Statement) -> Word:
-    code = _entry(state, made)
-    check_together(made, code)
-    word = next(made.words[letter] for letter in C_WORDS if letter in made.words)
-    check_when(state, made, code, word=word)
+def _c_word(state: State, statement: Statement) -> Word:
+    code = _entry(state, statement)
+    check_together(statement, code)
+    word = next(statement.words[letter] for letter in C_WORDS if letter in statement.words)
+    check_when(state, statement, code, word=word)
     if word.letter == "C":
-        number(state, made, "C", code)
+        number(state, statement, "C", code)
     return word
 
 
-def _goal(state: State, made: Statement, word: Word) -> float:
+def _goal(state: State, statement: Statement, word: Word) -> float:
     """Where C shall stand, degrees, on its step."""
     step, value = state.setup.limits.c_step, word.value or 0.0
     count = round(value / step)
     if abs(value / step - count) > 1e-6:
         text = f"{word.text} is finer than the step of {step:g} degrees; {count * step:g} is used."
-        state.log.warn(made.line, word.column, "finer-than-step", text, "Round the number.")
+        state.log.warn(statement.line, word.column, "finer-than-step", text, "Round the number.")
         value = count * step
     absolute = word.letter == "CA" or (word.letter == "C" and state.absolute)
     return value if absolute else state.c + value
 
 
-def _check_turns(state: State, made: Statement, word: Word, way: float, turn: float) -> None:
+def _check_turns(state: State, statement: Statement, word: Word, way: float, turn: float) -> None:
     """A slide fed by the turns of C: C must turn far enough, at a speed that somebody has given."""
     modal, limits = state.modal, state.setup.limits
     feed = modal.feed or 0.0
     if modal.c_rpm is None:
         text = "The slide is fed by the turns of C, and no S has said how fast it turns."
-        raise made.refuse(word, "speed-missing", text, "Write S on the line.")
+        raise statement.refuse(word, "speed-missing", text, "Write S on the line.")
     needed = way / feed * _TURN
     if turn < needed * (1.0 - 1e-9):
         text = f"C turns {turn:g} degrees; the way of the slide at this feed needs {round(needed, 4):g}."
         hint = "Turn C further, or raise F: the slide would stop on its way."
-        raise made.refuse(word, "c-too-little", text, hint)
+        raise statement.refuse(word, "c-too-little", text, hint)
     speed = feed * modal.c_rpm / 60.0
     if speed > limits.max_feed * (1.0 + 1e-9):
         shown = modal.feed_text(speed, per_rev=False)
         most = modal.feed_text(limits.max_feed, per_rev=False)
         text = f"At {modal.c_rpm:g} rpm of C this feed is {shown}; {most} is the most."
-        raise made.refuse(0, "feed-over-speed", text, "Lower F or S.")
+        raise statement.refuse(0, "feed-over-speed", text, "Lower F or S.")

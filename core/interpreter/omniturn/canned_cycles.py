@@ -33,29 +33,29 @@ class Move(NamedTuple):
     clockwise: bool = False
 
 
-def name(made: Statement) -> str:
+def name(statement: Statement) -> str:
     """The cycle's code as messages call it."""
-    return f"G{made.one_shot}"
+    return f"G{statement.one_shot}"
 
 
-def check_ready(state: State, made: Statement) -> None:
+def check_ready(state: State, statement: Statement) -> None:
     """Refuse a cycle where its start point or its feed is not known, or nose compensation is active."""
-    check_when(state, made, made.entry)
+    check_when(state, statement, statement.entry)
 
 
-def length(state: State, made: Statement, letter: str) -> float:
+def length(state: State, statement: Statement, letter: str) -> float:
     """A length word, mm; 0 without it. Raises ProgramError where its rule in the table refuses it."""
-    return checked(state, made, letter, on_step(state, made, letter)) or 0.0
+    return checked(state, statement, letter, on_step(state, statement, letter)) or 0.0
 
 
-def check_count(made: Statement, letter: str, count: int, what: str) -> None:
+def check_count(statement: Statement, letter: str, count: int, what: str) -> None:
     """Refuse a cycle of more passes than anyone means."""
     if count > MOST_PASSES:
-        text = f"{name(made)} would make {count:,} {what}; {MOST_PASSES:,} are the most."
-        raise made.refuse(letter, "cycle-passes", text, f"Look for a lost decimal point in {letter}.")
+        text = f"{name(statement)} would make {count:,} {what}; {MOST_PASSES:,} are the most."
+        raise statement.refuse(letter, "cycle-passes", text, f"Look for a lost decimal point in {letter}.")
 
 
-def blocks_of_moves(state: State, made: Statement, moves: Sequence[Move]) -> Iterator[Block]:
+def blocks_of_moves(state: State, statement: Statement, moves: Sequence[Move]) -> Iterator[Block]:
     """The motions as blocks. All are checked before the first comes; none of them has a length of 0.
 
     Raises ProgramError where the feed cannot be: none, or per revolution of a spindle that stands.
@@ -67,10 +67,10 @@ def blocks_of_moves(state: State, made: Statement, moves: Sequence[Move]) -> Ite
             continue
         kept.append(move)
         if move.rapid is None:
-            check_move(state, made.line, at[0], move.x, _length(at, move))
+            check_move(state, statement.line, at[0], move.x, _length(at, move))
         at = move.x, move.z
     for move in kept:
-        yield _block(state, made, move)
+        yield _block(state, statement, move)
 
 
 def _length(start: Point, move: Move) -> float:
@@ -79,13 +79,13 @@ def _length(start: Point, move: Move) -> float:
     return arc_length(start, (move.x, move.z), move.centre, clockwise=move.clockwise)
 
 
-def _block(state: State, made: Statement, move: Move) -> Block:
+def _block(state: State, statement: Statement, move: Move) -> Block:
     kind = Kind.RAPID if move.rapid is not None else Kind.FEED if move.centre is None else Kind.ARC
     start, text = (state.x, state.z, state.c), _text(state, move)
     state.x, state.z = move.x, move.z
     state.px, state.pz = state.x - state.dx, state.z - state.dz
     return state.move(
-        kind, made.line, text, start, state.feed if move.rapid is None else move.rapid,
+        kind, statement.line, text, start, state.feed if move.rapid is None else move.rapid,
         per_rev=move.rapid is None and state.per_rev, rpm=state.rpm_at(move.x), css=state.modal.css_speed,
         centre=move.centre or (0.0, 0.0), clockwise=move.clockwise,
     )  # fmt: skip

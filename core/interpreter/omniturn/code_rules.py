@@ -19,7 +19,7 @@ _ROUNDING = 1 + 1e-9
 
 
 def refused(
-    made: Statement, code: Code, refusal: Refusal, at: Word | None = None, **told: object
+    statement: Statement, code: Code, refusal: Refusal, at: Word | None = None, **told: object
 ) -> ProgramError:
     """The error that an entry states, to be raised; ``told``: what its sentence has in braces besides."""
     told = {
@@ -30,7 +30,7 @@ def refused(
         "letter": "" if at is None else at.letter,
         **told,
     }
-    return made.refuse(
+    return statement.refuse(
         refusal.at if at is None else at,
         refusal.code,
         refusal.text.format(**told),
@@ -38,21 +38,21 @@ def refused(
     )
 
 
-def number(state: State, made: Statement, letter: str, code: Code | None = None) -> float | None:
+def number(state: State, statement: Statement, letter: str, code: Code | None = None) -> float | None:
     """The number of a word as written, by the rule of the line's code; None without the word.
 
     Raises ProgramError where the rule refuses it.
     """
-    code = code or made.entry
-    rule, word = code.rules[letter], made.words.get(letter)
+    code = code or statement.entry
+    rule, word = code.rules[letter], statement.words.get(letter)
     if word is not None and word.value is None and rule.bare is not None:
         return rule.bare
-    return checked(state, made, letter, None if word is None else word.value, code)
+    return checked(state, statement, letter, None if word is None else word.value, code)
 
 
 def checked(
     state: State,
-    made: Statement,
+    statement: Statement,
     letter: str,
     value: float | None,
     code: Code | None = None,
@@ -63,8 +63,8 @@ def checked(
 
     ``more``: the remedy where the number is too great, if it is another than in the entry.
     """
-    code = code or made.entry
-    rule, word = code.rules[letter], made.words.get(letter)
+    code = code or statement.entry
+    rule, word = code.rules[letter], statement.words.get(letter)
     refusal = _wrong(state, rule, word, value)
     if refusal is None:
         return value
@@ -75,7 +75,7 @@ def checked(
         refusal = refusal._replace(at=letter)
     most = shown(state, rule.most) if isinstance(rule.most, Limit) else ""
     told = {"letter": letter, "what": rule.what, "value": f"{value or 0.0:g}", "most": most}
-    raise refused(made, code, refusal, at, **{"word": word.text if word else "", **told})
+    raise refused(statement, code, refusal, at, **{"word": word.text if word else "", **told})
 
 
 def _wrong(state: State, rule: WordRule, word: Word | None, value: float | None) -> Refusal | None:
@@ -117,36 +117,36 @@ _LIMITS: dict[Limit, Callable[[State], float]] = {
 }
 
 
-def check_together(made: Statement, code: Code) -> None:
+def check_together(statement: Statement, code: Code) -> None:
     """Refuse a line without any of the words that the code needs, or with two that exclude each other."""
-    if code.one_of is not None and made.words.keys().isdisjoint(code.one_of.letters):
-        raise refused(made, code, code.one_of.refusal)
+    if code.one_of is not None and statement.words.keys().isdisjoint(code.one_of.letters):
+        raise refused(statement, code, code.one_of.refusal)
     for letters, refusal in code.apart:
-        found = [made.words[letter] for letter in letters if letter in made.words]
+        found = [statement.words[letter] for letter in letters if letter in statement.words]
         if len(found) > 1:
-            raise refused(made, code, refusal, found[1], first=found[0].text)
+            raise refused(statement, code, refusal, found[1], first=found[0].text)
 
 
-def check_when(state: State, made: Statement, code: Code, *only: When, word: Word | None = None) -> None:
+def check_when(state: State, statement: Statement, code: Code, *only: When, word: Word | None = None) -> None:
     """Refuse a code in a state in which its entry says it may not come; ``only``: look at these alone.
 
     ``word``: the one to blame, where it is not the code itself. Raises ProgramError at the first that holds.
     """
     for when, refusal in code.not_when.items():
-        if (not only or when in only) and _IS[when](state, made, code):
+        if (not only or when in only) and _IS[when](state, statement, code):
             line = state.tool_line
             if when is When.TOOL_NOT_MOVED:
                 state.tool_line = 0  # told
-            raise refused(made, code, refusal, word, line=line, on=state.modal.nose_comp)
+            raise refused(statement, code, refusal, word, line=line, on=state.modal.nose_comp)
 
 
-def _with_others(_state: State, made: Statement, code: Code) -> bool:
-    others = made.words.keys() - code.words or made.one_shot is not None or made.m is not None
-    return bool(others) or len(made.modal) > 1
+def _with_others(_state: State, statement: Statement, code: Code) -> bool:
+    others = statement.words.keys() - code.words or statement.one_shot is not None or statement.m is not None
+    return bool(others) or len(statement.modal) > 1
 
 
-def _no_feed(state: State, made: Statement, _code: Code) -> bool:
-    return "F" not in made.words and (not state.cut or state.modal.feed is None)
+def _no_feed(state: State, statement: Statement, _code: Code) -> bool:
+    return "F" not in statement.words and (not state.cut or state.modal.feed is None)
 
 
 def _no_speed(state: State, _made: Statement, _code: Code) -> bool:
@@ -163,10 +163,10 @@ def _collet_open(state: State, _made: Statement, _code: Code) -> bool:
 
 _IS: dict[When, Callable[[State, Statement, Code], bool]] = {
     When.WITH_OTHERS: _with_others,
-    When.WITH_FEED: lambda _, made, _code: (
-        (made.f_is_feed and "F" in made.words) or 94 in made.modal or 95 in made.modal
+    When.WITH_FEED: lambda _, statement, _code: (
+        (statement.f_is_feed and "F" in statement.words) or 94 in statement.modal or 95 in statement.modal
     ),
-    When.WITH_M: lambda _, made, _code: made.m is not None,
+    When.WITH_M: lambda _, statement, _code: statement.m is not None,
     When.NOSE_COMPENSATION: lambda state, _, _code: state.modal.nose_comp != 40,
     When.COARSE: lambda state, _, _code: bool(state.modal.coarse),
     When.NOT_COARSE: lambda state, _, _code: not state.modal.coarse,

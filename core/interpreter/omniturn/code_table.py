@@ -499,9 +499,9 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
         _m_code("M31", "M31", "Cancels Cycle Repeat.", "M31",
             acts=Acts.STOP, handler="m_codes.repeat_off"),
         _letter("/", "/", "First on a line: skipped while Block Delete is on.", "/X.55",
-            handler="omniturn_statement.statement"),
+            handler="omniturn_statement.statement_of"),
         _letter("()", "(text)", "Comment, shown to the operator from its line on.", "X.55(WATCH THE CHUCK)",
-            handler="omniturn_statement.statement"),
+            handler="omniturn_statement.statement_of"),
     )),
     ("The machine", (
         _m_code("M08", "M08", "Coolant on.", "M08", acts=Acts.START, handler="m_codes.coolant"),

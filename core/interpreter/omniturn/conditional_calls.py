@@ -25,7 +25,7 @@ class Guide(Protocol):
         """Whether another pass has been in this state: all that comes has been gone through then."""
         ...
 
-    def asked(self, way: Branching, made: Statement, takes: bool) -> None:
+    def asked(self, way: Branching, statement: Statement, takes: bool) -> None:
         """The way is about to ask an input, and will go on as ``takes`` says."""
         ...
 
@@ -72,7 +72,7 @@ class Branching(Interpreter):
             self._stopped,
         )
 
-    def other(self, made: Statement, takes: bool) -> Branching:
+    def other(self, statement: Statement, takes: bool) -> Branching:
         """The same state at a line that asks an input, to go on the other way with findings of its own."""
         twin = copy(self)
         twin._log = Log()
@@ -81,45 +81,49 @@ class Branching(Interpreter):
         state.reported, state.pending_shift = set(state.reported), dict(state.pending_shift)
         twin._modifier, twin._tools = ContourModifier(state), ToolUse()
         twin._flow = self._flow.twin()
-        twin._flow.at = made.line - 1
+        twin._flow.at = statement.line - 1
         twin._held = dict(self._held)
         twin._ahead = None
         twin._approached, twin._fresh, twin._choice = True, True, not takes
-        twin.unlikely = self.unlikely or self._answer(made) is not None
+        twin.unlikely = self.unlikely or self._answer(statement) is not None
         return twin
 
-    def _answer(self, made: Statement) -> bool | None:
+    def _answer(self, statement: Statement) -> bool | None:
         """What the input has just been found to be, as far as the call goes; None: it was not asked."""
         if self._held_to != self._state.blocks:
             self._held = {}
-        return self._held.get(terminal(made))
+        return self._held.get(terminal(statement))
 
-    def _statement(self, made: Statement) -> Iterator[Block]:
+    def _statement(self, statement: Statement) -> Iterator[Block]:
         if not self._state.contour.active:
-            self._flow.at = made.line - 1
+            self._flow.at = statement.line - 1
             if self._fresh:
                 self._fresh = False
             elif self._guide.known(self):
                 self.merged = True
                 self._flow.stop()
                 return
-            elif made.asks and not self._left_out(made):
-                self._choose(made)
-            self._flow.at = made.line
-        yield from super()._statement(made)
+            elif statement.asks and not self._left_out(statement):
+                self._choose(statement)
+            self._flow.at = statement.line
+        yield from super()._statement(statement)
 
-    def _left_out(self, made: Statement) -> bool:
-        return made.block_delete and self._state.setup.block_delete
+    def _left_out(self, statement: Statement) -> bool:
+        return statement.block_delete and self._state.setup.block_delete
 
-    def _choose(self, made: Statement) -> None:
-        answer = self._answer(made)
-        takes = takes_call(made, self._state.setup.inputs) if answer is None else answer == called_when(made)
+    def _choose(self, statement: Statement) -> None:
+        answer = self._answer(statement)
+        takes = (
+            takes_call(statement, self._state.setup.inputs)
+            if answer is None
+            else answer == called_when(statement)
+        )
         self._choice = takes
-        self._guide.asked(self, made, takes)
+        self._guide.asked(self, statement, takes)
 
-    def _takes(self, made: Statement) -> bool:
+    def _takes(self, statement: Statement) -> bool:
         takes, self._choice = bool(self._choice), None
-        self._held[terminal(made)] = takes == called_when(made)
+        self._held[terminal(statement)] = takes == called_when(statement)
         self._held_to = self._state.blocks
         return takes
 

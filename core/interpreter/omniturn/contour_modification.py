@@ -43,11 +43,11 @@ class ContourModifier:
             self._nose.radius = nose_radius(state)
         yield from self._put(block, corner)
 
-    def check(self, made: Statement) -> None:
+    def check(self, statement: Statement) -> None:
         """Refuse a line that may not follow the moves that are held back. Raises ProgramError."""
         if self._state.contour.active:
-            self._corners.check(made)
-            check_under_nose(self._state, made)
+            self._corners.check(statement)
+            check_under_nose(self._state, statement)
 
     def switch(self, switch: CompensationSwitch) -> Iterator[Block]:
         """G41, G42 or G40; yields the blocks that no later line can change. Raises ProgramError."""

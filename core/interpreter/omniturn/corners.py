@@ -33,33 +33,33 @@ _PARTS = ProgramEnd | ToolChange | Preset | AskInput
 point, or all motion before it must have ended."""
 
 
-def read_corner(state: State, made: Statement) -> None:
+def read_corner(state: State, statement: Statement) -> None:
     """Note the corner of a line whose straight move has been made. Raises ProgramError for a bad size.
 
     A C word is a corner unless C is an axis at the moment.
     """
-    chamfers = None if state.modal.c_locked else made.words.get("C")
-    word = made.words.get("R") or chamfers
+    chamfers = None if state.modal.c_locked else statement.words.get("C")
+    word = statement.words.get("R") or chamfers
     if word is None:
         return
     if chamfers is not None:
-        check_together(made, LETTERS["C"])
-    size = corner_size(state, made, word)
+        check_together(statement, LETTERS["C"])
+    size = corner_size(state, statement, word)
     state.contour.corner = Corner(word.letter, size, word.column)
     state.contour.active, state.fast = True, False
 
 
-def corner_size(state: State, made: Statement, word: Word) -> float:
+def corner_size(state: State, statement: Statement, word: Word) -> float:
     """The size that a C or R word gives a corner, mm. Raises ProgramError where it is none."""
-    size = on_step(state, made, word.letter)
-    return checked(state, made, word.letter, size or 0.0, LETTERS[word.letter]) or 0.0
+    size = on_step(state, statement, word.letter)
+    return checked(state, statement, word.letter, size or 0.0, LETTERS[word.letter]) or 0.0
 
 
-def refuse_radius(state: State, made: Statement) -> None:
+def refuse_radius(state: State, statement: Statement) -> None:
     """Raises ProgramError for R on a line without a straight move of X and Z alone."""
-    word = made.words.get("R")
+    word = statement.words.get("R")
     if word is not None:
-        check_when(state, made, LETTERS["R"], word=word)
+        check_when(state, statement, LETTERS["R"], word=word)
 
 
 @dataclass(slots=True)
@@ -110,12 +110,12 @@ class Corners:
             self._held = None
             yield from self._cut(held, item, corner)
 
-    def check(self, made: Statement) -> None:
+    def check(self, statement: Statement) -> None:
         """Refuse a line that begins with no plain move while one waits. Raises ProgramError."""
         held = self._held
-        if held is not None and made.one_shot is not None and not made.entry.before_corner:
-            what = made.code.text if made.code is not None else "another motion"
-            raise _refused(held, "corner-next", f"{what} on line {made.line} is no straight move")
+        if held is not None and statement.one_shot is not None and not statement.entry.before_corner:
+            what = statement.code.text if statement.code is not None else "another motion"
+            raise _refused(held, "corner-next", f"{what} on line {statement.line} is no straight move")
 
     def end(self) -> None:
         """No block comes any more. Raises ProgramError where a corner is left."""
@@ -136,8 +136,8 @@ class Corners:
         block, point = held.block, (held.block.x, held.block.z)
         first, last = Line((block.x0, block.z0), point), Line(point, (after.x, after.z))
         try:
-            made = chamfer if held.corner.letter == "C" else rounding
-            cut, between, rest = made(first, last, held.corner.size)
+            make = chamfer if held.corner.letter == "C" else rounding
+            cut, between, rest = make(first, last, held.corner.size)
         except NoCornerError:
             text = f"Lines {block.line} and {after.line} run in one direction: there is no corner to cut."
             self._log.warn(*held.place, "corner-straight", text, "Take C or R out.")

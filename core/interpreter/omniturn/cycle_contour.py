@@ -26,27 +26,27 @@ _TURNS = frozenset({"CA", "CI"})
 _CORNERS = frozenset({"C", "R"})
 
 
-def read_contour(state: State, made: Statement, lines: Sequence[Statement]) -> list[Element]:
-    """The contour from its first point on, in the frame of the cycle's line ``made``; mm.
+def read_contour(state: State, statement: Statement, lines: Sequence[Statement]) -> list[Element]:
+    """The contour from its first point on, in the frame of the cycle's line ``statement``; mm.
 
     The state in force stays as it is. Raises ProgramError for a line that no contour can hold.
     """
-    reader = _Reader(state, made)
+    reader = _Reader(state, statement)
     for each in lines:
         if not (each.block_delete and state.setup.block_delete):
             reader.take(each)
     elements = reader.finish()
     if not elements:
-        text = f"The contour of G{made.one_shot} has no line or arc."
-        raise made.refuse("", "cycle-contour-empty", text, "Write its points.")
+        text = f"The contour of G{statement.one_shot} has no line or arc."
+        raise statement.refuse("", "cycle-contour-empty", text, "Write its points.")
     return elements
 
 
 class _Reader:
     """Goes through the lines on a state of its own, so that what they change ends with the contour."""
 
-    def __init__(self, state: State, made: Statement) -> None:
-        self._state, self._made = state, made
+    def __init__(self, state: State, statement: Statement) -> None:
+        self._state, self._made = state, statement
         self._own = copy.copy(state)
         # A rapid needs no feed and no spindle, which do not count here.
         self._own.adopt(state.modal._replace(rapid=True))

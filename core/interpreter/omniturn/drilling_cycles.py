@@ -15,29 +15,29 @@ _RETRACT_RATE = 200 * units.MM_PER_INCH / 60  # mm/s, without L
 _WHOLE = 1e-6  # of a peck: what a decimal fraction lacks in binary
 
 
-def drill_moves(state: State, made: Statement) -> list[Move]:
+def drill_moves(state: State, statement: Statement) -> list[Move]:
     """G81: feed to Z, rapid back to the start. Raises ProgramError for words that drill nothing."""
-    moves = _position(state, made)
+    moves = _position(state, statement)
     x = moves[-1].x if moves else state.x
-    depth = _depth(state, made)
+    depth = _depth(state, statement)
     return [*moves, Move(x, depth), Move(x, state.z, state.modal.rapid_rate)]
 
 
-def peck_moves(state: State, made: Statement) -> list[Move]:
+def peck_moves(state: State, statement: Statement) -> list[Move]:
     """G83: pecks of K, each followed by a way out to R and back to C before the depth that was reached.
 
     The last peck is what is left. The cycle ends at the start point. Raises ProgramError.
     """
-    moves = _position(state, made)
+    moves = _position(state, statement)
     x = moves[-1].x if moves else state.x
-    start, depth = state.z, _depth(state, made)
-    peck = length(state, made, "K")
+    start, depth = state.z, _depth(state, statement)
+    peck = length(state, statement, "K")
     count = ceil((start - depth) / peck - _WHOLE)
-    check_count(made, "K", count, "pecks")
-    rate, clear = _rate(state, made), LIFT
-    if "C" in made.words:
-        clear = length(state, made, "C")
-    out = _retract(state, made, max(start - peck, depth))
+    check_count(statement, "K", count, "pecks")
+    rate, clear = _rate(state, statement), LIFT
+    if "C" in statement.words:
+        clear = length(state, statement, "C")
+    out = _retract(state, statement, max(start - peck, depth))
     for k in range(1, count + 1):
         reached = depth if k == count else start - k * peck
         moves += [Move(x, reached), Move(x, out, rate)]
@@ -46,41 +46,41 @@ def peck_moves(state: State, made: Statement) -> list[Move]:
     return [*moves, Move(x, start, rate)]
 
 
-def _position(state: State, made: Statement) -> list[Move]:
+def _position(state: State, statement: Statement) -> list[Move]:
     """An X word is a place to go to before the hole."""
-    x = on_step(state, made, "X")
+    x = on_step(state, statement, "X")
     if x is None:
         return []
     return [Move(x + (state.dx if state.absolute else state.x), state.z, state.modal.rapid_rate)]
 
 
-def _depth(state: State, made: Statement) -> float:
-    depth = length(state, made, "Z") + (state.dz if state.absolute else state.z)
+def _depth(state: State, statement: Statement) -> float:
+    depth = length(state, statement, "Z") + (state.dz if state.absolute else state.z)
     if depth >= state.z:
         text = (
             f"The bottom of the hole at {state.modal.length_text(depth)} is not beyond the start point"
             f" at {state.modal.length_text(state.z)}."
         )
-        raise made.refuse("Z", "cycle-depth", text, "Correct Z, or start farther out.")
+        raise statement.refuse("Z", "cycle-depth", text, "Correct Z, or start farther out.")
     return depth
 
 
-def _retract(state: State, made: Statement, first: float) -> float:
+def _retract(state: State, statement: Statement, first: float) -> float:
     """R, the Z to which the drill comes out; the start without the word."""
-    r = on_step(state, made, "R")
+    r = on_step(state, statement, "R")
     if r is None:
         return state.z
     out = r + (state.dz if state.absolute else state.z)
     if out <= first:
-        text = f"{made.words['R'].text} lies in the hole, not before the depth of the first peck."
-        raise made.refuse("R", "cycle-retract", text, "R is where the drill comes out of the hole.")
+        text = f"{statement.words['R'].text} lies in the hole, not before the depth of the first peck."
+        raise statement.refuse("R", "cycle-retract", text, "R is where the drill comes out of the hole.")
     return out
 
 
-def _rate(state: State, made: Statement) -> float:
+def _rate(state: State, statement: Statement) -> float:
     """L, the rate of the ways out and back, mm/s."""
-    value = made.value("L")
+    value = statement.value("L")
     if value is None:
         return min(_RETRACT_RATE, state.setup.limits.max_feed)
     rate = value * units.per_unit(metric=state.modal.metric) / 60
-    return checked(state, made, "L", rate) or 0.0
+    return checked(state, statement, "L", rate) or 0.0

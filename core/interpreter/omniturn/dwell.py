@@ -16,11 +16,11 @@ _SHORTEST = G_CODES[4].rules["F"].least  # s
 _DONE = 1e-9  # s, degrees
 
 
-def dwell(state: State, made: Statement) -> Iterator[Block]:
+def dwell(state: State, statement: Statement) -> Iterator[Block]:
     """The block of G04. Raises ProgramError where F is missing or out of range."""
-    seconds = number(state, made, "F") or 0.0
+    seconds = number(state, statement, "F") or 0.0
     _shorten_arrival(state, seconds)
-    yield state.action(made.line, made.part("move"), Dwell(seconds))
+    yield state.action(statement.line, statement.part("move"), Dwell(seconds))
 
 
 def expect_arrival(state: State, line: int, column: int, turn: float) -> None:

@@ -21,23 +21,23 @@ _TAPPING_LINES = 6  # so soon after the feed the spindle turns back
 _ROUNDING = 1 + 1e-9
 
 
-def feed_words(state: State, made: Statement, *, first: bool) -> None:
+def feed_words(state: State, statement: Statement, *, first: bool) -> None:
     """G94, G95, G00, G01 and F of a line. ``first``: it is the program's first line."""
-    modes = {0, 1, 94, 95}.intersection(made.modal)
-    word = made.words.get("F") if made.f_is_feed else None
+    modes = {0, 1, 94, 95}.intersection(statement.modal)
+    word = statement.words.get("F") if statement.f_is_feed else None
     if not modes and word is None:
         return
     if 0 in modes and not first:
-        check_when(state, made, G_CODES[0])
+        check_when(state, statement, G_CODES[0])
     if modes:
-        _modes(state, made, modes, has_feed=word is not None)
+        _modes(state, statement, modes, has_feed=word is not None)
     if word is not None and word.value is not None:
-        _feed(state, made, word, first=first)
+        _feed(state, statement, word, first=first)
     if 0 in modes:
-        _rapid(state, made)
+        _rapid(state, statement)
 
 
-def _modes(state: State, made: Statement, modes: set[int], *, has_feed: bool) -> None:
+def _modes(state: State, statement: Statement, modes: set[int], *, has_feed: bool) -> None:
     modal = state.modal
     per_rev, feed = modal.per_rev, modal.feed
     if 1 in modes and not modes & {94, 95}:
@@ -45,7 +45,7 @@ def _modes(state: State, made: Statement, modes: set[int], *, has_feed: bool) ->
             per_rev, feed = modal.cut_per_rev, modal.cut_feed
         elif not has_feed:
             state.adopt(state.modal._replace(rapid=False))
-            check_when(state, made, G_CODES[1])
+            check_when(state, statement, G_CODES[1])
     elif modes & {94, 95} and per_rev != (95 in modes):
         per_rev = 95 in modes
         feed = modal.cut_feed if 1 in modes and modal.cut_per_rev == per_rev else None
@@ -56,18 +56,18 @@ def _modes(state: State, made: Statement, modes: set[int], *, has_feed: bool) ->
         state.adopt(state.modal._replace(rapid=False, per_rev=per_rev, feed=feed))
 
 
-def _rapid(state: State, made: Statement) -> None:
+def _rapid(state: State, statement: Statement) -> None:
     modal = state.modal
     if modal.rapid:
-        state.title_rapid = 0 if made.moves else state.title_rapid
+        state.title_rapid = 0 if statement.moves else state.title_rapid
         return
-    titled = made.comment is not None and not made.moves
+    titled = statement.comment is not None and not statement.moves
     cutting = state.cut and modal.feed is not None
-    state.title_rapid = made.line if titled and cutting else 0
+    state.title_rapid = statement.line if titled and cutting else 0
     state.adopt(state.modal._replace(rapid=True))
 
 
-def _feed(state: State, made: Statement, word: Word, *, first: bool) -> None:
+def _feed(state: State, statement: Statement, word: Word, *, first: bool) -> None:
     modal = state.modal
     feed = state.feed_word(word.value or 0.0)
     most = limit(state, Limit.FEED_IN_FORCE)
@@ -84,7 +84,7 @@ def _feed(state: State, made: Statement, word: Word, *, first: bool) -> None:
     elif modal.rapid or not modal.feed == modal.cut_feed == within or modal.cut_per_rev is not modal.per_rev:
         state.adopt(modal._replace(feed=within, rapid=False, cut_feed=within, cut_per_rev=modal.per_rev))
     if not least / _ROUNDING <= feed <= most * _ROUNDING:
-        raise made.refuse(word, *out_of_range(modal, feed, least, most))
+        raise statement.refuse(word, *out_of_range(modal, feed, least, most))
 
 
 def out_of_range(modal: Modal, feed: float, least: float, most: float) -> tuple[str, str, str]:
@@ -97,16 +97,16 @@ def out_of_range(modal: Modal, feed: float, least: float, most: float) -> tuple[
     return refusal.code, refusal.text.format(value=shown, least=low, most=high), hint
 
 
-def warn_of_crash_feed(state: State, made: Statement, ahead: Sequence[ReadyLine]) -> None:
+def warn_of_crash_feed(state: State, statement: Statement, ahead: Sequence[ReadyLine]) -> None:
     """F003 for F.003: warn of a G95 feed over .05 in/rev, unless the spindle turns back soon (tapping)."""
-    modal, word = state.modal, made.words.get("F")
-    if word is None or not made.f_is_feed or not modal.per_rev or modal.coarse or modal.feed is None:
+    modal, word = state.modal, statement.words.get("F")
+    if word is None or not statement.f_is_feed or not modal.per_rev or modal.coarse or modal.feed is None:
         return
     if modal.feed <= HIGH_FEED or _taps(modal.spindle, ahead):
         return
     shown = modal.feed_text(modal.feed, per_rev=True)
     hint = "Look for a lost decimal point."
-    state.log.warn(made.line, word.column, "feed-high", f"Feed {shown} is very high for cutting.", hint)
+    state.log.warn(statement.line, word.column, "feed-high", f"Feed {shown} is very high for cutting.", hint)
 
 
 def _taps(spindle: int, ahead: Sequence[ReadyLine]) -> bool:

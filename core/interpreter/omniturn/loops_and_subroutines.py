@@ -41,81 +41,83 @@ class _Finder:
         self._contour: Statement | None = None  # G75 or G78 whose RF is still to come
         self._contour_lost = False  # it is on a line that cannot be read
 
-    def take(self, made: Statement) -> None:
-        if self._in_contour(made):
+    def take(self, statement: Statement) -> None:
+        if self._in_contour(statement):
             return
-        if made.flow == "}":
-            self._open_subroutine(made)
+        if statement.flow == "}":
+            self._open_subroutine(statement)
             return
-        ends_job = _ends(made) and not made.block_delete
-        self._job_end = made.line - 1 if ends_job and self._inside is not None else None
-        if made.flow == "M99":
-            self._close_subroutine(made)
+        ends_job = _ends(statement) and not statement.block_delete
+        self._job_end = statement.line - 1 if ends_job and self._inside is not None else None
+        if statement.flow == "M99":
+            self._close_subroutine(statement)
         elif self._ended and self._inside is None:
-            self._unreachable(made)
-        elif made.flow == "LS" or _unread(made, "LS"):
-            self._loops.append(made)
-        elif made.flow == "LF":
-            self._close_loop(made)
-        elif _unread(made, "LF") and self._loops:
+            self._unreachable(statement)
+        elif statement.flow == "LS" or _unread(statement, "LS"):
+            self._loops.append(statement)
+        elif statement.flow == "LF":
+            self._close_loop(statement)
+        elif _unread(statement, "LF") and self._loops:
             self._loops.pop()
         elif self._inside is None and ends_job:
-            self._end_main(made.line)
+            self._end_main(statement.line)
 
-    def _in_contour(self, made: Statement) -> bool:
+    def _in_contour(self, statement: Statement) -> bool:
         """Whether the line is one of a contour, or its RF; it steers nothing then."""
-        if made.flow == "RF":
+        if statement.flow == "RF":
             if self._contour is None and not self._contour_lost:
-                self._refuse(made, "rf-alone", "RF ends no contour here.", "Add G75 or G78, or take it out.")
+                self._refuse(
+                    statement, "rf-alone", "RF ends no contour here.", "Add G75 or G78, or take it out."
+                )
             elif self._contour is not None:
-                self.found.contours[self._contour.line - 1] = made.line - 1
+                self.found.contours[self._contour.line - 1] = statement.line - 1
             self._contour, self._contour_lost = None, False
             return True
-        if made.flow == UNREADABLE and _CONTOUR_CYCLE.search(made.text):
+        if statement.flow == UNREADABLE and _CONTOUR_CYCLE.search(statement.text):
             self._contour_lost = True  # told already; its RF is no second mistake
-        if made.flow in {"}", "M99"} or made.ends_program:
+        if statement.flow in {"}", "M99"} or statement.ends_program:
             self._open_contour()
         inside = self._contour is not None
-        if not inside and made.contour_cycle and "P" not in made.words:
-            self._contour = made
+        if not inside and statement.contour_cycle and "P" not in statement.words:
+            self._contour = statement
         return inside
 
     def _open_contour(self) -> None:
-        made, self._contour = self._contour, None
-        if made is not None:
-            text = f"The contour of G{made.one_shot} has no RF."
+        statement, self._contour = self._contour, None
+        if statement is not None:
+            text = f"The contour of G{statement.one_shot} has no RF."
             hint = "Write RF alone on the line after it, or P with the number of a subroutine."
-            self._refuse(made, "contour-open", text, hint)
+            self._refuse(statement, "contour-open", text, hint)
 
     def _end_main(self, line: int) -> None:
         self._ended = True
         self._unclosed_loops()
         self.found = self.found._replace(main_end=min(line, self.found.main_end))
 
-    def _open_subroutine(self, made: Statement) -> None:
+    def _open_subroutine(self, statement: Statement) -> None:
         if self._inside is not None and not self._closed_by_job_end(self._inside):
             self._refuse(
-                made, "subroutine-open", f"}}{self._inside} has no M99 before this line.", "Add M99."
+                statement, "subroutine-open", f"}}{self._inside} has no M99 before this line.", "Add M99."
             )
         elif not self._ended:
-            self._no_end(made.line - 1)
+            self._no_end(statement.line - 1)
         self._unclosed_loops()
         self._job_end = None
-        number = int(made.value("}") or 0)
+        number = int(statement.value("}") or 0)
         if number in self.found.subroutines:
             first = self.found.subroutines[number] + 1
             text = f"Subroutine {number} begins on line {first} already."
-            self._refuse(made, "subroutine-twice", text, "Give it another number.")
+            self._refuse(statement, "subroutine-twice", text, "Give it another number.")
         else:
-            self.found.subroutines[number] = made.line - 1
+            self.found.subroutines[number] = statement.line - 1
         self._inside, self._stray = number, False
 
-    def _close_subroutine(self, made: Statement) -> None:
+    def _close_subroutine(self, statement: Statement) -> None:
         if self._inside is None:
-            self._refuse(made, "m99-outside", "M99 ends no subroutine here.", "Take it out.")
+            self._refuse(statement, "m99-outside", "M99 ends no subroutine here.", "Take it out.")
             return
         self._unclosed_loops()
-        self.found.subroutine_ends.setdefault(self._inside, made.line - 1)
+        self.found.subroutine_ends.setdefault(self._inside, statement.line - 1)
         self._inside = None
 
     def _closed_by_job_end(self, number: int) -> bool:
@@ -125,27 +127,31 @@ class _Finder:
         self.found.subroutine_ends.setdefault(number, self._job_end)
         return True
 
-    def _close_loop(self, made: Statement) -> None:
+    def _close_loop(self, statement: Statement) -> None:
         if not self._loops:
-            self._refuse(made, "loop-unopened", "LF ends no loop.", "Add LS with a count, or take it out.")
+            self._refuse(
+                statement, "loop-unopened", "LF ends no loop.", "Add LS with a count, or take it out."
+            )
             return
         start = self._loops.pop().line - 1
-        self.found.loop_ends[start] = made.line - 1
-        self.found.loop_starts[made.line - 1] = start
+        self.found.loop_ends[start] = statement.line - 1
+        self.found.loop_starts[statement.line - 1] = start
 
     def _unclosed_loops(self) -> None:
-        for made in self._loops:
-            if made.flow == UNREADABLE:
+        for statement in self._loops:
+            if statement.flow == UNREADABLE:
                 continue  # told already
-            self._refuse(made, "loop-open", f"{made.text} has no LF.", "Add LF where the loop ends.")
+            self._refuse(
+                statement, "loop-open", f"{statement.text} has no LF.", "Add LF where the loop ends."
+            )
         self._loops.clear()
 
-    def _unreachable(self, made: Statement) -> None:
-        late_end = made.ends_program and any(each.code == "no-end" for each in self.problems)
+    def _unreachable(self, statement: Statement) -> None:
+        late_end = statement.ends_program and any(each.code == "no-end" for each in self.problems)
         if not self._stray and not late_end:
             self._stray = True
             text = "This line stands after the end of the program and is in no subroutine."
-            self._refuse(made, "after-end", text, "Move it before M30, or start a subroutine with }n.")
+            self._refuse(statement, "after-end", text, "Move it before M30, or start a subroutine with }n.")
 
     def _no_end(self, line: int) -> None:
         self._ended = True
@@ -163,18 +169,18 @@ class _Finder:
             line = self.found.subroutines[self._inside] + 1
             self.problems.append(refusal(line, 1, "subroutine-open", text, "Add M99 at its end."))
 
-    def _refuse(self, made: Statement, code: str, text: str, hint: str) -> None:
-        self.problems.append(refusal(made.line, 1, code, text, hint))
+    def _refuse(self, statement: Statement, code: str, text: str, hint: str) -> None:
+        self.problems.append(refusal(statement.line, 1, code, text, hint))
 
 
-def _ends(made: Statement) -> bool:
+def _ends(statement: Statement) -> bool:
     """Whether the line ends the job, or was meant to."""
-    return made.ends_program or _unread(made, "M30") or _unread(made, "M02")
+    return statement.ends_program or _unread(statement, "M30") or _unread(statement, "M02")
 
 
-def _unread(made: Statement, word: str) -> bool:
+def _unread(statement: Statement, word: str) -> bool:
     """Whether a line that cannot be read was meant as this: what follows from it is no second mistake."""
-    return made.flow == UNREADABLE and made.text.lstrip(" /").upper().startswith(word)
+    return statement.flow == UNREADABLE and statement.text.lstrip(" /").upper().startswith(word)
 
 
 def find_structure(statements: Iterable[Statement], length: int) -> tuple[Structure, list[Diagnostic]]:
@@ -184,38 +190,38 @@ def find_structure(statements: Iterable[Statement], length: int) -> tuple[Struct
     """
     finder = _Finder(length)
     calls: list[Statement] = []
-    for made in statements:
-        finder.take(made)
-        if made.calls or (made.contour_cycle and made.value("P")):
-            calls.append(made)
+    for statement in statements:
+        finder.take(statement)
+        if statement.calls or (statement.contour_cycle and statement.value("P")):
+            calls.append(statement)
     finder.finish(length)
-    for made in calls:
-        number = call_target(made)
+    for statement in calls:
+        number = call_target(statement)
         if number not in finder.found.subroutines:
-            column, hint = made.column("P") or 1, "Write it after M30."
+            column, hint = statement.column("P") or 1, "Write it after M30."
             text = f"Subroutine {number} is called, and no }}{number} begins it."
-            finder.problems.append(refusal(made.line, column, "subroutine-missing", text, hint))
+            finder.problems.append(refusal(statement.line, column, "subroutine-missing", text, hint))
     return finder.found, finder.problems
 
 
-def call_target(made: Statement) -> int:
+def call_target(statement: Statement) -> int:
     """Number of the subroutine that a call names; M95 always means 1."""
-    return 1 if made.flow == "M95" else int(made.value("P") or 0)
+    return 1 if statement.flow == "M95" else int(statement.value("P") or 0)
 
 
-def terminal(made: Statement) -> str:
+def terminal(statement: Statement) -> str:
     """The input that a conditional call asks."""
-    return FLOW_CODES[made.flow].terminal[0] or f"{made.value('I'):.0f}"
+    return FLOW_CODES[statement.flow].terminal[0] or f"{statement.value('I'):.0f}"
 
 
-def takes_call(made: Statement, inputs: Callable[[str], bool]) -> bool:
+def takes_call(statement: Statement, inputs: Callable[[str], bool]) -> bool:
     """Whether a conditional call is made as the inputs stand."""
-    return inputs(terminal(made)) == called_when(made)
+    return inputs(terminal(statement)) == called_when(statement)
 
 
-def called_when(made: Statement) -> bool:
+def called_when(statement: Statement) -> bool:
     """The state of its input in which a conditional call is made."""
-    return made.flow == "M95" or made.value("C") == 1
+    return statement.flow == "M95" or statement.value("C") == 1
 
 
 class Flow:
@@ -291,46 +297,46 @@ class Flow:
         """The inner loop has been gone through so often, each time back to its first line."""
         self._loops[-1][1] -= times
 
-    def steer(self, made: Statement) -> None:
+    def steer(self, statement: Statement) -> None:
         """Follow a line that steers. Raises ProgramError for calls nested too deep."""
-        flow = made.flow
-        here = made.line - 1
+        flow = statement.flow
+        here = statement.line - 1
         self.at = here + 1
         if flow == "LS" and here in self._structure.loop_ends:
-            self._loops.append([here, int(made.value("LS") or 1) - 1])
+            self._loops.append([here, int(statement.value("LS") or 1) - 1])
         elif flow == "LF":
             self._loop_end(here)
         elif flow == "M99":
             self._return()
         self._bound()
 
-    def call(self, made: Statement) -> None:
+    def call(self, statement: Statement) -> None:
         """Go to the subroutine that the line names."""
-        number = call_target(made)
-        self.at = made.line
+        number = call_target(statement)
+        self.at = statement.line
         if number not in self._structure.subroutines:
             return  # told when the program was read
         if len(self._calls) >= DEEPEST_CALL:
             text = f"Subroutines call each other more than {DEEPEST_CALL} deep."
-            raise made.refuse("P", "recursion", text, "A subroutine must not call itself.")
-        self._calls.append((made.line, self._run_end, self._loops))
+            raise statement.refuse("P", "recursion", text, "A subroutine must not call itself.")
+        self._calls.append((statement.line, self._run_end, self._loops))
         self._loops = []
         self.at = self._structure.subroutines[number] + 1
         self._run_end = self._structure.subroutine_ends.get(number, self.at - 1) + 1
         self._bound()
 
-    def contour(self, made: Statement) -> range | None:
+    def contour(self, statement: Statement) -> range | None:
         """Indices of the lines that describe the contour of a G75 or G78, which the flow passes by.
 
         None where there are none; that has been told when the program was read.
         """
-        if "P" not in made.words:
-            end = self._structure.contours.get(made.line - 1)
+        if "P" not in statement.words:
+            end = self._structure.contours.get(statement.line - 1)
             if end is None:
                 return None
             self.at = end + 1
-            return range(made.line, end)
-        number = int(made.value("P") or 0)
+            return range(statement.line, end)
+        number = int(statement.value("P") or 0)
         start = self._structure.subroutines.get(number)
         return None if start is None else range(start + 1, self._structure.subroutine_ends.get(number, start))
 

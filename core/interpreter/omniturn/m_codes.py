@@ -17,92 +17,96 @@ from core.language.diagnostics import Diagnostic, ProgramError, refusal
 from core.language.omniturn import other_controls
 
 
-def before_motion(state: State, made: Statement) -> Iterator[Block]:
+def before_motion(state: State, statement: Statement) -> Iterator[Block]:
     """The block of an M code that acts before the motion; M03 and M04 are the spindle's."""
-    code = made.m_code
+    code = statement.m_code
     if code is None:
-        yield from _machine_output(state, made, on=True)
+        yield from _machine_output(state, statement, on=True)
     elif code.acts is Acts.START:
-        yield from carry_out(code)(state, made)
+        yield from carry_out(code)(state, statement)
 
 
-def after_motion(state: State, made: Statement) -> Iterator[Block]:
+def after_motion(state: State, statement: Statement) -> Iterator[Block]:
     """The block of an M code that acts after the motion."""
-    code = made.m_code
+    code = statement.m_code
     if code is None:
-        yield from _machine_output(state, made, on=False)
+        yield from _machine_output(state, statement, on=False)
     elif code.acts is Acts.STOP:
-        yield from carry_out(code)(state, made)
+        yield from carry_out(code)(state, statement)
 
 
-def coolant(state: State, made: Statement) -> Iterator[Block]:
+def coolant(state: State, statement: Statement) -> Iterator[Block]:
     """The block of M08 or M09: coolant on, off."""
-    state.adopt(state.modal._replace(coolant=made.m == 8))
-    yield _done(state, made, actions.Coolant(on=made.m == 8))
+    state.adopt(state.modal._replace(coolant=statement.m == 8))
+    yield _done(state, statement, actions.Coolant(on=statement.m == 8))
 
 
-def collet(state: State, made: Statement) -> Iterator[Block]:
+def collet(state: State, statement: Statement) -> Iterator[Block]:
     """The block of M12 (clamps) or M13. Raises ProgramError where it may not open while the spindle turns."""
-    opens = made.m == 13
-    assert made.m_code is not None
-    check_when(state, made, made.m_code)
+    opens = statement.m == 13
+    assert statement.m_code is not None
+    check_when(state, statement, statement.m_code)
     state.adopt(state.modal._replace(collet_closed=not opens))
-    yield _done(state, made, actions.Collet(closed=not opens))
+    yield _done(state, statement, actions.Collet(closed=not opens))
 
 
-def wait_for_input(state: State, made: Statement) -> Iterator[Block]:
+def wait_for_input(state: State, statement: Statement) -> Iterator[Block]:
     """The block of M91 to M94: wait until the terminal is open or closed."""
-    assert made.m_code is not None
-    yield _done(state, made, actions.WaitInput(*made.m_code.terminal))
+    assert statement.m_code is not None
+    yield _done(state, statement, actions.WaitInput(*statement.m_code.terminal))
 
 
-def program_stop(state: State, made: Statement) -> Iterator[Block]:
+def program_stop(state: State, statement: Statement) -> Iterator[Block]:
     """The block of M00 or M01, with the comment that the operator is shown."""
-    yield _done(state, made, actions.ProgramStop(optional=made.m == 1, message=(made.comment or "").strip()))
+    yield _done(
+        state,
+        statement,
+        actions.ProgramStop(optional=statement.m == 1, message=(statement.comment or "").strip()),
+    )
 
 
-def repeat_off(state: State, made: Statement) -> Iterator[Block]:
+def repeat_off(state: State, statement: Statement) -> Iterator[Block]:
     """The block of M31: cancels Cycle Repeat."""
-    yield _done(state, made, actions.RepeatOff())
+    yield _done(state, statement, actions.RepeatOff())
 
 
-def program_end(state: State, made: Statement) -> Iterator[Block]:
+def program_end(state: State, statement: Statement) -> Iterator[Block]:
     """The block of M30, which resets the M functions, or M02, which leaves them."""
-    reset = made.m == 30
+    reset = statement.m == 30
     warn_of_short_dwell(state)
     state.stay(after_end(state.modal, abs(state.rpm_at(state.x)), reset=reset))
-    yield _done(state, made, actions.ProgramEnd(reset=reset))
+    yield _done(state, statement, actions.ProgramEnd(reset=reset))
 
 
 def check_m_codes(state: State, lines: tuple[Statement, ...]) -> None:
     """Report the M codes that neither the control nor the machine file knows."""
-    for made in lines:
-        if made.m not in state.setup.limits.m_outputs:
-            state.log.add(_unknown(state, made))
+    for statement in lines:
+        if statement.m not in state.setup.limits.m_outputs:
+            state.log.add(_unknown(state, statement))
 
 
-def _unknown(state: State, made: Statement) -> Diagnostic:
-    column, name = made.m_word.column if made.m_word else 0, f"M{made.m:02d}"
-    if made.m in state.setup.limits.m_disabled:
+def _unknown(state: State, statement: Statement) -> Diagnostic:
+    column, name = statement.m_word.column if statement.m_word else 0, f"M{statement.m:02d}"
+    if statement.m in state.setup.limits.m_disabled:
         text = f"{name} is defined, and not switched on in the machine file."
-        hint = f"Set enabled = true for {made.m} under [m_codes]."
-        return refusal(made.line, column, "m-disabled", text, hint)
+        hint = f"Set enabled = true for {statement.m} under [m_codes]."
+        return refusal(statement.line, column, "m-disabled", text, hint)
     habit, hint = other_controls.meaning_here(name) or ("", "The machine file assigns the outputs.")
     text = f"{name} is no code of this machine. {habit}".rstrip()
-    return refusal(made.line, column, "m-unknown", text, hint)
+    return refusal(statement.line, column, "m-unknown", text, hint)
 
 
-def _done(state: State, made: Statement, action: actions.Action) -> Block:
-    return state.action(made.line, made.part("m"), action)
+def _done(state: State, statement: Statement, action: actions.Action) -> Block:
+    return state.action(statement.line, statement.part("m"), action)
 
 
-def _machine_output(state: State, made: Statement, *, on: bool) -> Iterator[Block]:
+def _machine_output(state: State, statement: Statement, *, on: bool) -> Iterator[Block]:
     """An M code of the machine file: an output switched on before the motion, or off after it."""
-    output = state.setup.limits.m_outputs.get(made.m or 0)
+    output = state.setup.limits.m_outputs.get(statement.m or 0)
     if output is None:
-        raise ProgramError(_unknown(state, made))
+        raise ProgramError(_unknown(state, statement))
     name, wanted = output
     if wanted is on:
         outputs = state.modal.outputs | {name} if on else state.modal.outputs - {name}
         state.adopt(state.modal._replace(outputs=outputs))
-        yield _done(state, made, actions.Output(name, on))
+        yield _done(state, statement, actions.Output(name, on))

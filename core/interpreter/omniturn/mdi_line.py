@@ -20,17 +20,17 @@ def read_single(source: Source) -> Program:
     """
     text = source.lines[0] if source.lines else ""
     try:
-        made, problems = read_statement(1, text)
+        statement, problems = read_statement(1, text)
     except ProgramError as problem:
-        made, problems = None, [problem.diagnostic]
-    if made is not None and not problems:
-        refused = _alone(made)
+        statement, problems = None, [problem.diagnostic]
+    if statement is not None and not problems:
+        refused = _alone(statement)
         problems = [refused] if refused is not None else []
-    executable = made is not None and made.executable
-    unknown = (made,) if made is not None and of_machine_file(made) else ()
+    executable = statement is not None and statement.executable
+    unknown = (statement,) if statement is not None and of_machine_file(statement) else ()
     return Program(
         source=source,
-        ready=ReadyLines(Columns.empty(1), {0: made}),
+        ready=ReadyLines(Columns.empty(1), {0: statement}),
         structure=Structure({}, {}, {}, {}, 1, {}),
         diagnostics=tuple(problems),
         blocks=int(executable),
@@ -39,29 +39,31 @@ def read_single(source: Source) -> Program:
     )
 
 
-def _alone(made: Statement) -> Diagnostic | None:
+def _alone(statement: Statement) -> Diagnostic | None:
     """Why this line means nothing on its own, None where it does."""
-    if made.flow and made.flow != UNREADABLE:
-        return _refuse(made, 1, _steers(made))
-    if made.block_delete:
-        return _refuse(made, 1, "/ leaves a line of a program out, and there is nothing to leave out")
-    for code in made.modal:
+    if statement.flow and statement.flow != UNREADABLE:
+        return _refuse(statement, 1, _steers(statement))
+    if statement.block_delete:
+        return _refuse(statement, 1, "/ leaves a line of a program out, and there is nothing to leave out")
+    for code in statement.modal:
         if G_CODES[code].not_in_mdi:
-            return _refuse(made, 1, f"G{code} {G_CODES[code].not_in_mdi}")
-    if made.code is not None and made.entry.not_in_mdi:
-        return _refuse(made, made.code.column, f"{made.code.text} {made.entry.not_in_mdi}")
-    radius = made.words.get("R")
-    if radius is not None and made.moves and made.one_shot is None:
-        return _refuse(made, radius.column, f"{radius.text} rounds the corner with the next move")
+            return _refuse(statement, 1, f"G{code} {G_CODES[code].not_in_mdi}")
+    if statement.code is not None and statement.entry.not_in_mdi:
+        return _refuse(
+            statement, statement.code.column, f"{statement.code.text} {statement.entry.not_in_mdi}"
+        )
+    radius = statement.words.get("R")
+    if radius is not None and statement.moves and statement.one_shot is None:
+        return _refuse(statement, radius.column, f"{radius.text} rounds the corner with the next move")
     return None
 
 
-def _steers(made: Statement) -> str:
-    if made.flow == PLANE:
-        return f"{made.text} {FLOW_CODES['~PLXC'].not_in_mdi}"
-    word = made.m_word.text if made.m_word else made.flow
-    return f"{word} {FLOW_CODES[made.flow].not_in_mdi}"
+def _steers(statement: Statement) -> str:
+    if statement.flow == PLANE:
+        return f"{statement.text} {FLOW_CODES['~PLXC'].not_in_mdi}"
+    word = statement.m_word.text if statement.m_word else statement.flow
+    return f"{word} {FLOW_CODES[statement.flow].not_in_mdi}"
 
 
-def _refuse(made: Statement, column: int, what: str) -> Diagnostic:
-    return refusal(made.line, column, "not-alone-mdi", f"{what}.", _HINT)
+def _refuse(statement: Statement, column: int, what: str) -> Diagnostic:
+    return refusal(statement.line, column, "not-alone-mdi", f"{what}.", _HINT)

@@ -277,12 +277,12 @@ NOSE = frozenset({40, 41, 42})
 _TURNS_C = frozenset({"CA", "CI"})
 
 
-def nose_code(made: Statement) -> int:
+def nose_code(statement: Statement) -> int:
     """The G40, G41 or G42 of a line, 0 where there is none."""
-    return next((code for code in made.modal if code in NOSE), 0)
+    return next((code for code in statement.modal if code in NOSE), 0)
 
 
-def switch(state: State, made: Statement, code: int, *, called: bool) -> CompensationSwitch | None:
+def switch(state: State, statement: Statement, code: int, *, called: bool) -> CompensationSwitch | None:
     """G41, G42 or G40; None for a G40 with nothing to end. ``called``: the line is in a subroutine.
 
     Raises ProgramError where the code may not stand.
@@ -290,41 +290,45 @@ def switch(state: State, made: Statement, code: int, *, called: bool) -> Compens
     on = state.modal.nose_comp
     if code == 40 and on == 40:
         return None
-    check_when(state, made, G_CODES[code])
+    check_when(state, statement, G_CODES[code])
     if called:
         text = f"G{code} stands in a subroutine."
-        raise made.refuse(1, "comp-subroutine", text, "Write the compensated contour in the main program.")
+        raise statement.refuse(
+            1, "comp-subroutine", text, "Write the compensated contour in the main program."
+        )
     state.adopt(state.modal._replace(nose_comp=code))
-    state.contour.approach = 0 if code == 40 else made.line
+    state.contour.approach = 0 if code == 40 else statement.line
     state.contour.active, state.fast = True, False
-    return CompensationSwitch(code, made.line, state.x - state.px, state.z - state.pz)
+    return CompensationSwitch(code, statement.line, state.x - state.px, state.z - state.pz)
 
 
-def check_under_nose(state: State, made: Statement) -> None:
+def check_under_nose(state: State, statement: Statement) -> None:
     """Refuse what nose compensation cannot follow. Raises ProgramError."""
     on = state.modal.nose_comp
     if on == 40:
         return
-    if made.ends_program:
+    if statement.ends_program:
         text = f"The program ends while G{on} is on."
-        raise made.refuse(1, "comp-open", text, "Move off the part and write G40 before it.")
-    if made.flow and made.flow not in FLOW_CODES:
-        raise made.refuse(
+        raise statement.refuse(1, "comp-open", text, "Move off the part and write G40 before it.")
+    if statement.flow and statement.flow not in FLOW_CODES:
+        raise statement.refuse(
             1, "comp-with", f"Plane switching stands while G{on} is on.", "Write G40 before it."
         )
-    if made.calls:
+    if statement.calls:
         text = f"A subroutine is called while G{on} is on."
-        raise made.refuse(1, "comp-subroutine", text, "Write the compensated contour in the main program.")
-    refused = made.one_shot is not None and not made.entry.under_nose
-    if refused or made.locks or _TURNS_C & made.words.keys():
-        word = made.code or made.m_word
+        raise statement.refuse(
+            1, "comp-subroutine", text, "Write the compensated contour in the main program."
+        )
+    refused = statement.one_shot is not None and not statement.entry.under_nose
+    if refused or statement.locks or _TURNS_C & statement.words.keys():
+        word = statement.code or statement.m_word
         what = word.text if word is not None else "C"
-        raise made.refuse(1, "comp-with", f"{what} stands while G{on} is on.", "Write G40 before it.")
-    other = made.value("D") not in {None, state.modal.secondary}
-    if other and "T" not in made.words and not state.contour.approach:
+        raise statement.refuse(1, "comp-with", f"{what} stands while G{on} is on.", "Write G40 before it.")
+    other = statement.value("D") not in {None, state.modal.secondary}
+    if other and "T" not in statement.words and not state.contour.approach:
         text = f"D changes while G{on} is on."
         hint = "D belongs on the first move after G41 or G42 alone."
-        raise made.refuse("D", "comp-d", text, hint)
+        raise statement.refuse("D", "comp-d", text, hint)
 
 
 def check_approach(state: State, block: Block) -> None:

@@ -22,7 +22,7 @@ from core.interpreter.omniturn.m_codes import check_m_codes
 from core.interpreter.omniturn.nose_compensation import nose_code, switch
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_state import State
-from core.interpreter.omniturn.omniturn_statement import PLANE, UNREADABLE, ReadyLine, Statement, statement
+from core.interpreter.omniturn.omniturn_statement import PLANE, UNREADABLE, ReadyLine, Statement, statement_of
 from core.interpreter.omniturn.program_size import refuse_too_large
 from core.interpreter.omniturn.straight_moves import go, on_step, plain_move
 from core.interpreter.omniturn.tools_and_offsets import warn_of_idle_shifts
@@ -169,7 +169,7 @@ class Interpreter(Interpretation):
                 if isinstance(line, tuple):
                     block = plain_move(state, at + 1, texts[at], line)
                     if block is None:
-                        line = ready[at] = statement(lex_line(at + 1, texts[at]))
+                        line = ready[at] = statement_of(lex_line(at + 1, texts[at]))
                     elif state.contour.active:
                         yield from self._modified(block)
                     else:
@@ -179,48 +179,52 @@ class Interpreter(Interpretation):
             except ProgramError as problem:
                 self._recover(problem, line)
 
-    def _statement(self, made: Statement) -> Iterator[Block]:
-        contour = self._contour(made) if made.contour_cycle else ()
-        if made.block_delete and self._state.setup.block_delete:
+    def _statement(self, statement: Statement) -> Iterator[Block]:
+        contour = self._contour(statement) if statement.contour_cycle else ()
+        if statement.block_delete and self._state.setup.block_delete:
             return
-        if made.flow == UNREADABLE:
+        if statement.flow == UNREADABLE:
             self._stopped = True
             self._modifier.drop()  # what is held back lacks this line
-            self._arrive(made)
-        elif made.calls:
-            self._modifier.check(made)
-            yield from self._call(made)
-        elif made.flow == PLANE:
-            self._modifier.check(made)
+            self._arrive(statement)
+        elif statement.calls:
+            self._modifier.check(statement)
+            yield from self._call(statement)
+        elif statement.flow == PLANE:
+            self._modifier.check(statement)
             from core.interpreter.omniturn.plane_switching import plane_line  # as rare as it is large
 
-            for block in plane_line(self._state, made):
+            for block in plane_line(self._state, statement):
                 yield from self._modified(block)
-        elif made.flow:
-            self._flow.steer(made)
+        elif statement.flow:
+            self._flow.steer(statement)
         else:
-            self._modifier.check(made)
-            if nose_code(made):
-                yield from self._nose(made)
-            first = made.line == self._first
-            ahead = self._program.ready[made.line : made.line + _AHEAD] if looks_ahead(made) else ()
-            for block in execute(self._state, made, self._tools, ahead, first=first, contour=contour):
+            self._modifier.check(statement)
+            if nose_code(statement):
+                yield from self._nose(statement)
+            first = statement.line == self._first
+            ahead = (
+                self._program.ready[statement.line : statement.line + _AHEAD]
+                if looks_ahead(statement)
+                else ()
+            )
+            for block in execute(self._state, statement, self._tools, ahead, first=first, contour=contour):
                 yield from self._modified(block)
                 if isinstance(block.action, ProgramEnd):
                     self._flow.stop()
 
-    def _contour(self, made: Statement) -> list[Statement]:
+    def _contour(self, statement: Statement) -> list[Statement]:
         """The lines that describe the contour of a cycle; they are passed by even where it does not run."""
-        lines = self._flow.contour(made)
+        lines = self._flow.contour(statement)
         if lines is None:
             self._stopped = True
             return []
         found = [self._program.statement(index + 1) for index in lines]
         return [each for each in found if each is not None]
 
-    def _nose(self, made: Statement) -> Iterator[Block]:
+    def _nose(self, statement: Statement) -> Iterator[Block]:
         """G41, G42 or G40."""
-        found = switch(self._state, made, nose_code(made), called=self._flow.called)
+        found = switch(self._state, statement, nose_code(statement), called=self._flow.called)
         if found is not None:
             yield from self._released(self._modifier.switch(found))
 
@@ -244,18 +248,18 @@ class Interpreter(Interpretation):
         self._modifier.drop()
         self._state.fast = False
 
-    def _call(self, made: Statement) -> Iterator[Block]:
+    def _call(self, statement: Statement) -> Iterator[Block]:
         state = self._state
-        if made.asks:
-            asked = AskInput(terminal(made))
-            yield from self._modified(state.action(made.line, made.text, asked))
-            if not self._takes(made):
+        if statement.asks:
+            asked = AskInput(terminal(statement))
+            yield from self._modified(state.action(statement.line, statement.text, asked))
+            if not self._takes(statement):
                 return
-        self._flow.call(made)
+        self._flow.call(statement)
 
-    def _takes(self, made: Statement) -> bool:
+    def _takes(self, statement: Statement) -> bool:
         """Whether a conditional call is made; the input is asked at this moment."""
-        return takes_call(made, self._state.setup.inputs)
+        return takes_call(statement, self._state.setup.inputs)
 
     def _recover(self, problem: ProgramError, line: ReadyLine) -> None:
         """Keep the error, and stand where its line would have ended, so that the next is judged well."""
@@ -265,11 +269,11 @@ class Interpreter(Interpretation):
         if isinstance(line, Statement):
             self._arrive(line)
 
-    def _arrive(self, made: Statement) -> None:
+    def _arrive(self, statement: Statement) -> None:
         """Stand where the line would have ended."""
         state = self._state
-        if made.moves and state.absolute:
-            go(state, on_step(state, made, "X"), on_step(state, made, "Z"))
+        if statement.moves and state.absolute:
+            go(state, on_step(state, statement, "X"), on_step(state, statement, "Z"))
             state.tool_line = 0
 
 

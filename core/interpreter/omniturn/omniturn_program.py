@@ -14,7 +14,7 @@ from core.interpreter.omniturn.omniturn_statement import (
     UNREADABLE,
     ReadyLine,
     Statement,
-    statement,
+    statement_of,
     unreadable,
 )
 from core.interpreter.omniturn.plain_moves import ReadyLines, read_lines, read_move
@@ -71,16 +71,16 @@ class Style:
         if source.text and source.text[-1] not in "\r\n":
             self.tell("last-newline", len(source.lines))
 
-    def look_at(self, line: Line, made: Statement) -> None:
+    def look_at(self, line: Line, statement: Statement) -> None:
         """Comments and tool numbers of one line."""
-        tool = made.words.get("T")
+        tool = statement.words.get("T")
         if tool is not None and tool.text[1:].startswith("0") and len(tool.text) > 2:
             self.tell("tool-zero", line.number, tool.column)
         if line.comment is None:
             return
-        if not made.executable:
+        if not statement.executable:
             self.tell("title-line", line.number, line.comment_column)
-        if made.flow == "}":
+        if statement.flow == "}":
             self.tell("subroutine-comment", line.number, line.comment_column)
         if not _ODD_IN_COMMENT.isdisjoint(line.comment):
             self.tell("comment-character", line.number, line.comment_column)
@@ -116,7 +116,7 @@ class Program:
     def statement(self, number: int) -> Statement | None:
         """A line ready to run, counted from 1; None where there is nothing on it."""
         ready = self.ready[number - 1]
-        return statement(self.line(number)) if isinstance(ready, tuple) else ready
+        return statement_of(self.line(number)) if isinstance(ready, tuple) else ready
 
 
 class _Reader:
@@ -151,14 +151,14 @@ class _Reader:
         line = lex_line(number, text)
         self.problems.extend(line.errors)
         try:
-            made = statement(line)
+            statement = statement_of(line)
         except ProgramError as problem:
             self.problems.append(problem.diagnostic)
-            made = unreadable(line)
+            statement = unreadable(line)
         self._suspect_plane(number, text)
-        self.style.look_at(line, made)
-        self.statements.append(made)
-        return made
+        self.style.look_at(line, statement)
+        self.statements.append(statement)
+        return statement
 
     def _suspect_plane(self, number: int, text: str) -> None:
         """(PLXC) without its ~ is a comment, and so are the moves behind it: nothing would be milled."""
@@ -174,16 +174,16 @@ class _Reader:
 
     def _in_plane(self, number: int, text: str, entry: PlaneLine | None) -> Statement:
         """A line from the entry to (END), both included."""
-        made = Statement(number, text.strip(), flow=PLANE)
+        statement = Statement(number, text.strip(), flow=PLANE)
         try:
-            made.plane = entry if entry is not None and not self._plane else lex_plane(number, text)
+            statement.plane = entry if entry is not None and not self._plane else lex_plane(number, text)
         except ProgramError as problem:
             self.problems.append(problem.diagnostic)
-            made.flow = UNREADABLE
-        if made.plane is not None and made.plane.name:
-            self._plane = 0 if made.plane.name == "END" else number
-        self.statements.append(made)
-        return made
+            statement.flow = UNREADABLE
+        if statement.plane is not None and statement.plane.name:
+            self._plane = 0 if statement.plane.name == "END" else number
+        self.statements.append(statement)
+        return statement
 
     def _plane_open(self, number: int) -> None:
         text = f"Plane switching on line {self._plane} has no (END)."
@@ -214,36 +214,36 @@ def read_program(source: Source, strict: bool = False) -> Program:
         structure=structure,
         diagnostics=(*_capped(problems), *_capped(reader.style.found)),
         blocks=_executable(reader, length),
-        names_units=any({70, 71}.intersection(made.modal) for made in reader.statements),
-        m_codes=tuple(made for made in reader.statements if of_machine_file(made)),
-        asks=tuple(made for made in reader.statements if made.asks),
-        deletes=any(made.block_delete for made in reader.statements),
+        names_units=any({70, 71}.intersection(statement.modal) for statement in reader.statements),
+        m_codes=tuple(statement for statement in reader.statements if of_machine_file(statement)),
+        asks=tuple(statement for statement in reader.statements if statement.asks),
+        deletes=any(statement.block_delete for statement in reader.statements),
         calls=tuple(_calls(reader.statements)),
     )
 
 
-def of_machine_file(made: Statement) -> bool:
+def of_machine_file(statement: Statement) -> bool:
     """Whether the line holds an M code that is none of the control itself."""
-    return made.m is not None and made.m_code is None and f"M{made.m}" not in FLOW_CODES
+    return statement.m is not None and statement.m_code is None and f"M{statement.m}" not in FLOW_CODES
 
 
 def _calls(statements: list[Statement]) -> Iterator[tuple[int, int]]:
-    for made in statements:
-        if made.calls:
-            yield made.line, call_target(made)
-        elif made.contour_cycle and "P" in made.words:
-            yield made.line, int(made.value("P") or 0)
+    for statement in statements:
+        if statement.calls:
+            yield statement.line, call_target(statement)
+        elif statement.contour_cycle and "P" in statement.words:
+            yield statement.line, int(statement.value("P") or 0)
 
 
 def read_statement(number: int, text: str) -> tuple[Statement | None, list[Diagnostic]]:
     """One line of a text on its own, and what is wrong with it; None for an empty one."""
     reader = _Reader(Source("", text), strict=False)
-    made = reader.statement(number, text)
-    return made, reader.problems
+    statement = reader.statement(number, text)
+    return statement, reader.problems
 
 
 def _executable(reader: _Reader, length: int) -> int:
-    comments = sum(1 for made in reader.statements if not made.executable)
+    comments = sum(1 for statement in reader.statements if not statement.executable)
     return length - reader.blank - comments
 
 
@@ -251,10 +251,10 @@ def _comments_in_loops(statements: list[Statement], structure: Structure) -> lis
     found: list[Diagnostic] = []
     depth = 0
     text, hint = "A comment stands inside a loop.", "Move it before LS."
-    for made in statements:
-        depth += (made.line - 1 in structure.loop_ends) - (made.line - 1 in structure.loop_starts)
-        if depth and made.comment is not None:
-            found.append(Diagnostic(made.line, 0, Severity.WARNING, "comment-in-loop", text, hint))
+    for statement in statements:
+        depth += (statement.line - 1 in structure.loop_ends) - (statement.line - 1 in structure.loop_starts)
+        if depth and statement.comment is not None:
+            found.append(Diagnostic(statement.line, 0, Severity.WARNING, "comment-in-loop", text, hint))
     return found
 
 

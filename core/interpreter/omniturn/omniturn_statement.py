@@ -104,25 +104,27 @@ _SIMPLE_MODAL = frozenset({0, 1})
 _MOTIONS = frozenset({Acts.MOTION, Acts.CYCLE, Acts.CONTOUR})
 
 
-def statement(line: Line) -> Statement:
+def statement_of(line: Line) -> Statement:
     """The line made ready. Raises ProgramError for what may not stand together on a line."""
     if line.errors:
         return unreadable(line)
-    made = Statement(line.number, line.text, comment=line.comment, block_delete=line.block_delete)
+    statement = Statement(line.number, line.text, comment=line.comment, block_delete=line.block_delete)
     if line.comment is not None and line.comment.lstrip().startswith("~"):
         what = f"({line.comment.strip()})"
         message = f"{what} looks like plane switching; (~PLXC) and (~PLZC) stand alone on a line."
         raise program_error(line.number, line.comment_column, "plane-entry", message, "Write it alone.")
-    _sort(made, line)
-    words = made.words
-    made.moves = made.entry.acts is _ARC or (made.one_shot is None and ("X" in words or "Z" in words))
-    if line.comment is None and not made.m_word and _SIMPLE.issuperset(made.words):
-        made.simple = made.moves and _SIMPLE_MODAL.issuperset(made.modal)
-    if not made.simple:
-        _look_for_rarer(made)
-        _name_parts(made, line)
-    _check_words(made, line)
-    return made
+    _sort(statement, line)
+    words = statement.words
+    statement.moves = statement.entry.acts is _ARC or (
+        statement.one_shot is None and ("X" in words or "Z" in words)
+    )
+    if line.comment is None and not statement.m_word and _SIMPLE.issuperset(statement.words):
+        statement.simple = statement.moves and _SIMPLE_MODAL.issuperset(statement.modal)
+    if not statement.simple:
+        _look_for_rarer(statement)
+        _name_parts(statement, line)
+    _check_words(statement, line)
+    return statement
 
 
 def unreadable(line: Line) -> Statement:
@@ -130,142 +132,144 @@ def unreadable(line: Line) -> Statement:
     words: dict[str, Word] = {}
     if not any(word.letter == "G" and word.value in {4, 10, 92} for word in line.words):
         words = {word.letter: word for word in line.words if word.letter in {"X", "Z"}}
-    made = Statement(line.number, line.text, words, flow=UNREADABLE, block_delete=line.block_delete)
-    made.moves = bool(words)
-    made.modal = tuple(code for code in (90, 91) if any(word[:2] == ("G", code) for word in line.words))
-    return made
+    statement = Statement(line.number, line.text, words, flow=UNREADABLE, block_delete=line.block_delete)
+    statement.moves = bool(words)
+    statement.modal = tuple(code for code in (90, 91) if any(word[:2] == ("G", code) for word in line.words))
+    return statement
 
 
-def _sort(made: Statement, line: Line) -> None:
+def _sort(statement: Statement, line: Line) -> None:
     modal: list[Word] = []
-    words = made.words
+    words = statement.words
     for word in line.words:
         letter = word.letter
         if letter == "G":
-            _sort_g(made, word, modal)
+            _sort_g(statement, word, modal)
         elif letter == "M":
-            if made.m_word is not None:
+            if statement.m_word is not None:
                 raise _refused(line, word, "two-m-codes", "holds two M codes", "Split the line.")
-            made.m, made.m_word = int(word.value or 0), word
-            made.m_code = M_CODES.get(made.m)
+            statement.m, statement.m_word = int(word.value or 0), word
+            statement.m_code = M_CODES.get(statement.m)
         elif letter in words:
             raise _refused(line, word, "word-twice", f"holds {letter} twice", "Take one out.")
         else:
             words[letter] = word
     if modal:
-        made.modal = tuple(int(word.value or 0) for word in modal)
-        _check_groups(made, line, modal)
+        statement.modal = tuple(int(word.value or 0) for word in modal)
+        _check_groups(statement, line, modal)
 
 
-def _check_groups(made: Statement, line: Line, modal: list[Word]) -> None:
+def _check_groups(statement: Statement, line: Line, modal: list[Word]) -> None:
     groups: dict[str, int] = {}
-    for word, code in zip(modal, made.modal, strict=True):
+    for word, code in zip(modal, statement.modal, strict=True):
         if groups.setdefault(G_CODES[code].group, code) != code:
             what = f"holds two codes of one group ({G_CODES[code].group})"
             raise _refused(line, word, "modal-conflict", what, "Keep one of them.")
 
 
-def _sort_g(made: Statement, word: Word, modal: list[Word]) -> None:
+def _sort_g(statement: Statement, word: Word, modal: list[Word]) -> None:
     code = int(word.value or 0)
     entry = G_CODES.get(code)
     if entry is None:
         habit, hint = other_controls.meaning_here(word.text.upper()) or ("", "Look it up.")
         message = f"{word.text} is no code of this control. {habit}".rstrip()
-        raise made.refuse(word, "g-unknown", message, hint)
+        raise statement.refuse(word, "g-unknown", message, hint)
     if entry.acts is _MODE:
         modal.append(word)
-    elif made.code is not None:
-        message = f"{made.code.text} and {word.text} cannot act on one line."
-        raise made.refuse(word, "two-one-shots", message, "Split the line.")
+    elif statement.code is not None:
+        message = f"{statement.code.text} and {word.text} cannot act on one line."
+        raise statement.refuse(word, "two-one-shots", message, "Split the line.")
     else:
-        made.one_shot, made.code, made.entry = code, word, entry
+        statement.one_shot, statement.code, statement.entry = code, word, entry
     if entry.f is not _FEED:
-        made.f_is_feed = False
+        statement.f_is_feed = False
     if entry.s is _LIMIT:
-        made.s_is_limit = True
+        statement.s_is_limit = True
 
 
-def _look_for_rarer(made: Statement) -> None:
+def _look_for_rarer(statement: Statement) -> None:
     """What a line does besides moving the slides."""
-    made.flow, m_code = _flow(made), made.m_code
-    made.turns = made.one_shot is None and not made.flow and not _C_WORDS.isdisjoint(made.words)
-    made.locks = made.entry.acts is _LOCK or (m_code is not None and m_code.acts is _LOCK)
-    if made.flow:
-        made.calls, made.asks = FLOW_CODES[made.flow].calls, FLOW_CODES[made.flow].asks
+    statement.flow, m_code = _flow(statement), statement.m_code
+    statement.turns = (
+        statement.one_shot is None and not statement.flow and not _C_WORDS.isdisjoint(statement.words)
+    )
+    statement.locks = statement.entry.acts is _LOCK or (m_code is not None and m_code.acts is _LOCK)
+    if statement.flow:
+        statement.calls, statement.asks = FLOW_CODES[statement.flow].calls, FLOW_CODES[statement.flow].asks
 
 
-def _flow(made: Statement) -> str:
+def _flow(statement: Statement) -> str:
     for letter in ("LS", "LF", "}", "RF"):
-        if letter in made.words:
+        if letter in statement.words:
             return letter
-    if made.m is not None and f"M{made.m}" in FLOW_CODES:
-        return f"M{made.m}"
-    return "P" if "P" in made.words and made.code is None else ""
+    if statement.m is not None and f"M{statement.m}" in FLOW_CODES:
+        return f"M{statement.m}"
+    return "P" if "P" in statement.words and statement.code is None else ""
 
 
-def _check_words(made: Statement, line: Line) -> None:
-    if made.flow:
-        _check_flow(made, line)
+def _check_words(statement: Statement, line: Line) -> None:
+    if statement.flow:
+        _check_flow(statement, line)
         return
-    allowed = made.entry.words
-    if allowed.issuperset(made.words):
+    allowed = statement.entry.words
+    if allowed.issuperset(statement.words):
         return
-    for letter, word in made.words.items():
+    for letter, word in statement.words.items():
         if letter not in allowed:
             habit = other_controls.meaning_here(letter)
             if habit is not None:
                 message = f"{word.text} has no meaning here. {habit[0]}"
-                raise made.refuse(word, "word-unused", message, habit[1])
+                raise statement.refuse(word, "word-unused", message, habit[1])
             what = f"holds {word.text}, which nothing on it takes"
             raise _refused(line, word, "word-unused", what, "Take it out or add its code.")
 
 
-def _check_flow(made: Statement, line: Line) -> None:
-    allowed = FLOW_CODES[made.flow].words
+def _check_flow(statement: Statement, line: Line) -> None:
+    allowed = FLOW_CODES[statement.flow].words
     for word in line.words:
         if word.letter not in allowed:
-            what = f"holds {word.text} besides {made.flow}, which stands alone"
+            what = f"holds {word.text} besides {statement.flow}, which stands alone"
             raise _refused(line, word, "not-alone", what, "Put it on a line of its own.")
-    if line.block_delete and not FLOW_CODES[made.flow].deletable:
-        what = f"deletes {made.flow}, without which the rest has no meaning"
+    if line.block_delete and not FLOW_CODES[statement.flow].deletable:
+        what = f"deletes {statement.flow}, without which the rest has no meaning"
         raise _refused(line, line.words[0], "block-delete-flow", what, "Take '/' out.")
     for letter in sorted(allowed - {"M", "LF", "RF"}):
-        if made.value(letter) is None:
-            what = f"holds {made.flow} without {letter}"
+        if statement.value(letter) is None:
+            what = f"holds {statement.flow} without {letter}"
             raise _refused(line, line.words[0], "word-missing", what, f"Add {letter} with its number.")
-    for letter, rule in FLOW_CODES[made.flow].rules.items():
-        word = made.words[letter]
+    for letter, rule in FLOW_CODES[statement.flow].rules.items():
+        word = statement.words[letter]
         refusal = rule.refusal_of(word.value or 0.0)
         if refusal is not None:
-            raise made.refuse(word, refusal.code, refusal.text.format(word=word.text), refusal.hint)
+            raise statement.refuse(word, refusal.code, refusal.text.format(word=word.text), refusal.hint)
 
 
-def _name_parts(made: Statement, line: Line) -> None:
+def _name_parts(statement: Statement, line: Line) -> None:
     """Each block that the line makes gets the words it comes from; a single block gets the line."""
     groups: dict[str, str] = {}
     for word in line.words:
-        name = _group(made, word)
+        name = _group(statement, word)
         groups[name] = groups.get(name, "") + word.text
     own: list[str] = [name for name in ("tool", "frame", "spindle", "m") if name in groups]
-    if made.moves or made.turns or made.entry.acts in _MOTIONS:
+    if statement.moves or statement.turns or statement.entry.acts in _MOTIONS:
         own.append("move")
     if len(own) > 1:
         if "move" not in own and "move" in groups:
             groups[own[0]] = groups.pop("move") + groups[own[0]]
-        made.parts = groups
+        statement.parts = groups
 
 
-def _group(made: Statement, word: Word) -> str:
+def _group(statement: Statement, word: Word) -> str:
     letter = word.letter
-    if letter == "T" or (letter == "D" and "T" in made.words):
+    if letter == "T" or (letter == "D" and "T" in statement.words):
         return "tool"
-    if made.entry.acts is Acts.FRAME and (letter in {"X", "Z"} or word is made.code):
+    if statement.entry.acts is Acts.FRAME and (letter in {"X", "Z"} or word is statement.code):
         return "frame"
     if letter == "M":
-        m_code = made.m_code
+        m_code = statement.m_code
         return "spindle" if m_code is not None and m_code.acts is Acts.SPINDLE else "m"
-    if letter == "S" and not made.s_is_limit and not made.turns:
-        return "m" if made.locks else "spindle"
+    if letter == "S" and not statement.s_is_limit and not statement.turns:
+        return "m" if statement.locks else "spindle"
     return "move"
 
 

@@ -97,7 +97,7 @@ class Columns(NamedTuple):
 
 def read_columns(lines: Sequence[str]) -> Columns:
     """The lines as columns; ``known`` is False for any that is another kind of line, or of a rare shape."""
-    made = Columns.empty(len(lines))
+    columns = Columns.empty(len(lines))
     raw = "\n".join(lines).encode("ascii", "replace")  # a character, a byte
     digits = np.frombuffer(raw, np.uint8)
     starts = np.concatenate([[0], np.flatnonzero(digits == _NEW_LINE) + 1])
@@ -110,25 +110,25 @@ def read_columns(lines: Sequence[str]) -> Columns:
         rows = order[bounds[k] : bounds[k + 1]]
         match = _words(shape.decode()) if len(rows) >= _FEW else None
         if match is not None:
-            _read_shape(made, rows, match, digits, starts)
-    return made
+            _read_shape(columns, rows, match, digits, starts)
+    return columns
 
 
-def _read_shape(made: Columns, rows: Ints, match: re.Match[str], digits: Digits, starts: Ints) -> None:
+def _read_shape(columns: Columns, rows: Ints, match: re.Match[str], digits: Digits, starts: Ints) -> None:
     """Put in the lines ``rows``, all of the shape that has matched."""
     first = starts[rows]
     known = np.ones(len(rows), bool)
-    for name, column in (("x", made.x), ("z", made.z), ("f", made.f)):
+    for name, column in (("x", columns.x), ("z", columns.z), ("f", columns.f)):
         if match[name] is not None:
             column[rows] = _numbers(match, name, first, digits)
     if match["f"] is not None:
-        known &= made.f[rows] > 0.0
+        known &= columns.f[rows] > 0.0
     if match["g"] is not None:
         at = first + match.start("g")
-        made.g[rows] = digits[at] - ord("0")
-        known &= (digits[at - 1] == ord("0")) & (made.g[rows] <= 1)
-    made.fine[rows] = _is_fine(match.string)
-    made.known[rows] = known
+        columns.g[rows] = digits[at] - ord("0")
+        known &= (digits[at - 1] == ord("0")) & (columns.g[rows] <= 1)
+    columns.fine[rows] = _is_fine(match.string)
+    columns.known[rows] = known
 
 
 def _numbers(match: re.Match[str], name: str, first: Ints, digits: Digits) -> Floats:

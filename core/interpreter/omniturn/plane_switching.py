@@ -31,51 +31,51 @@ _TOLD_TURN = 1.0  # degrees that C turns at the centre without a word about it
 _ENDS = np.array([0.0, 1.0])
 
 
-def plane_move(state: State, made: Statement, mill: Mill) -> Iterator[Block]:
+def plane_move(state: State, statement: Statement, mill: Mill) -> Iterator[Block]:
     """The blocks of a line that moves the mill from where it stands. Raises ProgramError."""
-    assert made.plane is not None
+    assert statement.plane is not None
     warn_of_short_dwell(state)
-    target = _target(state, made, mill)
+    target = _target(state, statement, mill)
     whole = PlaneMove(mill.frame, (mill.x, mill.y, mill.z), target, mill.theta)
-    if made.plane.arc:
-        whole = _arc(state, made, whole)
+    if statement.plane.arc:
+        whole = _arc(state, statement, whole)
     if state.modal.feed is None:
         if "feed-missing" not in state.reported:
             state.reported.add("feed-missing")
             raise plane_refusal(
-                made, "feed-missing", "The move has no feed.", "Write F on this line or before it."
+                statement, "feed-missing", "The move has no feed.", "Write F on this line or before it."
             )
         return
-    for leg in _legs(state, made, whole):
-        yield from _towards(state, made, leg)
-        yield _block(state, made, leg)
+    for leg in _legs(state, statement, whole):
+        yield from _towards(state, statement, leg)
+        yield _block(state, statement, leg)
 
 
-def _target(state: State, made: Statement, mill: Mill) -> Spot:
+def _target(state: State, statement: Statement, mill: Mill) -> Spot:
     side = isinstance(mill.frame, Side)
-    x, y = plane_length(state, made, "X", mill.x), plane_length(state, made, "Y", mill.y)
-    z = plane_length(state, made, "Z", mill.z * 2 if side else mill.z)
+    x, y = plane_length(state, statement, "X", mill.x), plane_length(state, statement, "Y", mill.y)
+    z = plane_length(state, statement, "Z", mill.z * 2 if side else mill.z)
     if side and z < 0.0:
         text = (
             f"Z{state.modal.length_text(z)} lies beyond the centre: Z is the diameter that the tip touches."
         )
-        raise plane_refusal(made, "plane-side", text, "Correct Z.", "Z")
+        raise plane_refusal(statement, "plane-side", text, "Correct Z.", "Z")
     return x, y, z / 2 if side else z
 
 
-def _arc(state: State, made: Statement, line: PlaneMove) -> PlaneMove:
-    assert made.plane is not None
-    centre = plane_length(state, made, "I", 0.0), plane_length(state, made, "J", 0.0)
+def _arc(state: State, statement: Statement, line: PlaneMove) -> PlaneMove:
+    assert statement.plane is not None
+    centre = plane_length(state, statement, "I", 0.0), plane_length(state, statement, "J", 0.0)
     first, last = dist(line.start[:2], centre), dist(line.end[:2], centre)
     if first <= _SAME_PLANE_MOVES or abs(first - last) > _TOLERANCE:
         begin, end = state.modal.length_text(first), state.modal.length_text(last)
         text = f"The arc's radius is {begin} at its start and {end} at its end."
         hint = "I and J are the centre's coordinates."
-        raise plane_refusal(made, "arc-radius", text, hint, "G")
-    return replace(line, centre=centre, clockwise=made.plane.arc == 2)
+        raise plane_refusal(statement, "arc-radius", text, hint, "G")
+    return replace(line, centre=centre, clockwise=statement.plane.arc == 2)
 
 
-def _legs(state: State, made: Statement, whole: PlaneMove) -> list[PlaneMove]:
+def _legs(state: State, statement: Statement, whole: PlaneMove) -> list[PlaneMove]:
     """The way as it is, or in two where it goes through the axis. Raises where the tool cannot reach."""
     if isinstance(whole.frame, Side):
         return [whole]
@@ -84,7 +84,9 @@ def _legs(state: State, made: Statement, whole: PlaneMove) -> list[PlaneMove]:
     if rho < h - _SAME_PLANE_MOVES:
         near, least = state.modal.length_text(rho), state.modal.length_text(h)
         text = f"The way comes within {near} of the axis; with this H the tool reaches {least}."
-        raise plane_refusal(made, "plane-reach", text, "The tool's centre line stands H beside the axis.")
+        raise plane_refusal(
+            statement, "plane-reach", text, "The tool's centre line stands H beside the axis."
+        )
     if rho > CENTRE or whole.length <= CENTRE:
         return [whole]
     z = float(whole.points(np.array([share]))[0, 2])
@@ -94,7 +96,7 @@ def _legs(state: State, made: Statement, whole: PlaneMove) -> list[PlaneMove]:
     return [replace(whole, end=(0.0, 0.0, z)), replace(whole, start=(0.0, 0.0, z))]
 
 
-def _towards(state: State, made: Statement, leg: PlaneMove) -> Iterator[Block]:
+def _towards(state: State, statement: Statement, leg: PlaneMove) -> Iterator[Block]:
     """Standing on the axis C turns until the way leads out along X; nothing is done elsewhere."""
     mill = state.modal.mill
     assert mill is not None
@@ -113,12 +115,12 @@ def _towards(state: State, made: Statement, leg: PlaneMove) -> Iterator[Block]:
     if abs(degrees(turn)) > _TOLD_TURN:
         text = f"The way leads through the axis: C turns by {abs(degrees(turn)):.0f} degrees there."
         state.log.warn(
-            made.line, 1, "plane-centre", text, "The tool stands meanwhile; lead it past the axis."
+            statement.line, 1, "plane-centre", text, "The tool stands meanwhile; lead it past the axis."
         )
-    yield rotation(state, made.line, made.text, state.c - degrees(turn))
+    yield rotation(state, statement.line, statement.text, state.c - degrees(turn))
 
 
-def _block(state: State, made: Statement, leg: PlaneMove) -> Block:
+def _block(state: State, statement: Statement, leg: PlaneMove) -> Block:
     mill = state.modal.mill
     assert mill is not None
     leg = replace(leg, theta=mill.theta)
@@ -129,55 +131,55 @@ def _block(state: State, made: Statement, leg: PlaneMove) -> Block:
     state.x, state.z = x + state.dx, z + state.dz
     state.adopt(state.modal._replace(mill=Mill(leg.frame, *leg.end, theta, False)))
     kind, feed = Kind.PLANE_ARC if leg.centre is not None else Kind.PLANE_LINE, state.modal.feed or 0.0
-    return state.move(kind, made.line, made.text, start, feed, clockwise=leg.clockwise, plane=leg)
+    return state.move(kind, statement.line, statement.text, start, feed, clockwise=leg.clockwise, plane=leg)
 
 
-def plane_length(state: State, made: Statement, letter: str, default: float) -> float:
+def plane_length(state: State, statement: Statement, letter: str, default: float) -> float:
     """A word in mm as written: a length, or the diameter of D and of Z on the side."""
-    assert made.plane is not None
-    word = made.plane.words.get(letter)
-    return default if word is None else mill_step(state, made.line, word)
+    assert statement.plane is not None
+    word = statement.plane.words.get(letter)
+    return default if word is None else mill_step(state, statement.line, word)
 
 
-def plane_refusal(made: Statement, code: str, text: str, hint: str, letter: str = "") -> ProgramError:
+def plane_refusal(statement: Statement, code: str, text: str, hint: str, letter: str = "") -> ProgramError:
     """An error of a plane's line, at the column of its word where one is to blame."""
-    assert made.plane is not None
-    word = made.plane.words.get(letter)
-    return made.refuse(word.column if word else 1, code, text, hint)
+    assert statement.plane is not None
+    word = statement.plane.words.get(letter)
+    return statement.refuse(word.column if word else 1, code, text, hint)
 
 
 _LEAST_FEED = 0.00005 * units.MM_PER_INCH / 60
 _SAME = 1e-9
 
 
-def plane_line(state: State, made: Statement) -> Iterator[Block]:
+def plane_line(state: State, statement: Statement) -> Iterator[Block]:
     """One line of plane switching. Raises ProgramError for what cannot be done there."""
-    line, mill = made.plane, state.modal.mill
+    line, mill = statement.plane, state.modal.mill
     assert line is not None
     if line.name == "END":
         state.adopt(state.modal._replace(mill=None))
     elif line.name:
-        _enter(state, made, line.name)
+        _enter(state, statement, line.name)
     elif mill is None:
         return  # the entry was refused
     elif "H" in line.words:
-        _height(state, made, mill)
+        _height(state, statement, mill)
     elif "D" in line.words:
-        _diameter(state, made, mill)
+        _diameter(state, statement, mill)
     else:
-        _feed(state, made)
+        _feed(state, statement)
         if not {"X", "Y", "Z", "G"}.isdisjoint(line.words):
-            yield from plane_move(state, made, mill)
+            yield from plane_move(state, statement, mill)
 
 
-def _enter(state: State, made: Statement, name: str) -> None:
+def _enter(state: State, statement: Statement, name: str) -> None:
     modal = state.modal
-    check_when(state, made, FLOW_CODES[f"~{name}"])
+    check_when(state, statement, FLOW_CODES[f"~{name}"])
     if state.px > -_SAME:
         text = (
             f"(~{name}) needs the tool on the negative X side, and X is {state.modal.length_text(state.px)}."
         )
-        raise plane_refusal(made, "plane-side", text, "Move to X- before it.")
+        raise plane_refusal(statement, "plane-side", text, "Move to X- before it.")
     if name == "PLXC":
         mill = Mill(Face(state.c), -state.px, 0.0, state.pz)
     else:
@@ -186,31 +188,31 @@ def _enter(state: State, made: Statement, name: str) -> None:
     state.adopt(modal._replace(mill=mill, rapid=False, feed=feed))
 
 
-def _height(state: State, made: Statement, mill: Mill) -> None:
+def _height(state: State, statement: Statement, mill: Mill) -> None:
     if isinstance(mill.frame, Side):
-        raise plane_refusal(made, "plane-word", "H belongs to (~PLXC).", "Take it out.", "H")
+        raise plane_refusal(statement, "plane-word", "H belongs to (~PLXC).", "Take it out.", "H")
     if not mill.fresh:
-        raise plane_refusal(made, "plane-h-late", "H comes after a move or F.", "Write it first.", "H")
-    h = plane_length(state, made, "H", 0.0)
+        raise plane_refusal(statement, "plane-h-late", "H comes after a move or F.", "Write it first.", "H")
+    h = plane_length(state, statement, "H", 0.0)
     frame = replace(mill.frame, h=h)
     state.adopt(state.modal._replace(mill=Mill(frame, mill.x, h, mill.z, atan2(h, mill.x), False)))
 
 
-def _diameter(state: State, made: Statement, mill: Mill) -> None:
+def _diameter(state: State, statement: Statement, mill: Mill) -> None:
     if isinstance(mill.frame, Face):
-        raise plane_refusal(made, "plane-word", "D belongs to (~PLZC).", "Take it out.", "D")
+        raise plane_refusal(statement, "plane-word", "D belongs to (~PLZC).", "Take it out.", "D")
     if abs(mill.y) > _SAME:
         text = f"D comes where Y is {state.modal.length_text(mill.y)}: it would move Y."
-        raise plane_refusal(made, "plane-d-late", text, "Write it where Y is 0.", "D")
-    diameter = plane_length(state, made, "D", 0.0)
+        raise plane_refusal(statement, "plane-d-late", text, "Write it where Y is 0.", "D")
+    diameter = plane_length(state, statement, "D", 0.0)
     if diameter <= 0.0:
-        raise plane_refusal(made, "plane-diameter", "D must be a diameter over 0.", "Correct it.", "D")
+        raise plane_refusal(statement, "plane-diameter", "D must be a diameter over 0.", "Correct it.", "D")
     state.adopt(state.modal._replace(mill=mill._replace(frame=replace(mill.frame, diameter=diameter))))
 
 
-def _feed(state: State, made: Statement) -> None:
-    assert made.plane is not None
-    word = made.plane.words.get("F")
+def _feed(state: State, statement: Statement) -> None:
+    assert statement.plane is not None
+    word = statement.plane.words.get("F")
     if word is None or word.value is None:
         return
     feed, most = state.feed_word(word.value), state.setup.limits.max_feed
@@ -224,4 +226,4 @@ def _feed(state: State, made: Statement) -> None:
     state.reported.discard("feed-missing")
     if not _LEAST_FEED * (1 - 1e-9) <= feed <= most * (1 + 1e-9):
         code, text, _ = out_of_range(modal, feed, _LEAST_FEED, most)
-        raise plane_refusal(made, code, text, "Correct F.", "F")
+        raise plane_refusal(statement, code, text, "Correct F.", "F")

@@ -88,13 +88,13 @@ class _Counter:
             worst = self._program.structure.loop_starts[end] + 1
         return _sum(before, Count(blocks, lines, worst))
 
-    def _line(self, made: Statement, depth: int) -> Count:
-        if not made.calls:
-            return Count(blocks_of(made), 1)
-        asks = made.asks
-        if depth >= DEEPEST_CALL or (asks and not takes_call(made, self._inputs)):
+    def _line(self, statement: Statement, depth: int) -> Count:
+        if not statement.calls:
+            return Count(blocks_of(statement), 1)
+        asks = statement.asks
+        if depth >= DEEPEST_CALL or (asks and not takes_call(statement, self._inputs)):
             return Count(int(asks), 1)
-        return _sum(Count(int(asks), 1), self._subroutine(call_target(made), depth + 1))
+        return _sum(Count(int(asks), 1), self._subroutine(call_target(statement), depth + 1))
 
     def _subroutine(self, number: int, depth: int) -> Count:
         structure = self._program.structure
@@ -114,17 +114,21 @@ def _sum(a: Count, b: Count) -> Count:
     return Count(blocks, lines, worst)
 
 
-def blocks_of(made: Statement) -> int:
+def blocks_of(statement: Statement) -> int:
     """Elementary blocks that a line makes at most; of a cycle, at least."""
-    if made.flow:
-        return 1 if made.plane is not None and {"X", "Y", "Z", "G"}.intersection(made.plane.words) else 0
-    m_code = made.m_code
+    if statement.flow:
+        return (
+            1
+            if statement.plane is not None and {"X", "Y", "Z", "G"}.intersection(statement.plane.words)
+            else 0
+        )
+    m_code = statement.m_code
     starts = m_code is not None and m_code.acts is Acts.SPINDLE
-    speed = "S" in made.words and not starts and not made.s_is_limit
-    moves = made.moves if made.one_shot is None else made.entry.least_blocks
-    return ("T" in made.words) + (made.m is not None) + speed + corner_words(made) + moves
+    speed = "S" in statement.words and not starts and not statement.s_is_limit
+    moves = statement.moves if statement.one_shot is None else statement.entry.least_blocks
+    return ("T" in statement.words) + (statement.m is not None) + speed + corner_words(statement) + moves
 
 
-def corner_words(made: Statement) -> int:
+def corner_words(statement: Statement) -> int:
     """Blocks that C and R put between this move and the next; C may be an axis word instead."""
-    return int(made.one_shot is None and not {"C", "R"}.isdisjoint(made.words))
+    return int(statement.one_shot is None and not {"C", "R"}.isdisjoint(statement.words))

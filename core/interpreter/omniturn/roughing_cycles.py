@@ -215,84 +215,90 @@ _MOST_ELEMENTS = 2_000
 _MOST_LOOKS = 200_000  # elements times passes: a few seconds
 
 
-def contour_moves(state: State, made: Statement, lines: Sequence[Statement]) -> list[Move]:
+def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]) -> list[Move]:
     """The motions of G75 or G78 along the contour that ``lines`` describe, from the start and back to it.
 
     Raises ProgramError where words are missing, or no tool can run so.
     """
-    number(state, made, "P")
-    cut = length(state, made, "I") if made.one_shot == 75 else None
-    left = length(state, made, "U")
-    contour = read_contour(state, made, lines)
+    number(state, statement, "P")
+    cut = length(state, statement, "I") if statement.one_shot == 75 else None
+    left = length(state, statement, "U")
+    contour = read_contour(state, statement, lines)
     if len(contour) > _MOST_ELEMENTS:
         text = f"The contour has {len(contour):,} lines and arcs; {_MOST_ELEMENTS:,} are the most."
-        raise made.refuse("G", "cycle-contour-long", text, "Run it with fewer, longer moves.")
-    view = _view(state, made, contour)
+        raise statement.refuse("G", "cycle-contour-long", text, "Run it with fewer, longer moves.")
+    view = _view(state, statement, contour)
     try:
         area = Area(view.from_start(contour), left)
     except TrimError:
-        text = f"{name(made)} finds no unbroken way along the contour at the distance U."
-        raise made.refuse("U", "cycle-no-way", text, "Lower U, or open the narrow place.") from None
+        text = f"{name(statement)} finds no unbroken way along the contour at the distance U."
+        raise statement.refuse("U", "cycle-no-way", text, "Lower U, or open the narrow place.") from None
     rougher = Rougher(area, state.modal.rapid_rate, LIFT)
     if cut is not None:
-        _passes(state, made, rougher, area, cut, len(contour))
+        _passes(state, statement, rougher, area, cut, len(contour))
     try:
         rougher.finish(backwards=view.backwards)
     except StartNearError:
         text = "On the way from the start point to the contour and back the tool comes nearer to it than U."
         hint = "Move the start point away from the contour."
-        raise made.refuse("G", "cycle-start-near", text, hint) from None
+        raise statement.refuse("G", "cycle-start-near", text, hint) from None
     if area.turns_back:
         text = "The contour runs back along Z: behind that edge the pass along it cuts all that is there."
-        state.log.warn(made.line, made.code_column, "cycle-undercut", text, "Look whether the tool fits.")
+        state.log.warn(
+            statement.line, statement.code_column, "cycle-undercut", text, "Look whether the tool fits."
+        )
     return [view.placed(move) for move in rougher.moves]
 
 
-def _passes(state: State, made: Statement, rougher: Rougher, area: Area, cut: float, elements: int) -> None:
+def _passes(
+    state: State, statement: Statement, rougher: Rougher, area: Area, cut: float, elements: int
+) -> None:
     if area.deepest <= 0:
         text = "The contour leaves nothing to cut between it and the start point."
-        raise made.refuse("G", "cycle-nothing", text, "Start farther from the contour in X.")
+        raise statement.refuse("G", "cycle-nothing", text, "Start farther from the contour in X.")
     count = ceil(area.deepest / cut - _WHOLE)
-    check_count(made, "I", count, "passes")
+    check_count(statement, "I", count, "passes")
     if count * elements > _MOST_LOOKS:
         text = f"{count:,} passes beside a contour of {elements:,} lines and arcs are too many to work out."
-        raise made.refuse("I", "cycle-passes", text, "Raise I, or describe the contour in fewer moves.")
+        raise statement.refuse("I", "cycle-passes", text, "Raise I, or describe the contour in fewer moves.")
     for k in range(1, count + 1):
         rougher.cut(area.deepest * k / count)
     if rougher.plunged:
         text = "The contour rises and falls again: the tool plunges into the material behind the rise."
-        state.log.warn(made.line, made.code_column, "cycle-plunge", text, "Look whether the tool can do so.")
+        state.log.warn(
+            statement.line, statement.code_column, "cycle-plunge", text, "Look whether the tool can do so."
+        )
 
 
-def _view(state: State, made: Statement, contour: list[Element]) -> ContourView:
+def _view(state: State, statement: Statement, contour: list[Element]) -> ContourView:
     """The contour as the start point sees it. Raises ProgramError (cycle-quadrant, cycle-nothing)."""
     start, first, last = (state.x, state.z), contour[0].start, contour[-1].end
     for axis, letter in ((0, "X"), (1, "Z")):
         to_first, to_last = first[axis] - start[axis], last[axis] - start[axis]
         if to_first * to_last < 0:
             text = f"The start point lies between the ends of the contour in {letter}, not outside of both."
-            raise made.refuse("G", "cycle-quadrant", text, "Move the start point beyond both ends.")
+            raise statement.refuse("G", "cycle-quadrant", text, "Move the start point beyond both ends.")
         if to_first == to_last == 0:
             text = f"Both ends of the contour have the {letter} of the start point: there is no area to cut."
-            raise made.refuse("G", "cycle-nothing", text, "Move the start point away from the contour.")
+            raise statement.refuse("G", "cycle-nothing", text, "Move the start point away from the contour.")
     return view_from(start, first, last)
 
 
-def box_moves(state: State, made: Statement) -> list[Move]:
+def box_moves(state: State, statement: Statement) -> list[Move]:
     """Equal passes from the start's X to X, none deeper than I, U left on a side; back to the start.
 
     The tool goes in at the feed: behind a shoulder it does so in material. Raises ProgramError.
     """
-    x = _corner(state, made, "X", state.x, state.dx)
-    z = _corner(state, made, "Z", state.z, state.dz)
-    cut, left = length(state, made, "I"), length(state, made, "U")
+    x = _corner(state, statement, "X", state.x, state.dx)
+    z = _corner(state, statement, "Z", state.z, state.dz)
+    cut, left = length(state, statement, "I"), length(state, statement, "U")
     towards = 1.0 if x > state.x else -1.0
     depth = abs(x - state.x) - left
     if depth <= 0:
-        text = f"{made.words['U'].text} leaves nothing of the box to cut."
-        raise made.refuse("U", "cycle-nothing", text, "U is less than the way from the start to X.")
+        text = f"{statement.words['U'].text} leaves nothing of the box to cut."
+        raise statement.refuse("U", "cycle-nothing", text, "U is less than the way from the start to X.")
     count = ceil(depth / cut - _WHOLE)
-    check_count(made, "I", count, "passes")
+    check_count(statement, "I", count, "passes")
     rapid = state.modal.rapid_rate
     moves: list[Move] = []
     for k in range(1, count + 1):
@@ -302,10 +308,10 @@ def box_moves(state: State, made: Statement) -> list[Move]:
     return [*moves, Move(state.x, state.z, rapid)]
 
 
-def _corner(state: State, made: Statement, letter: str, start: float, offset: float) -> float:
+def _corner(state: State, statement: Statement, letter: str, start: float, offset: float) -> float:
     """X or Z of the corner opposite to the start."""
-    end = length(state, made, letter) + (offset if state.absolute else start)
+    end = length(state, statement, letter) + (offset if state.absolute else start)
     if end == start:
         text = f"The box has no size along {letter}: its corner lies at the start point."
-        raise made.refuse(letter, "cycle-nothing", text, f"Correct {letter} or the start point.")
+        raise statement.refuse(letter, "cycle-nothing", text, f"Correct {letter} or the start point.")
     return end

@@ -44,11 +44,11 @@ def in_force(state: State, g: int, f: float | None) -> bool:
     return f is None or state.feed_word(f) == state.steady_feed
 
 
-def statement_move(state: State, made: Statement) -> Block:
+def statement_move(state: State, statement: Statement) -> Block:
     """The straight move of a line, with every check. Raises ProgramError."""
-    x, z = on_step(state, made, "X"), on_step(state, made, "Z")
+    x, z = on_step(state, statement, "X"), on_step(state, statement, "Z")
     state.fast = False
-    return line_to(state, made.line, made.part("move"), x, z)
+    return line_to(state, statement.line, statement.part("move"), x, z)
 
 
 def line_to(state: State, line: int, text: str, x: float | None, z: float | None) -> Block:
@@ -114,14 +114,14 @@ def warn_of_title_rapid(state: State, line: int) -> None:
     state.title_rapid = 0
 
 
-def on_step(state: State, made: Statement, letter: str) -> float | None:
+def on_step(state: State, statement: Statement, letter: str) -> float | None:
     """A length word in mm, X as a radius by G72/G73, rounded to the control's step with a warning."""
-    word = made.words.get(letter)
+    word = statement.words.get(letter)
     if word is None or word.value is None or not isfinite(word.value):
         return None
     value, finer = _nearest_step(state, letter, word.value)
     if finer:
-        _warn_of_finer(state, made.line, word, value)
+        _warn_of_finer(state, statement.line, word, value)
     return value * (state.scale_x if letter in _DIAMETERS else state.scale_z)
 
 
@@ -179,12 +179,12 @@ def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
     state.log.warn(line, word.column, "finer-than-step", text, "Round the number.")
 
 
-def geometry_modes(state: State, made: Statement) -> None:
+def geometry_modes(state: State, statement: Statement) -> None:
     """Distance, units and X words of a line; the other groups belong to feed and spindle."""
-    if not made.modal:
+    if not statement.modal:
         return
     modal = state.modal
-    for code in made.modal:
+    for code in statement.modal:
         if code in {90, 91}:
             modal = modal._replace(absolute=code == 90)
         elif code in {70, 71}:

@@ -51,18 +51,18 @@ class Thread:
         return self.x0 + self.out * (3 * self.first + max(self.out * self.taper, 0.0))
 
 
-def read_thread(state: State, made: Statement) -> Thread:
+def read_thread(state: State, statement: Statement) -> Thread:
     """The cycle that a line asks for. Raises ProgramError with what is wrong."""
     if state.tool_line:
-        check_tool(state, made.line, None, None)
-    number(state, made, "P")
-    lead = _lead(state, made)
-    _check_spindle(state, made, lead)
-    along, z1 = _way(state, made)
-    single = made.one_shot == 34
-    first = checked(state, made, "I", _across(state, made, "I")) or 0.0
-    depth, out = (0.0, copysign(1.0, first)) if single else _depth(state, made)
-    angle = radians(number(state, made, "C") or 0.0) if "C" in made.words else 0.0
+        check_tool(state, statement.line, None, None)
+    number(state, statement, "P")
+    lead = _lead(state, statement)
+    _check_spindle(state, statement, lead)
+    along, z1 = _way(state, statement)
+    single = statement.one_shot == 34
+    first = checked(state, statement, "I", _across(state, statement, "I")) or 0.0
+    depth, out = (0.0, copysign(1.0, first)) if single else _depth(state, statement)
+    angle = radians(number(state, statement, "C") or 0.0) if "C" in statement.words else 0.0
     thread = Thread(
         x0=state.x,
         z0=state.z,
@@ -72,72 +72,74 @@ def read_thread(state: State, made: Statement) -> Thread:
         depth=depth,
         first=abs(first),
         lead=lead,
-        taper=_across(state, made, "A") or 0.0,
+        taper=_across(state, statement, "A") or 0.0,
         angle=angle,
-        passes=1 if single or "O" in made.words else _count(made, depth, first),
-        pulls_out="P" in made.words,
+        passes=1 if single or "O" in statement.words else _count(statement, depth, first),
+        pulls_out="P" in statement.words,
     )
     if along * (z1 - state.z) <= depth * tan(angle) + _NEAR:
         text = "The flank angle moves the start of the last pass beyond its end."
-        raise made.refuse("C", "thread-angle", text, "Start farther away from Z.")
+        raise statement.refuse("C", "thread-angle", text, "Start farther away from Z.")
     return thread
 
 
-def _lead(state: State, made: Statement) -> float:
-    lead, feed = made.value("K"), made.words.get("F")
+def _lead(state: State, statement: Statement) -> float:
+    lead, feed = statement.value("K"), statement.words.get("F")
     if lead is None and feed is not None:
         text = f"K is missing, and {feed.text} is there."
-        raise made.refuse("F", "thread-lead-missing", text, f"Was K{feed.text[1:]} meant?")
+        raise statement.refuse("F", "thread-lead-missing", text, f"Was K{feed.text[1:]} meant?")
     coarser = ("G35 allows more.", "G35F2 allows more.", "Correct K.")[state.modal.coarse]
-    return checked(state, made, "K", lead and lead * state.scale_z, more=coarser) or 0.0
+    return checked(state, statement, "K", lead and lead * state.scale_z, more=coarser) or 0.0
 
 
-def _check_spindle(state: State, made: Statement, lead: float) -> None:
-    check_when(state, made, made.entry)
+def _check_spindle(state: State, statement: Statement, lead: float) -> None:
+    check_when(state, statement, statement.entry)
     modal, rpm = state.modal, abs(state.rpm_at(state.x))
     speed, most = lead * rpm / 60, state.setup.limits.max_feed
     if speed > most * _ROUNDING:
         shown = modal.feed_text(speed, per_rev=False)
         limit = modal.feed_text(most, per_rev=False)
         text = f"At {rpm:.0f} rpm this lead is {shown}; {limit} is the most."
-        raise made.refuse("K", "feed-over-speed", text, "Lower S.")
+        raise statement.refuse("K", "feed-over-speed", text, "Lower S.")
 
 
-def _way(state: State, made: Statement) -> tuple[float, float]:
+def _way(state: State, statement: Statement) -> tuple[float, float]:
     """Sign of the cutting direction, and Z of the end."""
-    z = checked(state, made, "Z", on_step(state, made, "Z")) or 0.0
+    z = checked(state, statement, "Z", on_step(state, statement, "Z")) or 0.0
     z1 = (z if state.absolute else state.pz + z) + state.dz
     if abs(z1 - state.z) <= _NEAR:
         text = "The thread ends at the Z where it starts."
-        raise made.refuse("Z", "thread-length", text, "Correct Z, or move away before the G33.")
+        raise statement.refuse("Z", "thread-length", text, "Correct Z, or move away before the G33.")
     return copysign(1.0, z1 - state.z), z1
 
 
-def _depth(state: State, made: Statement) -> tuple[float, float]:
+def _depth(state: State, statement: Statement) -> tuple[float, float]:
     """Depth of the last pass below S, and the sign of X away from the work."""
-    x = checked(state, made, "X", on_step(state, made, "X")) or 0.0
+    x = checked(state, statement, "X", on_step(state, statement, "X")) or 0.0
     x1 = (x if state.absolute else state.px + x) + state.dx
     here = f"the tool stands at radius {state.modal.length_text(state.x)}"
     if abs(x1 - state.x) <= _NEAR:
-        text = f"{made.words['X'].text} leaves nothing to cut: {here}."
-        raise made.refuse("X", "thread-side", text, "Start at the depth of the first pass.")
+        text = f"{statement.words['X'].text} leaves nothing to cut: {here}."
+        raise statement.refuse("X", "thread-side", text, "Start at the depth of the first pass.")
     if x1 * state.x < 0:
-        text = f"{made.words['X'].text} lies on the other side of the spindle axis: {here}."
-        raise made.refuse("X", "thread-side", text, "Look at the sign of X and at where the tool starts.")
+        text = f"{statement.words['X'].text} lies on the other side of the spindle axis: {here}."
+        raise statement.refuse(
+            "X", "thread-side", text, "Look at the sign of X and at where the tool starts."
+        )
     return abs(x1 - state.x), copysign(1.0, state.x - x1)
 
 
-def _count(made: Statement, depth: float, first: float) -> int:
+def _count(statement: Statement, depth: float, first: float) -> int:
     count = max(ceil((depth / first + 1.0) ** 2 - _CLICK), 1)
     if count > MOST_PASSES:
         text = f"The thread would take {count:,} passes; {MOST_PASSES:,} are the most."
-        raise made.refuse("I", "thread-passes", text, "Correct I.")
+        raise statement.refuse("I", "thread-passes", text, "Correct I.")
     return count
 
 
-def _across(state: State, made: Statement, letter: str) -> float | None:
+def _across(state: State, statement: Statement, letter: str) -> float | None:
     """I or A: lengths across the axis, a diameter under G72."""
-    value = on_step(state, made, letter)
+    value = on_step(state, statement, letter)
     return None if value is None else value * state.scale_x / state.scale_z
 
 
@@ -145,11 +147,11 @@ MANY_PASSES = 60
 _FACE = 1e-9  # mm
 
 
-def thread_blocks(state: State, made: Statement) -> Iterator[Block]:
+def thread_blocks(state: State, statement: Statement) -> Iterator[Block]:
     """The blocks of a line with G33 or G34, from S back to S. Raises ProgramError before the first one."""
-    thread = read_thread(state, made)
-    _warn(state, made, thread)
-    return _Cutter(state, made, thread).blocks()
+    thread = read_thread(state, statement)
+    _warn(state, statement, thread)
+    return _Cutter(state, statement, thread).blocks()
 
 
 def pass_depths(thread: Thread) -> list[float]:
@@ -168,8 +170,8 @@ def start_z(thread: Thread, depth: float) -> float:
 class _Cutter:
     """Makes the blocks of one cycle one after the other."""
 
-    def __init__(self, state: State, made: Statement, thread: Thread) -> None:
-        self._state, self._line, self._thread = state, made.line, thread
+    def __init__(self, state: State, statement: Statement, thread: Thread) -> None:
+        self._state, self._line, self._thread = state, statement.line, thread
         self._rpm = state.rpm_at(state.x)
 
     def blocks(self) -> Iterator[Block]:
@@ -215,11 +217,11 @@ class _Cutter:
         return f"{code}X{x / state.scale_x + 0.0:.{places}f}Z{z / state.scale_z + 0.0:.{places}f}"
 
 
-def _warn(state: State, made: Statement, thread: Thread) -> None:
+def _warn(state: State, statement: Statement, thread: Thread) -> None:
     if thread.passes > MANY_PASSES:
         text = f"The thread takes {thread.passes} passes."
         hint = "A larger I takes fewer; look at I and at the X where the tool starts."
-        state.log.warn(made.line, made.code_column, "thread-passes", text, hint)
+        state.log.warn(statement.line, statement.code_column, "thread-passes", text, hint)
     speed = thread.lead * abs(state.rpm_at(state.x)) / 60
     needed = speed**2 / (2 * state.setup.limits.slide_accel)
     run_up = _run_up(thread)
@@ -228,7 +230,9 @@ def _warn(state: State, made: Statement, thread: Thread) -> None:
             f"The run-up is {state.modal.length_text(max(run_up, 0.0))}; the slide needs "
             f"{state.modal.length_text(needed)} to reach the speed of the lead."
         )
-        state.log.warn(made.line, made.code_column, "thread-run-up", text, "Start farther away, or lower S.")
+        state.log.warn(
+            statement.line, statement.code_column, "thread-run-up", text, "Start farther away, or lower S."
+        )
 
 
 def _run_up(thread: Thread) -> float:

@@ -35,14 +35,14 @@ def missing_offset(tools: Sequence[int], line: int, column: int) -> Diagnostic:
     return Diagnostic(line, column, Severity.WARNING, "tool-offset-missing", text, hint)
 
 
-def tool_change(state: State, made: Statement, word: Word, use: ToolUse) -> Block:
+def tool_change(state: State, statement: Statement, word: Word, use: ToolUse) -> Block:
     """T: another offset, the shift summed up by G10, no preset, no D, no nose compensation."""
     modal = state.modal
     number = int(word.value or 0)
     if modal.css and number:
         text = "G96 is active at a tool change: the spindle drive has to follow every jump of X."
-        state.log.warn(made.line, word.column, "tool-under-css", text, "Put G97 before the T.")
-    offset = _offset(state, made.line, word, use)
+        state.log.warn(statement.line, word.column, "tool-under-css", text, "Put G97 before the T.")
+    offset = _offset(state, statement.line, word, use)
     if number:
         state.pending_shift.update(dict.fromkeys(state.pending_shift, True))
     shift_x = modal.pending_shift_x if number else 0.0
@@ -54,44 +54,44 @@ def tool_change(state: State, made: Statement, word: Word, use: ToolUse) -> Bloc
             preset_x=0.0, preset_z=0.0, secondary=0, secondary_x=0.0, secondary_z=0.0,
         )
     )  # fmt: skip
-    state.tool_line = made.line if number else 0
+    state.tool_line = statement.line if number else 0
     state.fast = False  # the same tool again changes no word, and yet the next move has to be looked at
-    secondary(state, made)
-    return state.action(made.line, made.part("tool"), ToolChange(number))
+    secondary(state, statement)
+    return state.action(statement.line, statement.part("tool"), ToolChange(number))
 
 
-def secondary(state: State, made: Statement) -> None:
+def secondary(state: State, statement: Statement) -> None:
     """D: its pair is in the end point of this line's move and of all later ones."""
-    number = made.value("D")
+    number = statement.value("D")
     if number is None:
         return
-    state.contour.d_line = made.line
+    state.contour.d_line = statement.line
     offset = state.setup.secondary.get(int(number), SecondaryOffset()) if number else SecondaryOffset()
     state.adopt(state.modal._replace(secondary=int(number), secondary_x=offset.x, secondary_z=offset.z))
 
 
-def work_shift(state: State, made: Statement) -> Iterator[Block]:
+def work_shift(state: State, statement: Statement) -> Iterator[Block]:
     """G10: X and Z add to the shift that the next T takes. Raises ProgramError without either."""
-    check_together(made, made.entry)
-    x, z = on_step(state, made, "X") or 0.0, on_step(state, made, "Z") or 0.0
+    check_together(statement, statement.entry)
+    x, z = on_step(state, statement, "X") or 0.0, on_step(state, statement, "Z") or 0.0
     modal = state.modal
     state.adopt(
         modal._replace(pending_shift_x=modal.pending_shift_x + x, pending_shift_z=modal.pending_shift_z + z)
     )
-    state.pending_shift.setdefault(made.line, False)
-    yield state.action(made.line, made.part("frame"), WorkShift(x, z))
+    state.pending_shift.setdefault(statement.line, False)
+    yield state.action(statement.line, statement.part("frame"), WorkShift(x, z))
 
 
-def preset(state: State, made: Statement) -> Iterator[Block]:
+def preset(state: State, statement: Statement) -> Iterator[Block]:
     """G92: the current point gets these coordinates. Raises ProgramError without any."""
-    check_together(made, made.entry)
-    x, z = on_step(state, made, "X"), on_step(state, made, "Z")
+    check_together(statement, statement.entry)
+    x, z = on_step(state, statement, "X"), on_step(state, statement, "Z")
     x, z = state.x if x is None else x, state.z if z is None else z
     modal = state.modal
     preset_x, preset_z = modal.preset_x + state.x - x, modal.preset_z + state.z - z
     state.stay(modal._replace(preset_x=preset_x, preset_z=preset_z))
     state.tool_line = 0
-    yield state.action(made.line, made.part("frame"), Preset(x, z))
+    yield state.action(statement.line, statement.part("frame"), Preset(x, z))
 
 
 def warn_of_idle_shifts(state: State) -> None:

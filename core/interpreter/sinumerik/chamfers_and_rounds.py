@@ -33,21 +33,23 @@ class Corner:
     RND the radius.
     """
 
-    made: Statement
+    statement: Statement
     word: Word
     size: float
 
     def refuse(self, code: str, why: str, hint: str) -> ProgramError:
         """An error at the corner's word."""
-        return self.made.refuse(self.word, code, f"{self.word.text} cannot make a corner: {why}.", hint)
+        return self.statement.refuse(self.word, code, f"{self.word.text} cannot make a corner: {why}.", hint)
 
 
-def corner_of(state: State, made: Statement, block: Block) -> Corner | None:
+def corner_of(state: State, statement: Statement, block: Block) -> Corner | None:
     """The corner of a block that has been made. Raises ProgramError."""
-    word = made.corner
+    word = statement.corner
     if word is None:
         return None
-    corner = Corner(made, word, positive(made, word, state.length(made, word), "the size of a corner"))
+    corner = Corner(
+        statement, word, positive(statement, word, state.length(statement, word), "the size of a corner")
+    )
     if block.kind not in _CUT - {Kind.RAPID} or not _moves(block):
         hint = "CHF, CHR and RND take G1, G2 and G3."
         raise corner.refuse("corner-next", "the block is no line or arc", hint)
@@ -104,7 +106,9 @@ class Corners:
             cut, between, rest = self._elements(held.corner, first, last)
         except NoCornerError:
             text = f"lines {block.line} and {after.line} run in one direction: there is no corner to cut."
-            self._log.add(held.corner.made.warning(held.corner.word, "corner-straight", text, "Take it out."))
+            self._log.add(
+                held.corner.statement.warning(held.corner.word, "corner-straight", text, "Take it out.")
+            )
             yield from (block, *held.between)
             yield from self.take(after, corner)
             return

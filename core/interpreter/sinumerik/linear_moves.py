@@ -56,43 +56,49 @@ class AxisTravel(NamedTuple):
         return (self.length or abs(self.turn)) / time if time else min(speeds)
 
 
-def travel_of(state: State, made: Statement) -> AxisTravel:
+def travel_of(state: State, statement: Statement) -> AxisTravel:
     """Where a block leads. Raises ProgramError for a word that names no place."""
-    check_c(state, made)
+    check_c(state, statement)
     modal = state.modal
     dx, dz = modal.offset_x, modal.offset_z
-    if "suppression of offsets" in made.g:
+    if "suppression of offsets" in statement.g:
         modal, dx, dz = modal._replace(offset_c=0.0), 0.0, 0.0
-    x, z = _slide(state, made, "X", state.x, dx), _slide(state, made, "Z", state.z, dz)
-    travel = AxisTravel(state.x, state.z, state.c, x, z, state.c + _turn(state, made, modal), modal, dx, dz)
+    x, z = _slide(state, statement, "X", state.x, dx), _slide(state, statement, "Z", state.z, dz)
+    travel = AxisTravel(
+        state.x, state.z, state.c, x, z, state.c + _turn(state, statement, modal), modal, dx, dz
+    )
     return travel._replace(x=state.x, z=state.z) if travel.length < NO_WAY else travel
 
 
-def _slide(state: State, made: Statement, name: str, at: float, offset: float) -> float:
+def _slide(state: State, statement: Statement, name: str, at: float, offset: float) -> float:
     """The end of a linear axis."""
-    word = made.words.get(name)
+    word = statement.words.get(name)
     if word is None:
         return at
     if word.form in third_axis.NO_ROTARY:
         text = f"{word.text}: {word.form} needs a rotary axis."
-        raise made.refuse(word, third_axis.NO_ROTARY[word.form], text, f"Write {name}=AC( ) or {name}=IC( ).")
-    value = state.length(made, word) / (2.0 if name == "X" and state.modal.diameter else 1.0)
+        raise statement.refuse(
+            word, third_axis.NO_ROTARY[word.form], text, f"Write {name}=AC( ) or {name}=IC( )."
+        )
+    value = state.length(statement, word) / (2.0 if name == "X" and state.modal.diameter else 1.0)
     return at + value if _form(state, word) is Form.IC else value + offset
 
 
-def _turn(state: State, made: Statement, modal: Modal) -> float:
+def _turn(state: State, statement: Statement, modal: Modal) -> float:
     """Signed travel of C."""
-    word = made.words.get("C")
+    word = statement.words.get("C")
     if word is None:
         return 0.0
-    value, form, at = state.number(made, word), _form(state, word), state.c - modal.offset_c
+    value, form, at = state.number(statement, word), _form(state, word), state.c - modal.offset_c
     try:
         if state.setup.limits.c_modulo:
             return third_axis.modulo_travel(form, value, at)
         travel = third_axis.linear_travel(form, value, at)
         third_axis.check_reach(state.c + travel)
     except third_axis.TargetError as problem:
-        raise made.refuse(word, problem.number, f"{word.text}: {problem}.", _HINTS[problem.number]) from None
+        raise statement.refuse(
+            word, problem.number, f"{word.text}: {problem}.", _HINTS[problem.number]
+        ) from None
     return travel
 
 
@@ -117,20 +123,20 @@ _HINTS = {
 NO_FEED = 10860
 
 
-def feed_words(state: State, made: Statement) -> None:
+def feed_words(state: State, statement: Statement) -> None:
     """G94, G95 and F of a block. Changing between the two forgets F. Raises ProgramError."""
-    code = made.code("kind of feed")
+    code = statement.code("kind of feed")
     if code is not None and (code == 95) != state.modal.per_rev:
         state.adopt(state.modal._replace(per_rev=code == 95, feed=None))
-    word = made.words.get("F")
-    if word is None or made.code("dwell") is not None:
+    word = statement.words.get("F")
+    if word is None or statement.code("dwell") is not None:
         return
-    value = positive(made, word, state.number(made, word), "the feed")
+    value = positive(statement, word, state.number(statement, word), "the feed")
     # mm/min and degrees/min, or mm and degrees a revolution: the kind of block tells which.
     state.adopt(state.modal._replace(feed=value if state.modal.per_rev else value / 60.0))
 
 
-def check_feed(state: State, made: Statement, x0: float, x1: float) -> float:
+def check_feed(state: State, statement: Statement, x0: float, x1: float) -> float:
     """The feed in force for a block from radius ``x0`` to ``x1``, mm (degrees) a second or a revolution.
 
     Raises ProgramError: alarm 10860 where there is none; ours where G95 has no speed to go by.
@@ -138,45 +144,45 @@ def check_feed(state: State, made: Statement, x0: float, x1: float) -> float:
     modal = state.modal
     if modal.feed is None:
         hint = "Write F. Between G94 and G95 the old value is forgotten."
-        raise made.refuse(_mover(made), NO_FEED, "no feedrate is programmed.", hint)
+        raise statement.refuse(_mover(statement), NO_FEED, "no feedrate is programmed.", hint)
     if modal.css and modal.spindle and not modal.surface_speed:
         text = "G96 is in force and no S has given a surface speed."
-        raise made.refuse(made.words.get("S"), "surface-speed-missing", text, "Write S beside G96.")
+        raise statement.refuse(statement.words.get("S"), "surface-speed-missing", text, "Write S beside G96.")
     if modal.per_rev and not (state.rpm_at(x0) and state.rpm_at(x1)):
         text = "no spindle speed for G95: the spindle stands."
-        raise made.refuse(
-            _mover(made), "g95-spindle-stopped", text, "Start it with S and M3 or M4, or use G94."
+        raise statement.refuse(
+            _mover(statement), "g95-spindle-stopped", text, "Start it with S and M3 or M4, or use G94."
         )
     return modal.feed
 
 
-def _mover(made: Statement) -> Word | None:
+def _mover(statement: Statement) -> Word | None:
     """The word that wants to move."""
-    return next((made.words[name] for name in made.axes), None)
+    return next((statement.words[name] for name in statement.axes), None)
 
 
-def straight(state: State, made: Statement) -> Block:
+def straight(state: State, statement: Statement) -> Block:
     """G0 or G1 to where the words lead. Raises ProgramError."""
-    for name in sorted(ARC & made.words.keys()):
-        text = f"{made.words[name].text} belongs to an arc, and G{state.motion} is in force."
-        raise made.refuse(made.words[name], "word-unused", text, "Write G2 or G3, or take it out.")
-    travel = travel_of(state, made)
+    for name in sorted(ARC & statement.words.keys()):
+        text = f"{statement.words[name].text} belongs to an arc, and G{state.motion} is in force."
+        raise statement.refuse(statement.words[name], "word-unused", text, "Write G2 or G3, or take it out.")
+    travel = travel_of(state, statement)
     offset = travel.offset_x
     if state.motion == 0:
         speeds = state.setup.limits.speeds
-        return block_of(state, made, travel, Kind.RAPID, travel.rapid_rate(speeds))
-    feed = check_feed(state, made, travel.x0 - offset, travel.x - offset)
+        return block_of(state, statement, travel, Kind.RAPID, travel.rapid_rate(speeds))
+    feed = check_feed(state, statement, travel.x0 - offset, travel.x - offset)
     kind = Kind.ROTATE if travel.turn and not travel.length else Kind.FEED
-    return block_of(state, made, travel, kind, feed)
+    return block_of(state, statement, travel, kind, feed)
 
 
-def block_of(state: State, made: Statement, travel: AxisTravel, kind: Kind, feed: float) -> Block:
+def block_of(state: State, statement: Statement, travel: AxisTravel, kind: Kind, feed: float) -> Block:
     """The block of a move; the state then stands at its end."""
     state.x, state.z, state.c = travel.x, travel.z, travel.c
     modal = travel.modal
     dx, dz, dc = travel.offset_x, travel.offset_z, modal.offset_c
     return Block(
-        n=0, line=made.line.number, kind=kind, text=made.line.text,
+        n=0, line=statement.line.number, kind=kind, text=statement.line.text,
         x0=travel.x0 - dx, z0=travel.z0 - dz, c0=travel.c0 - dc,
         x=travel.x - dx, z=travel.z - dz, c=travel.c - dc,
         offset_x=dx, offset_z=dz, modal=modal, feed=feed, per_rev=modal.per_rev and kind is not Kind.RAPID,

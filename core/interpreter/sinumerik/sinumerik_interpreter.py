@@ -17,7 +17,7 @@ from core.interpreter.sinumerik.linear_moves import feed_words, straight
 from core.interpreter.sinumerik.modes_and_offsets import leave_offsets, modes, programmed_offset
 from core.interpreter.sinumerik.sinumerik_arcs import arc
 from core.interpreter.sinumerik.sinumerik_state import State
-from core.interpreter.sinumerik.sinumerik_statement import Statement, statement
+from core.interpreter.sinumerik.sinumerik_statement import Statement, statement_of
 from core.interpreter.sinumerik.spindle_and_dwell import dwell, spindle_words
 from core.interpreter.sinumerik.subprogram_flow import Flow, ends_main
 from core.language.diagnostics import Diagnostic, ProgramError
@@ -94,9 +94,9 @@ class Interpreter(Interpretation):
             if line.call:
                 self._flow.call(line)
                 return
-            made = statement(line)
-            ends = ends_main(made, called=self._flow.called)
-            yield from self._with_corners(made)
+            statement = statement_of(line)
+            ends = ends_main(statement, called=self._flow.called)
+            yield from self._with_corners(statement)
         except ProgramError as problem:
             self._refuse(problem.diagnostic)
             ends = False
@@ -111,49 +111,51 @@ class Interpreter(Interpretation):
         elif self._flow.called and any(word.name == "M" and word.value == 17 for word in line.words):
             self._flow.back()
 
-    def _with_corners(self, made: Statement) -> Iterator[Block]:
+    def _with_corners(self, statement: Statement) -> Iterator[Block]:
         """The blocks of a statement, with the corners cut that are known by now."""
-        number = made.line.number
+        number = statement.line.number
         place = self._flow.shown_line(number)
-        for block in self._blocks(made):
-            corner = corner_of(self._state, made, block) if block.moves else None
+        for block in self._blocks(statement):
+            corner = corner_of(self._state, statement, block) if block.moves else None
             yield from self._corners.take(block if place == number else replace(block, line=place), corner)
 
-    def _blocks(self, made: Statement) -> Iterator[Block]:
+    def _blocks(self, statement: Statement) -> Iterator[Block]:
         """What a block does, in the order in which it does it: states, spindle, motion, stops."""
         state = self._state
-        for word in made.sets:
-            state.r[int(word.name[1:])] = state.number(made, word)
-        if made.offset_key is not None:
-            programmed_offset(state, made)
+        for word in statement.sets:
+            state.r[int(word.name[1:])] = state.number(statement, word)
+        if statement.offset_key is not None:
+            programmed_offset(state, statement)
             return
-        if made.g or made.keys:
-            modes(state, made)
-        if made.g or "F" in made.words:
-            feed_words(state, made)
-        if "dwell" in made.g:
-            yield dwell(state, made)
+        if statement.g or statement.keys:
+            modes(state, statement)
+        if statement.g or "F" in statement.words:
+            feed_words(state, statement)
+        if "dwell" in statement.g:
+            yield dwell(state, statement)
             return
-        if made.m or not SPINDLE.isdisjoint(made.words) or "kind of spindle speed" in made.g:
-            yield from spindle_words(state, made)
-        if made.axes or ARC & made.words.keys():
-            yield arc(state, made) if state.motion in {2, 3} else straight(state, made)
-        elif "suppression of offsets" in made.g:
+        if statement.m or not SPINDLE.isdisjoint(statement.words) or "kind of spindle speed" in statement.g:
+            yield from spindle_words(state, statement)
+        if statement.axes or ARC & statement.words.keys():
+            yield arc(state, statement) if state.motion in {2, 3} else straight(state, statement)
+        elif "suppression of offsets" in statement.g:
             text = "G53 acts in a block that moves an axis."
-            raise made.refuse(made.g["suppression of offsets"], "word-unused", text, "Add the axes.")
-        if made.m:
-            yield from self._stops(made)
+            raise statement.refuse(
+                statement.g["suppression of offsets"], "word-unused", text, "Add the axes."
+            )
+        if statement.m:
+            yield from self._stops(statement)
 
-    def _stops(self, made: Statement) -> Iterator[Block]:
+    def _stops(self, statement: Statement) -> Iterator[Block]:
         """M0, M1, and the end."""
-        state, line = self._state, made.line
+        state, line = self._state, statement.line
         for code in (0, 1):
-            if code in made.m:
+            if code in statement.m:
                 yield state.action(line.number, f"M{code}", ProgramStop(optional=code == 1))
-        if made.ends and not self._flow.called:
+        if statement.ends and not self._flow.called:
             leave_offsets(state)
             state.adopt(state.modal._replace(spindle=0))
-            code = next(code for code in (2, 17, 30) if code in made.m)
+            code = next(code for code in (2, 17, 30) if code in statement.m)
             yield state.action(line.number, f"M{code}", ProgramEnd(reset=True))
 
     def _ended(self) -> Iterator[Block]:

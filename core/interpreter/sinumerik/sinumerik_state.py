@@ -44,18 +44,18 @@ class State:
         frame = self.modal._replace(tool_x=one.x, tool_z=one.z, zero_x=other.x, zero_z=other.z)
         self.adopt(frame._replace(offset_c=one.c + other.c))
 
-    def length(self, made: Statement, word: Word) -> float:
+    def length(self, statement: Statement, word: Word) -> float:
         """A length in mm: as written under G71, inches under G70."""
-        return self.number(made, word) * (1.0 if self.modal.metric else MM_PER_INCH)
+        return self.number(statement, word) * (1.0 if self.modal.metric else MM_PER_INCH)
 
-    def number(self, made: Statement, word: Word) -> float:
+    def number(self, statement: Statement, word: Word) -> float:
         """The number of a word, or of the R parameter behind it. Raises ProgramError where that has none."""
         if word.value is not None:
             return word.value
         value = self.r.get(word.r or 0)
         if value is None:
             text = f"R{word.r} has no value: the program has not set it."
-            raise made.refuse(word, "r-unset", text, f"Write R{word.r}=… before it.")
+            raise statement.refuse(word, "r-unset", text, f"Write R{word.r}=… before it.")
         return value
 
     def rpm_at(self, x: float) -> float:
@@ -92,8 +92,8 @@ class State:
         )  # fmt: skip
 
 
-def positive(made: Statement, word: Word, value: float, what: str) -> float:
+def positive(statement: Statement, word: Word, value: float, what: str) -> float:
     """A number that must be over 0. Raises ProgramError."""
     if value > 0.0:
         return value
-    raise made.refuse(word, "not-positive", f"{word.text}: {what} must be over 0.", "Correct it.")
+    raise statement.refuse(word, "not-positive", f"{word.text}: {what} must be over 0.", "Correct it.")

@@ -60,84 +60,104 @@ class Statement:
         return replace(self.refuse(word, code, text, hint).diagnostic, severity=Severity.WARNING)
 
 
-def statement(line: Line) -> Statement:
+def statement_of(line: Line) -> Statement:
     """The block made ready. Raises ProgramError for what may not stand in one block."""
-    made = Statement(line)
+    statement = Statement(line)
     for word in line.words:
-        _sort(made, word)
-    if made.m or made.keys:
-        _check_m(made)
-    if made.keys or "dwell" in made.g:
-        _check_alone(made)
-    _check_corner(made)
-    return made
+        _sort(statement, word)
+    if statement.m or statement.keys:
+        _check_m(statement)
+    if statement.keys or "dwell" in statement.g:
+        _check_alone(statement)
+    _check_corner(statement)
+    return statement
 
 
-def _sort(made: Statement, word: Word) -> None:
+def _sort(statement: Statement, word: Word) -> None:
     if word.name == "G":
-        _sort_g(made, word)
+        _sort_g(statement, word)
     elif word.name == "M":
         number = int(word.value or 0)
         if number not in known.M_CODES:
-            raise made.refuse(word, "m-unknown", f"{word.text} is no code of this control.", "Take it out.")
-        made.m[number] = word
+            raise statement.refuse(
+                word, "m-unknown", f"{word.text} is no code of this control.", "Take it out."
+            )
+        statement.m[number] = word
     elif word.name in known.KEYS:
-        made.keys[word.name] = word
+        statement.keys[word.name] = word
     elif word.name[0] == "R" and word.name not in known.CORNERS:
-        made.sets.append(word)
-    elif word.name in made.words:
-        raise made.refuse(word, TWICE, f"{word.name} is programmed twice in the block.", "Keep one of them.")
+        statement.sets.append(word)
+    elif word.name in statement.words:
+        raise statement.refuse(
+            word, TWICE, f"{word.name} is programmed twice in the block.", "Keep one of them."
+        )
     else:
-        made.words[word.name] = word
+        statement.words[word.name] = word
 
 
-def _sort_g(made: Statement, word: Word) -> None:
+def _sort_g(statement: Statement, word: Word) -> None:
     group = known.G_GROUPS.get(int(word.value or 0))
     if group is None:
-        raise made.refuse(word, "g-unknown", f"{word.text} is no code of this control.", "Take it out.")
-    before = made.g.get(group)
+        raise statement.refuse(word, "g-unknown", f"{word.text} is no code of this control.", "Take it out.")
+    before = statement.g.get(group)
     if before is not None:
         text = f"{before.text} and {word.text} are of one group ({group})."
-        raise made.refuse(word, ONE_GROUP, text, "One G code of a group per block.")
-    made.g[group] = word
+        raise statement.refuse(word, ONE_GROUP, text, "One G code of a group per block.")
+    statement.g[group] = word
 
 
-def _check_m(made: Statement) -> None:
-    if len(made.m) > known.MOST_M:
-        text = f"the block holds {len(made.m)} M codes."
-        raise made.refuse(list(made.m.values())[-1], "m-too-many", text, f"{known.MOST_M} are the most.")
+def _check_m(statement: Statement) -> None:
+    if len(statement.m) > known.MOST_M:
+        text = f"the block holds {len(statement.m)} M codes."
+        raise statement.refuse(
+            list(statement.m.values())[-1], "m-too-many", text, f"{known.MOST_M} are the most."
+        )
     for group in ({3, 4, 5}, {0, 1, 2, 17, 30}):
-        found = sorted(group & made.m.keys())
+        found = sorted(group & statement.m.keys())
         if len(found) > 1:
             text = f"M{found[0]} and M{found[1]} exclude each other."
-            raise made.refuse(made.m[found[1]], "m-conflict", text, "Keep one of them.")
-    if "DIAMON" in made.keys and "DIAMOF" in made.keys:
+            raise statement.refuse(statement.m[found[1]], "m-conflict", text, "Keep one of them.")
+    if "DIAMON" in statement.keys and "DIAMOF" in statement.keys:
         text = "DIAMON and DIAMOF are of one group."
-        raise made.refuse(made.keys["DIAMOF"], ONE_GROUP, text, "Keep one of them.")
+        raise statement.refuse(statement.keys["DIAMOF"], ONE_GROUP, text, "Keep one of them.")
 
 
-def _check_alone(made: Statement) -> None:
+def _check_alone(statement: Statement) -> None:
     """G4, TRANS and ATRANS have a block of their own."""
-    dwell, key = made.g.get("dwell"), made.offset_key
+    dwell, key = statement.g.get("dwell"), statement.offset_key
     if dwell is not None:
-        others = made.words.keys() - _DWELL_WORDS or made.m or made.keys or made.sets or len(made.g) > 1
-        if others or len(made.words) != 1:
+        others = (
+            statement.words.keys() - _DWELL_WORDS
+            or statement.m
+            or statement.keys
+            or statement.sets
+            or len(statement.g) > 1
+        )
+        if others or len(statement.words) != 1:
             text = "G4 needs a block of its own, with F (seconds) or S (revolutions)."
-            raise made.refuse(dwell, "own-block", text, "Split the block.")
+            raise statement.refuse(dwell, "own-block", text, "Split the block.")
     if key is not None:
-        others = made.words.keys() - set(known.AXES) or made.m or made.g or made.sets or len(made.keys) > 1
+        others = (
+            statement.words.keys() - set(known.AXES)
+            or statement.m
+            or statement.g
+            or statement.sets
+            or len(statement.keys) > 1
+        )
         if others:
             text = f"{key.name} needs a block of its own, with axes and nothing else."
-            raise made.refuse(key, "own-block", text, "Split the block.")
+            raise statement.refuse(key, "own-block", text, "Split the block.")
 
 
-def _check_corner(made: Statement) -> None:
-    if known.CORNERS.isdisjoint(made.words):
+def _check_corner(statement: Statement) -> None:
+    if known.CORNERS.isdisjoint(statement.words):
         return
-    corners = sorted(known.CORNERS & made.words.keys())
+    corners = sorted(known.CORNERS & statement.words.keys())
     if len(corners) > 1:
         text = f"{corners[0]} and {corners[1]} stand in one block."
-        raise made.refuse(made.words[corners[1]], "corner-both", text, "Keep one of them.")
-    if corners and not {"X", "Z"} & made.words.keys():
+        raise statement.refuse(statement.words[corners[1]], "corner-both", text, "Keep one of them.")
+    if corners and not {"X", "Z"} & statement.words.keys():
         text = f"{corners[0]} stands in a block without X or Z."
-        raise made.refuse(made.words[corners[0]], "corner-without-move", text, "Put it behind a move.")
+        raise statement.refuse(
+            statement.words[corners[0]], "corner-without-move", text, "Put it behind a move."
+        )

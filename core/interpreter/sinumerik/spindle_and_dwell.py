@@ -15,118 +15,120 @@ _FASTEST_SURFACE = 100_000.0  # mm/s; ten times what any tool stands
 _LONGEST_DWELL = 3600.0  # s
 
 
-def spindle_words(state: State, made: Statement) -> Iterator[Block]:
+def spindle_words(state: State, statement: Statement) -> Iterator[Block]:
     """The spindle's part of a block, which acts before its motion. Raises ProgramError."""
     before = (state.modal.spindle, state.rpm, state.css)
-    _modes(state, made)
-    _limit(state, made)
-    _speed(state, made)
-    if 5 in made.m:
+    _modes(state, statement)
+    _limit(state, statement)
+    _speed(state, statement)
+    if 5 in statement.m:
         state.adopt(state.modal._replace(spindle=0))
-        yield state.action(made.line.number, "M5", SpindleStop())
+        yield state.action(statement.line.number, "M5", SpindleStop())
         return
-    direction = next((m for m in (3, 4) if m in made.m), 0)
+    direction = next((m for m in (3, 4) if m in statement.m), 0)
     if direction:
-        _check_start(state, made, made.m[direction])
+        _check_start(state, statement, statement.m[direction])
         state.adopt(state.modal._replace(spindle=1 if direction == 3 else -1))
     if direction or (state.modal.spindle and before != (state.modal.spindle, state.rpm, state.css)):
-        yield state.action(made.line.number, _text(made), SpindleRun(state.rpm, state.css))
+        yield state.action(statement.line.number, _text(statement), SpindleRun(state.rpm, state.css))
 
 
-def _text(made: Statement) -> str:
-    words = [made.g.get("kind of spindle speed"), made.words.get("S"), made.words.get("LIMS")]
-    return " ".join(word.text for word in (*words, made.m.get(3), made.m.get(4)) if word is not None)
+def _text(statement: Statement) -> str:
+    words = [statement.g.get("kind of spindle speed"), statement.words.get("S"), statement.words.get("LIMS")]
+    return " ".join(
+        word.text for word in (*words, statement.m.get(3), statement.m.get(4)) if word is not None
+    )
 
 
-def _modes(state: State, made: Statement) -> None:
-    code = made.code("kind of spindle speed")
+def _modes(state: State, statement: Statement) -> None:
+    code = statement.code("kind of spindle speed")
     if code == 96 and not state.modal.css:
-        _demand_controlled(state, made, made.g["kind of spindle speed"])
+        _demand_controlled(state, statement, statement.g["kind of spindle speed"])
         state.adopt(state.modal._replace(css=True))
         if not state.modal.per_rev:
-            _warn_of_minutes(state, made)
+            _warn_of_minutes(state, statement)
     elif code == 97 and state.modal.css:
         # The spindle goes on at the speed it has; going back to an old S would be a surprise.
         rpm = abs(state.rpm) if state.modal.spindle else state.modal.rpm
         state.adopt(state.modal._replace(css=False, rpm=rpm))
 
 
-def _warn_of_minutes(state: State, made: Statement) -> None:
+def _warn_of_minutes(state: State, statement: Statement) -> None:
     """Some controls read F as mm a revolution from G96 on; this one goes by G94 and G95 alone."""
     text = "G96 is in force and F counts in mm/min (G94)."
     hint = "Write G95 where F is meant as mm a revolution."
-    state.log.add(made.warning(made.g["kind of spindle speed"], "g96-by-minute", text, hint))
+    state.log.add(statement.warning(statement.g["kind of spindle speed"], "g96-by-minute", text, hint))
 
 
-def _limit(state: State, made: Statement) -> None:
-    word = made.words.get("LIMS")
+def _limit(state: State, statement: Statement) -> None:
+    word = statement.words.get("LIMS")
     if word is not None:
-        _demand_controlled(state, made, word)
-        highest = positive(made, word, state.number(made, word), "the limit of the speed")
+        _demand_controlled(state, statement, word)
+        highest = positive(statement, word, state.number(statement, word), "the limit of the speed")
         state.adopt(state.modal._replace(css_max=highest))
 
 
-def _speed(state: State, made: Statement) -> None:
+def _speed(state: State, statement: Statement) -> None:
     """S: rpm under G97, m/min under G96."""
-    word = made.words.get("S")
-    if word is None or made.code("dwell") is not None:
+    word = statement.words.get("S")
+    if word is None or statement.code("dwell") is not None:
         return
-    _demand_controlled(state, made, word)
-    value = state.number(made, word)
+    _demand_controlled(state, statement, word)
+    value = state.number(statement, word)
     if value < 0:
         text = f"{word.text}: the speed has no sign; M3 and M4 say the direction."
-        raise made.refuse(word, "speed-sign", text, "Take the sign out.")
+        raise statement.refuse(word, "speed-sign", text, "Take the sign out.")
     if state.modal.css:
         if value * METRES_PER_MINUTE > _FASTEST_SURFACE:
             text = f"{word.text} m/min is no surface speed that a tool can stand."
-            raise made.refuse(word, "speed-range", text, "G97 makes S rpm.")
+            raise statement.refuse(word, "speed-range", text, "G97 makes S rpm.")
         state.adopt(state.modal._replace(surface_speed=value * METRES_PER_MINUTE))
         return
     highest = state.setup.limits.max_rpm
     state.adopt(state.modal._replace(rpm=min(value, highest)))
     if value > highest:
-        raise made.refuse(
+        raise statement.refuse(
             word, "speed-range", f"{word.text} is over the spindle's {highest:g} rpm.", "Lower S."
         )
 
 
-def _demand_controlled(state: State, made: Statement, word: Word) -> None:
+def _demand_controlled(state: State, statement: Statement, word: Word) -> None:
     if not state.setup.limits.spindle_controlled:
         text = f"{word.text} needs a controlled spindle, which this machine does not have."
-        raise made.refuse(word, "no-controlled-spindle", text, "Take it out.")
+        raise statement.refuse(word, "no-controlled-spindle", text, "Take it out.")
 
 
-def _check_start(state: State, made: Statement, word: Word) -> None:
+def _check_start(state: State, statement: Statement, word: Word) -> None:
     limits = state.setup.limits
     if not limits.spindle_controlled:
         state.adopt(state.modal._replace(rpm=limits.max_rpm))  # it has one speed
     if not (state.modal.surface_speed if state.modal.css else state.modal.rpm):
         text = f"{word.text} starts the spindle and no S has said how fast."
-        raise made.refuse(word, "speed-missing", text, "Write S in the block.")
+        raise statement.refuse(word, "speed-missing", text, "Write S in the block.")
     if not state.modal.collet_closed and not limits.start_with_collet_open:
-        raise made.refuse(
+        raise statement.refuse(
             word, "collet-open", f"{word.text} starts the spindle with the collet open.", "Close it."
         )
 
 
-def dwell(state: State, made: Statement) -> Block:
+def dwell(state: State, statement: Statement) -> Block:
     """G4 F in seconds, G4 S in revolutions of the spindle; the F and S in force stay. Raises ProgramError."""
-    word = made.words.get("F") or made.words["S"]
-    value = state.number(made, word)
+    word = statement.words.get("F") or statement.words["S"]
+    value = state.number(statement, word)
     if value < 0:
-        raise made.refuse(word, "dwell-range", f"{word.text}: a dwell is 0 or longer.", "Correct it.")
-    seconds = value if word.name == "F" else value / _turning(state, made, word) * 60.0
+        raise statement.refuse(word, "dwell-range", f"{word.text}: a dwell is 0 or longer.", "Correct it.")
+    seconds = value if word.name == "F" else value / _turning(state, statement, word) * 60.0
     if seconds > _LONGEST_DWELL:
         text = f"{word.text} is a dwell of {seconds:.0f} s; {_LONGEST_DWELL:g} are the most."
-        raise made.refuse(word, "dwell-range", text, "F counts in seconds, S in revolutions.")
-    return state.action(made.line.number, made.line.text, Dwell(seconds))
+        raise statement.refuse(word, "dwell-range", text, "F counts in seconds, S in revolutions.")
+    return state.action(statement.line.number, statement.line.text, Dwell(seconds))
 
 
-def _turning(state: State, made: Statement, word: Word) -> float:
+def _turning(state: State, statement: Statement, word: Word) -> float:
     """The speed by which revolutions become seconds, rpm."""
-    _demand_controlled(state, made, word)
+    _demand_controlled(state, statement, word)
     rpm = abs(state.rpm)
     if not rpm:
         text = f"G4 {word.text} waits for revolutions of a spindle that stands."
-        raise made.refuse(word, "dwell-spindle-stopped", text, "Start it with M3 or M4, or write G4 F.")
+        raise statement.refuse(word, "dwell-spindle-stopped", text, "Start it with M3 or M4, or write G4 F.")
     return rpm

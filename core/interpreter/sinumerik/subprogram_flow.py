@@ -113,13 +113,13 @@ class Flow:
         return Diagnostic(place, 0, found.severity, found.code, message, found.hint)
 
 
-def ends_main(made: Statement, *, called: bool) -> bool:
+def ends_main(statement: Statement, *, called: bool) -> bool:
     """Whether the block ends the whole program; M17 ends a subprogram. Raises ProgramError."""
     for code in (2, 30):
-        if called and code in made.m:
+        if called and code in statement.m:
             text = f"M{code} ends a main program, and this is a subprogram."
-            raise made.refuse(made.m[code], "end-in-subprogram", text, "Write M17.")
-    return made.ends and not called
+            raise statement.refuse(statement.m[code], "end-in-subprogram", text, "Write M17.")
+    return statement.ends and not called
 
 
 def _refused(line: Line, code: str, text: str, hint: str) -> ProgramError:
