@@ -2,6 +2,8 @@
 
 ``20x20``, ``3/4"`` and ``16mm`` are sizes of a shank; ``MCLNR 2020K12`` (ISO 5608) and ``MCLNR-124B``
 (ANSI B212.5) are holders with a shank, ``S16R-SCLCR09`` (ISO 5609) and ``A10-SCLCR2`` boring bars.
+Style letters and codes are as catalogues print them; reach and head are the usual ones and not those of
+one maker: for less than a millimetre measure the holder and give its outline.
 ``0,4 18,4 18,60 0,60`` is an outline, mm: Z and X from the control point. All else is a name.
 """
 

@@ -2,7 +2,8 @@
 
 ``CNMG 120408`` and ``CNMG432`` are the same insert: a rhombus of 80° without clearance, inscribed circle
 12.7 mm, 4.76 mm thick, nose radius .8 mm (1/32 in). The tables are those of ISO 1832 (shape, normal
-clearance, tolerance, type, size, thickness, corner) and of ANSI B212.4 (sizes in fractions of an inch).
+clearance, tolerance, type, size, thickness, corner) and of ANSI B212.4 (sizes in fractions of an inch), held
+against the keys to insert codes in the catalogues of Mitsubishi, Widia, Palbit and Denitool.
 """
 
 from __future__ import annotations
@@ -64,19 +65,32 @@ _LETTERS: tuple[tuple[str, Iterable[str]], ...] = (
 # --- ISO 1832, symbols 5 to 7 ------------------------------------------------------------------------------
 
 # Inscribed circles in inches; those under 1/4 in only where the standard names an edge for them.
-_SERIES = (1 / 4, 5 / 16, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 1.0, 5 / 4)
+_SERIES = (1 / 4, 5 / 16, 3 / 8, 7 / 16, 1 / 2, 9 / 16, 5 / 8, 11 / 16, 3 / 4, 7 / 8, 1.0, 5 / 4)
 _SMALL = (5 / 32, 3 / 16, 7 / 32)
 _UNUSUAL: Mapping[str, Mapping[str, float]] = {
-    # Makers' sizes for the smallest boring bars (CCGT 0301, CCGT 04T0); the standard's 04 is 4.76 mm.
-    "C": {"03": 3.5, "04": 4.3},
+    "C": {"03": 5 / 32 * MM_PER_INCH},  # whose edge of 4.03 mm would be 04, and that is 3/16 in
     "K": {"16": 9.525},
     "R": {f"{circle:02d}": float(circle) for circle in (5, 6, 8, 10, 16, 20, 25, 32)}
     | {"09": 9.525, "12": 12.7, "15": 15.875, "19": 19.05},
     "W": {"L3": 4.7625},
 }
+# Thin inserts of the smallest boring bars (CCGT 0301, CCGT 04T0) have circles of the makers' own, mm.
+_THIN: Mapping[tuple[str, str], float] = {
+    **{("03", "01"): 3.5, ("03", "S1"): 3.5, ("04", "T0"): 4.3, ("04", "T1"): 4.3},
+}
 _METRIC_ROUND = 12.0  # mm; RCMT 1204M0, beside 12.7 mm of RNMG 120400
 _THICKNESS = {
-    **{"01": 1.59, "T0": 1.79, "T1": 1.98, "02": 2.38, "T2": 2.78, "03": 3.18, "T3": 3.97, "04": 4.76},
+    **{
+        "S1": 1.39,
+        "01": 1.59,
+        "T0": 1.79,
+        "T1": 1.98,
+        "02": 2.38,
+        "T2": 2.78,
+        "03": 3.18,
+        "T3": 3.97,
+        "04": 4.76,
+    },
     **{"T4": 4.96, "05": 5.56, "T5": 5.95, "06": 6.35, "T6": 6.75, "07": 7.94, "09": 9.52, "T9": 9.72},
     **{"11": 11.11, "12": 12.7},
 }
@@ -89,10 +103,20 @@ _K_EDGE = 16.15  # mm, the long edge of KNUX 1604..: the only K that is turned w
 
 _EIGHTHS = {
     **{"1.2": 5 / 32, "1.5": 3 / 16, "1.8": 7 / 32, "2": 1 / 4, "2.5": 5 / 16, "3": 3 / 8},
-    **{"4": 1 / 2, "5": 5 / 8, "6": 3 / 4, "8": 1.0},
+    **{"4": 1 / 2, "5": 5 / 8, "6": 3 / 4, "7": 7 / 8, "8": 1.0},
 }
 _SIXTEENTHS = {
-    **{"1": 1 / 16, "1.2": 5 / 64, "1.5": 3 / 32, "2": 1 / 8, "2.5": 5 / 32, "3": 3 / 16, "3.5": 7 / 32},
+    **{
+        "1": 1 / 16,
+        "1.1": 0.07,
+        "1.2": 5 / 64,
+        "1.5": 3 / 32,
+        "1.8": 7 / 64,
+        "2": 1 / 8,
+        "2.5": 5 / 32,
+        "3": 3 / 16,
+        "3.5": 7 / 32,
+    },
     **{"4": 1 / 4, "5": 5 / 16, "6": 3 / 8},
 }
 _SIXTY_FOURTHS = {
@@ -127,7 +151,7 @@ def metric_sizes(shape: str) -> dict[str, float]:
     for inch in (*(_SMALL if shape in "CDSTVW" else ()), *_SERIES):
         circle = round(inch * MM_PER_INCH, 6)
         # A triangle about 1/4 in has 10.9985 mm, which the standard's tables have rounded to 11.
-        sizes[f"{int(edge_length(corners[0], corners[1], circle) + 0.01):02d}"] = circle
+        sizes[f"{int(edge_length(corners[0], corners[1], circle) + 0.005):02d}"] = circle
     return {**sizes, **_UNUSUAL.get(shape, {})}
 
 
@@ -194,6 +218,8 @@ def _metric(size: _Size) -> tuple[float, float, float]:
     """Inscribed circle, thickness and nose radius, mm."""
     edge = size.left[:2]
     circle = size.take(edge, f"size of insert shape {size.shape}", metric_sizes(size.shape))
+    if size.shape == "C":
+        circle = _THIN.get((edge, size.left[:2]), circle)
     thickness = size.take(size.left[:2], "thickness", _THICKNESS)
     if size.shape != "R":
         return circle, thickness, size.take(size.left[:2], "corner radius (tenths of a mm)", _CORNER)
@@ -202,7 +228,7 @@ def _metric(size: _Size) -> tuple[float, float, float]:
     return circle, thickness, circle / 2.0
 
 
-_FRACTION = re.compile(r"1\.[258]|[23]\.5|\d?")
+_FRACTION = re.compile(r"1\.[1258]|[23]\.5|\d?")
 _CORNER_FRACTION = re.compile(r"0?\.[25]|\d?")
 
 

@@ -93,7 +93,7 @@ def test_size_is_the_edge_in_whole_millimetres(shape: str) -> None:
     for figures, circle in metric_sizes(shape).items():
         edge = decoded_edge(shape, circle)
         if figures not in {"L3", "03", "04"}:  # makers' and doubled names
-            assert int(figures) == int(edge + 0.01)
+            assert int(figures) == int(edge + 0.005)
 
 
 def decoded_edge(shape: str, circle: float) -> float:
@@ -133,3 +133,32 @@ def test_code_that_means_nothing_says_which_character(code: str, says: str) -> N
         decoded(code)
     assert says in str(caught.value)
     assert str(caught.value).startswith(f"{code}: ")
+
+
+@pytest.mark.parametrize(
+    ("circle", "figures"),
+    [  # the keys to insert codes of two catalogues: C, D, S, T, V, W by the inscribed circle
+        (4.7625, ("04", "05", "04", "08", "08", "L3")),
+        (5.55625, ("05", "06", "05", "09", "09", "03")),
+        (6.35, ("06", "07", "06", "11", "11", "04")),
+        (7.9375, ("08", "09", "07", "13", "13", "05")),
+        (11.1125, ("11", "13", "11", "19", "19", "07")),
+        (14.2875, ("14", "17", "14", "24", "24", "09")),
+        (17.4625, ("17", "21", "17", "30", "30", "11")),
+        (22.225, ("22", "27", "22", "38", "38", "15")),
+    ],
+)
+def test_sizes_are_those_of_the_catalogues(circle: float, figures: tuple[str, ...]) -> None:
+    for shape, name in zip("CDSTVW", figures, strict=True):
+        assert metric_sizes(shape)[name] == pytest.approx(circle)
+
+
+def test_thin_inserts_of_small_bars_have_makers_circles() -> None:
+    assert decoded("CCMT 040204").inscribed_circle == pytest.approx(4.7625)
+    assert decoded("CCGT 04T002").inscribed_circle == 4.3
+    assert decoded("CCGT 030102").inscribed_circle == 3.5
+    assert decoded("CCGT 03S102").thickness == 1.39
+
+
+def test_a_large_triangle_is_not_rounded_up() -> None:
+    assert metric_sizes("T")["54"] == pytest.approx(31.75)  # 54.993 mm
