@@ -12,7 +12,8 @@ _HEAD = """# What the proof looks for
 
 Written from `core/proving/part_checks.py` by `python -m core.proving.checks_page docs/checks.md`. Each
 finding has its id, line, elementary block and remedy; an error refuses the program. The metal is exact to
-.004 mm (.00016 in) along Z and .0015 mm (.00006 in) in r.
+.004 mm (.00016 in) along Z and .0015 mm (.00006 in) in r. A rapid that scrapes a cone or a shoulder is found
+from .033 mm (.0013 in) on, square to the surface; what scrapes less may pass.
 
 At a machine an error refuses Cycle Start where what it rests on was said: the stock (command line, store, the
 page PART), the shape of the tool. Where that is assumed it is a warning, announced before the start.

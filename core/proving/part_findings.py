@@ -28,9 +28,11 @@ if TYPE_CHECKING:
     from core.part.polar_field import Taken
     from core.proving.mill_moves import MillMove
 
+RAPID = 0.0254
+"""mm of metal, in r and in Z, that a rapid may touch."""
+
 _MOST = 100
 _CHUCK_STEP = 0.05  # mm
-_RAPID = 0.0254  # mm of metal that a rapid may touch
 _SLENDER = 5.0
 _STUB = (0.05, 1.0)  # mm of radius that a part-off leaves
 _SAFE = 0.5  # of the speed at which a bar begins to whirl
@@ -127,7 +129,7 @@ class PartFindings:
             self._add("stock-whips", move, f"{text} {abs(move.rpm):.0f}.")
 
     def _rapid(self, move: TipMove, met: Cut) -> None:
-        if met.depth <= _RAPID or met.width <= _RAPID:
+        if met.depth <= RAPID or met.width <= RAPID:
             return
         what = "A rapid" if move.kind is Kind.RAPID else "A feed as fast as a rapid"
         behind_cut = self._before is not None and not self._before.quick
@@ -156,7 +158,7 @@ class PartFindings:
             self._tell("through-part", move.line, move.n, f"T{tool} goes over the axis, through the part.")
         if not move.quick:
             self._airs.mill(move.line, move.n, tool, cut=met.volume > 0.0)
-        if move.quick and met.volume > _RAPID * math.pi * (shape.diameter / 2.0) ** 2:
+        if move.quick and met.volume > RAPID * math.pi * (shape.diameter / 2.0) ** 2:
             where = f"Z {modal.length_text(met.front)} … {modal.length_text(met.back)}"
             self._tell(
                 "rapid-into-stock", move.line, move.n, f"A rapid of a live tool goes into metal at {where}."
