@@ -338,10 +338,9 @@ def _thread_sheet(title: str, thread: Thread, vmax: float, metric: bool, marked:
 
 def _ball_sheet(title: str, ball: BallBar, found: Found, metric: bool) -> Sheet:
     u, v = found.axes
-    a_metre = tr("a metre")
 
     def lean(value: float) -> str:
-        return f"{_length(value, metric)} {a_metre}" if math.isfinite(value) else formats.NOTHING
+        return f"{formats.fixed(value, 3)} mm/m" if math.isfinite(value) else formats.NOTHING
 
     def told(value: float) -> str:
         return _length(value, metric) if math.isfinite(value) else formats.NOTHING

@@ -18,6 +18,7 @@ FloatArray = npt.NDArray[np.float64]
 LEAST_TURNS = 2.0
 _EVEN = 0.04  # by which the way of a turn may differ within a pass
 _ALIKE = 0.02  # by which leads of passes of one thread may differ
+_ON_LINE = 0.1  # of a lead that two pieces of a pass may lie apart
 _LEAST_LEAD = 0.05  # mm a turn
 _EDGE = 0.5  # turns at both ends, in which the slide still speeds up
 _POINTS = 24  # of a turn, at which the way is compared
@@ -123,6 +124,21 @@ def _runs(turns: FloatArray, along: FloatArray) -> list[Run]:
             edge = min(_EDGE, 0.1 * (grid[b] - grid[a]))
             first, last = np.searchsorted(t, (grid[a] + edge, grid[b] - edge))
             found.append((int(first), int(last), middle, int(np.searchsorted(t, grid[a]))))
+    return _joined(found, direction * turns, along, direction)
+
+
+def _joined(runs: list[Run], turns: FloatArray, along: FloatArray, direction: float) -> list[Run]:
+    """Pieces of one pass are one: where the next begins on the line on which the last ended."""
+    found: list[Run] = []
+    for run in runs:
+        if found:
+            first, last, slope, out = found[-1]
+            on = along[last] + direction * slope * (turns[run[0]] - turns[last])
+            same = abs(run[2] - slope) <= _EVEN * abs(slope)
+            if same and abs(along[run[0]] - on) <= _ON_LINE * abs(slope):
+                found[-1] = (first, run[1], slope, out)
+                continue
+        found.append(run)
     return found
 
 

@@ -79,6 +79,15 @@ def test_a_known_ripple() -> None:
     assert [each.ripple for each in found(ripple=4.0).passes] == pytest.approx([8.0] * 3, abs=0.1)
 
 
+def test_a_pass_with_a_jolt_in_it_is_one_pass() -> None:
+    turns, along, depth, speed = cut()
+    jolt = (turns > 12.0) & (turns < 12.2)
+    along[jolt] += 0.05 * LEAD * np.sin(2.0 * np.pi * (turns[jolt] - 12.0) / 0.2)
+    thread = find_thread(turns, along, depth, speed)
+    assert len(thread.passes) == 3
+    assert [np.ptp(each.turns) for each in thread.passes] == pytest.approx([14.0] * 3, abs=0.3)
+
+
 def test_the_speed_at_which_a_slide_can_just_follow() -> None:
     assert fastest(-1.5, 42.0) == pytest.approx(1680.0)  # 42 mm/s are 28 leads a second
 

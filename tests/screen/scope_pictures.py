@@ -1,0 +1,116 @@
+"""Pictures of worn machines in the scope: ``python -m tests.screen.scope_pictures OUT``.
+
+A loose gib, a slipping belt and a bad encoder are put into the simulated lathe; what is pictured is what the
+pages make of it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from PySide6.QtWidgets import QApplication
+
+from app.compose.journal import Journal
+from app.scope.analyses import Analyses
+from app.scope.scope_model import Scope
+from app.screen.look import Look, dress, load_fonts
+from app.screen.main_window import MainWindow
+from app.screen.theme import DARK
+from core.executor.snapshot import State
+from tests.screen.pictures import Stage, _grab, _settle, press
+
+CIRCLE = "G90G94F12G72\nT1(TURNING TOOL)\nX1.4Z.5\nG02X1.4Z.5I0K.3\nX1.5\nM30\n"
+FEED = "G90G94F12G72\nT1(TURNING TOOL)\nX1.4Z1.\nZ.5\nX1.5\nM30\n"
+THREAD = (
+    "G90G94F300G72\nT1(TURNING TOOL)\nM03S600\nX.24Z.2\nG04F1\n"
+    "G33X.21Z-.5I.01K.05C\nG94F100X.5Z.2\nM05\nM30\n"
+)
+
+_PATIENCE = 100  # tenths of a second for the worker
+Wear = Callable[[Any], None]  # of the plant's hands
+# Name, program, what is worn, curves of the scope (none: those that are there), keys from the Automatic page.
+PICTURES: tuple[tuple[str, str, Wear, tuple[str, ...], str], ...] = (
+    ("scope-gib", CIRCLE, lambda hands: hands.loose_gib("X", 0.012), (), "Scope F8 F4"),
+    (
+        "scope-belt",
+        THREAD,
+        lambda hands: hands.belt_slip(0.04),
+        ("Z velocity", "spindle command", "spindle speed"),
+        "Scope F2 F6",
+    ),
+    (
+        "scope-encoder",
+        FEED,
+        lambda hands: hands.encoder_ripple("Z", 0.01),
+        ("Z following error", "Z velocity", "Z acceleration"),
+        "Scope F2 F6",
+    ),
+    ("scope-thread", THREAD, lambda hands: hands.belt_slip(0.04), (), "Scope F8 F3"),
+)
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Write the pictures; the exit status."""
+    parser = argparse.ArgumentParser(prog="python -m tests.screen.scope_pictures", description=__doc__)
+    parser.add_argument("out", metavar="OUT", type=Path, help="folder for the PNG files")
+    args = parser.parse_args(argv)
+    os.environ["QT_QPA_PLATFORM"] = "offscreen"
+    args.out.mkdir(parents=True, exist_ok=True)
+    _app = QApplication.instance() or QApplication(sys.argv[:1])
+    load_fonts()
+    dress(DARK)
+    for name, program, wear, curves, keys in PICTURES:
+        with TemporaryDirectory() as folder:
+            os.environ["TURNDESK_HOME"] = folder
+            _picture(args.out / f"{name}.png", Path(folder), program, wear, curves, keys)
+        sys.stdout.write(f"{args.out / name}.png\n")
+    return 0
+
+
+def _picture(path: Path, home: Path, program: str, wear: Wear, curves: tuple[str, ...], keys: str) -> None:
+    """One machine, worn, that runs one program to its end."""
+    file = home / "worn.nc"
+    file.write_text(program)
+    journal = Journal.at_home()
+    stage = Stage(journal)
+    desk = stage.desk
+    recorder, scope = desk.recorder, desk.attached(Scope)
+    assert recorder is not None
+    assert scope is not None
+    stage.make_ready(str(file))
+    wear(desk.station)
+    stage.press_start()
+
+    def over() -> bool:
+        recorder.drain()
+        snapshot = desk.snapshot()
+        if snapshot.alarms:
+            raise RuntimeError(f"{path.stem}: {snapshot.alarms[0].text}: {snapshot.alarms[0].cause}")
+        return desk.snapshot().state is State.IDLE
+
+    stage.tick(over, 200.0)
+    scope.chosen = curves or scope.chosen
+    window = MainWindow(Look(DARK))
+    window.resize(1024, 600)
+    window.open_desk(desk)
+    press(window, keys)
+    analyses = desk.attached(Analyses)
+    assert analyses is not None
+    for _ in range(_PATIENCE):
+        if "F8" not in keys or analyses.found is not None:
+            break
+        _settle(window, 0.1)
+    _grab(window, path)
+    window.put_away()
+    stage.close()
+    journal.close()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
