@@ -287,8 +287,9 @@ class Desk:
         return " · ".join(each for each in (other, self._due(snapshot, standing), standing) if each)
 
     def _due(self, snapshot: Snapshot, standing: str) -> str:
-        """What is to be done some time soon; behind an alarm, and where the start is refused, it can wait."""
-        if snapshot.state in {State.ESTOP, State.FAULT} or standing.startswith(prompt_line.NO_START):
+        """What is to be done some time soon; behind an alarm, an interrupted job or a refusal it can wait."""
+        waits = snapshot.state in {State.ESTOP, State.FAULT} or snapshot.interrupted_line
+        if waits or standing.startswith(prompt_line.NO_START):
             return ""
         return " · ".join(told for watcher in self.watches if (told := watcher.due()))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk.desk import Desk
@@ -27,6 +27,8 @@ class PartsWatch:
     _changes: int = -1
     _store: object = None
     _barred: str | None = None  # as the executor was told
+    _plans: dict[int, dict[str, int]] = field(default_factory=dict)  # by parts made, of ``_planned_of``
+    _planned_of: object = None
     _waits: tuple[str, bool] = ("", False)  # whether parts of a program wait for their measuring
 
     @property
@@ -57,7 +59,15 @@ class PartsWatch:
         if not self.waits:
             return ""
         made = self.desk.counter.count + (1 if snapshot.counts else 0)
-        return sample_plan.bar(sample_plan.due(self.book.now, made))
+        return sample_plan.bar(self._planned(made))
+
+    def _planned(self, made: int) -> dict[str, int]:
+        """What the plan asks for behind so many parts; worked out when something has changed."""
+        data = self.book.now
+        if made not in self._plans or self._planned_of is not data:
+            kept = self._plans if self._planned_of is data else {}
+            self._plans, self._planned_of = {**kept, made: sample_plan.due(data, made)}, data
+        return self._plans[made]
 
     @property
     def waits(self) -> bool:
@@ -78,7 +88,7 @@ class PartsWatch:
 
     def due(self) -> str:
         """What the prompt line tells besides: what to measure, which insert to change; empty: nothing."""
-        plan = sample_plan.notice(sample_plan.due(self.book.now, self.desk.counter.count))
+        plan = sample_plan.notice(self._planned(self.desk.counter.count))
         return " · ".join(each for each in (plan, self.lives.due()) if each)
 
     def refuse(self, why: str) -> None:
@@ -92,4 +102,4 @@ class PartsWatch:
 
 
 def _key(program: str) -> str:
-    return f"waits for measuring:{program}"
+    return f"measuring:{program}"

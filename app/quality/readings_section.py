@@ -74,7 +74,7 @@ class ReadingsSection(QualitySection):
         question = ""
         if feature is not None:
             question = tr("{name} OF PART {part}?").format(name=feature.name, part=self.part)
-        heads = ("FEATURE", f"NOMINAL {mode.name}", "PART", "MEASURED", "OFF", "")
+        heads = ("FEATURE", f"NOMINAL {mode.name}", "PART", "MEASURED", "DEVIATION", "")
         notes = (self._gauge_words(), "F8 proposes a correction, F9 takes the last one back.")
         title = f"READINGS  ·  {self.program}" if self.program else "READINGS"
         return Sheet(title, heads, (0.24, 0.19, 0.1, 0.19, 0.15, 0.13), rows, self.marked, question,

@@ -22,6 +22,7 @@ from core.store.store_rows import OFFSETS
 from core.store.tool_lives import LifeRow
 
 LIMITS = ("PARTS", "MINUTES", "WARN AT %")
+_LABELS = {"PARTS": "PARTS", "MINUTES": "MINUTES", "WARN AT %": "WARN"}
 TONES = {
     LifeState.NO_LIMIT: Tone.OFF,
     LifeState.GOOD: Tone.RUN,
@@ -84,7 +85,7 @@ class ToolLifeSection(QualitySection):
     def keys(self) -> Mapping[str, Key]:
         """Which limit is typed, stopping, and a fresh insert."""
         return {
-            "F2": Key(following(LIMITS, self.limit).partition(" ")[0], self._next_limit),
+            "F2": Key(_LABELS[following(LIMITS, self.limit)], self._next_limit),
             "F3": Key("STOP", self.turn_stop),
             "F4": Key("INSERT", self.insert),
         }

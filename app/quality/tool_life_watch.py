@@ -35,9 +35,19 @@ class ToolLifeWatch:
     _in_part: set[int] = field(default_factory=set)  # tools that have cut since the last end
     _ends: int = -1
     _told: dict[int, LifeState] = field(default_factory=dict)
+    _changes: int = 0  # of ``counted``
+    _lives: tuple[object, dict[int, ToolLife]] = field(default=(None, {}))
+    _due: tuple[object, str] = (None, "")
+    _seen: object = None
 
     def lives(self) -> dict[int, ToolLife]:
-        """Of every tool that has a limit or has cut, as of now."""
+        """Of every tool that has a limit or has cut, as of now; the same object while nothing changes."""
+        of = (self.book.loads, self._changes)
+        if self._lives[0] != of:
+            self._lives = of, self._found()
+        return self._lives[1]
+
+    def _found(self) -> dict[int, ToolLife]:
         rows = self.book.now.lives
         found = {}
         for number in sorted({*rows, *self.counted}):
@@ -72,6 +82,7 @@ class ToolLifeWatch:
         row = self.book.now.lives.get(number, LifeRow(number))
         before = self.counted.get(number, (row.parts, row.seconds))
         self.counted[number] = before[0] + parts, before[1] + seconds
+        self._changes += 1
         if self._unkept(number) > KEEP:
             self._keep({number})
 
@@ -90,6 +101,9 @@ class ToolLifeWatch:
 
     def _tell(self, say: Callable[[str], None]) -> None:
         """Once when it is time to think of the next insert, once when it is spent."""
+        if self._seen is self.lives():
+            return
+        self._seen = self.lives()
         for number, life in self.lives().items():
             before = self._told.get(number)
             self._told[number] = life.state
@@ -112,6 +126,7 @@ class ToolLifeWatch:
             more_parts, more_seconds = self.counted.get(number, (parts, seconds))
             self.counted[number] = max(0, more_parts - parts), max(0.0, more_seconds - seconds)
             self._kept[number] = 0.0
+            self._changes += 1
             said(tr("T{number}: A FRESH INSERT, ITS LIFE BEGINS AT NOUGHT").format(number=number))
 
         self.book.write(operation, done, said)
@@ -119,13 +134,17 @@ class ToolLifeWatch:
     def forget(self) -> None:
         """Another store is in place: its counts are those that count."""
         self.counted, self._kept = {}, {}
+        self._changes += 1
 
     # --- what is told and what it stops ------------------------------------------------------------------
 
     def due(self) -> str:
         """The tool whose life is nearest its end, where one is to be told of; empty while none is."""
-        told = [life for life in self.lives().values() if life.state in _WORTH_TELLING]
-        return notice(max(told, key=lambda life: life.share)) if told else ""
+        lives = self.lives()
+        if self._due[0] is not lives:
+            told = [life for life in lives.values() if life.state in _WORTH_TELLING]
+            self._due = lives, notice(max(told, key=lambda life: life.share)) if told else ""
+        return self._due[1]
 
     def bar(self, snapshot: Snapshot, loaded: Loaded) -> str:
         """Why no other part of the program may begin; of the part under way its tools count already."""
