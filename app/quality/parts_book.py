@@ -178,6 +178,11 @@ class PartsBook:
         """Whether something is on its way to the disk."""
         return bool(self._saving or self._kept)
 
+    @property
+    def settled(self) -> bool:
+        """Whether ``now`` is what is kept: nothing is on its way to the disk or back."""
+        return not (self.busy or self._stale or self._behind is not None or self.worker.busy)
+
     def write(
         self, operation: Operation[Any], done: Callable[[], None], failed: Callable[[str], None]
     ) -> None:

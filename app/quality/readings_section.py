@@ -219,6 +219,8 @@ class ReadingsSection(QualitySection):
         if feature is None:
             self.desk.say(self.missing())
             return
+        if not self._settled():
+            return
         try:
             found = proposal(self.data, feature, self.mode)
             if found.why:
@@ -232,8 +234,17 @@ class ReadingsSection(QualitySection):
         asked = tr("{words}: PRESS Y TO TAKE IT OVER, ESC TO LEAVE IT")
         self.desk.ask(asked.format(words=words), partial(self._correct, feature))
 
+    def _settled(self) -> bool:
+        """Whether what is known is what is kept: a change that is on its way would be proposed once more."""
+        settled = self.watch.book.settled and not self.desk.book.busy
+        if not settled:
+            self.desk.say(tr("STILL READING WHAT WAS KEPT: PRESS F8 AGAIN"))
+        return settled
+
     def _correct(self, feature: FeatureRow) -> None:
         """As it is now, not as it was when it was asked."""
+        if not self._settled():
+            return
         try:
             change = correction(proposal(self.data, feature, self.mode), self.desk, self.mode)
         except (QualityError, EntryError) as error:

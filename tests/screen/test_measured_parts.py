@@ -10,6 +10,7 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.desk.sheet import Sheet
+from app.quality.parts_watch import PartsWatch
 from app.quality.quality_functions import QualityFunctions
 from app.quality.quality_view import MeasuredPartsPage
 from app.screen import page_table
@@ -49,6 +50,13 @@ def section(day: Day, number: str) -> None:
     day.sees(lambda: day.page == page_table.MEASURED)
     day.type(number)
     day.run(0.05)
+
+
+def settled(day: Day) -> bool:
+    """What is known is what is kept."""
+    watch = day.desk.attached(PartsWatch)
+    assert watch is not None
+    return watch.book.settled
 
 
 def sheet(day: Day) -> Sheet:
@@ -104,7 +112,7 @@ def measured(day: Day, *sizes: str) -> None:
         if number:
             day.key(Key.Key_F3)
         day.enter(size)
-        day.sees(lambda: "KEPT" in day.prompt)
+        day.sees(lambda: "KEPT" in day.prompt and settled(day))
 
 
 # --- features ---------------------------------------------------------------------------------------------
@@ -221,8 +229,9 @@ def test_parts_of_before_the_correction_ask_for_no_other(day: Day) -> None:
     yes(day.window)
     day.sees(lambda: not day.desk.book.busy)
     day.key(Key.Key_Escape)
-    day.sees(lambda: not model(day).worker.busy)
-    day.run(0.05)
+    day.key(Key.Key_F8)
+    assert "STILL READING" in day.prompt, "what is on its way would be proposed once more"
+    day.sees(lambda: settled(day))
     day.key(Key.Key_F8)
     assert "no part begun since the last change of T1 X is measured yet" in day.prompt
     parts(day, 1)
