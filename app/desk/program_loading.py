@@ -182,7 +182,8 @@ class ProgramLoader:
 
     def _prove_part(self, job: Job, proved: Proved, picture: Picture, request: Request) -> None:
         """What it makes of the stock; a program that did not have to wait for it may be running by now."""
-        part = self.workshop.part(picture, partial(self._reached, request))
+        watch = partial(self._reached, request) if proved.waits else request
+        part = self.workshop.part(picture, watch)
         found, whole = proved.diagnostics, proved.proof
         if part is not None:
             found, whole = part.among(found), part.completes(whole, job.source.name)
