@@ -45,7 +45,7 @@ class ThreadPass:
 
     @property
     def drop(self) -> float:
-        """By how many rpm the spindle was slower in the cut than before it."""
+        """By how many rpm the spindle was slower in the cut than just before it, at its fastest."""
         return self.speed_before - self.speed_least
 
 
@@ -172,7 +172,7 @@ def _passes(
         entry = 360.0 * ((crossing - base + 0.5) % 1.0 - 0.5)
         whole = base + round(crossing - base)
         off = along[cut] - (begin + lead * (t - whole))
-        before = speed[max(0, out - max(1, (last - first) // 10)) : out + 1]
+        before = speed[max(0, out - max(1, (last - first) // 4)) : first + 1]
         within = speed[cut]
         found.append(
             ThreadPass(
@@ -183,7 +183,7 @@ def _passes(
                 float(entry),
                 float(slope),
                 float(np.median(depth[cut])),
-                _mean(before),
+                _most(before),
                 float(np.nanmin(within)) if np.isfinite(within).any() else math.nan,
                 float(np.nanmax(within) - np.nanmin(within)) if np.isfinite(within).any() else math.nan,
             )
@@ -191,6 +191,6 @@ def _passes(
     return tuple(found)
 
 
-def _mean(values: FloatArray) -> float:
+def _most(values: FloatArray) -> float:
     known = values[np.isfinite(values)]
-    return float(known.mean()) if len(known) else math.nan
+    return float(known.max()) if len(known) else math.nan

@@ -26,7 +26,7 @@ from core.executor.snapshot import State
 from tests.screen.pictures import Stage, _grab, _settle, press
 
 CIRCLE = "G90G94F12G72\nT1(TURNING TOOL)\nX1.4Z.5\nG02X1.4Z.5I0K.3\nX1.5\nM30\n"
-FEED = "G90G94F12G72\nT1(TURNING TOOL)\nX1.4Z1.\nZ.5\nX1.5\nM30\n"
+FEED = "G90G94F37G72\nT1(TURNING TOOL)\nX1.4Z1.\nZ.5\nX1.5\nM30\n"
 THREAD = (
     "G90G94F300G72\nT1(TURNING TOOL)\nM03S600\nX.24Z.2\nG04F1\n"
     "G33X.21Z-.5I.01K.05C\nG94F100X.5Z.2\nM05\nM30\n"
@@ -47,7 +47,7 @@ PICTURES: tuple[tuple[str, str, Wear, tuple[str, ...], str], ...] = (
     (
         "scope-encoder",
         FEED,
-        lambda hands: hands.encoder_ripple("Z", 0.01),
+        lambda hands: hands.encoder_ripple("Z", 0.03),
         ("Z following error", "Z velocity", "Z acceleration"),
         "Scope F2 F6",
     ),
