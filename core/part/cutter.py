@@ -7,6 +7,7 @@ the face takes off what its outline covers, and nothing beside it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
@@ -53,6 +54,7 @@ class Cutter:
         outlines = tuple(cutting)
         self._cutting = [_sides(outline * turned) for outline in outlines]
         self._body = [_sides(outline * turned) for outline in body]
+        self._edges_low, self._body_low = _low(self._cutting), _low(self._body)
         self.height = max((float(np.ptp(outline[:, 1])) for outline in outlines), default=0.0)
 
     @property
@@ -82,6 +84,8 @@ class Cutter:
         """What holder and shank run into; it is taken off, so that one collision is told once."""
         met = NOTHING
         start, end = self._front(start), self._front(end)
+        if self._clear_of(part, self._body_low, start, end):
+            return NOTHING
         for outline in self._body:
             met = met.joined(self._take(part, outline, start, end, cut=True))
             if self.side is Side.BORE:
@@ -90,9 +94,12 @@ class Cutter:
 
     def reaches(self, part: TurnedPart, start: Point, end: Point) -> Cut:
         """What edges and body would meet, left where it is: the outline of a chuck."""
-        met = self._swept(part, start, end, cut=False)
-        for outline in self._body:
-            met = met.joined(self._take(part, outline, self._front(start), self._front(end), cut=False))
+        start, end = self._front(start), self._front(end)
+        met = NOTHING
+        for low, outlines in ((self._edges_low, self._cutting), (self._body_low, self._body)):
+            if not self._clear_of(part, low, start, end):
+                for outline in outlines:
+                    met = met.joined(self._take(part, outline, start, end, cut=False))
         return met if met.depth > _OVERLAP and met.width > _OVERLAP else NOTHING
 
     def thread(self, part: TurnedPart, start: Point, end: Point, lead: float, turns: float) -> Cut:
@@ -108,6 +115,13 @@ class Cutter:
             met = met.joined(self.cut(part, place, place))
             at += 1.0
         return met
+
+    def _clear_of(self, part: TurnedPart, low: Point, start: Point, end: Point) -> bool:
+        """Whether outlines whose least Z and r these are stay before the part, or outside of it."""
+        columns = part.columns
+        if min(start[0], end[0]) + low[0] > columns.first + columns.step * columns.number:
+            return True
+        return self.side is Side.OUTSIDE and min(start[1], end[1]) + low[1] > part.largest
 
     def _front(self, place: Point) -> Point:
         return place[0], place[1] * self.across
@@ -127,6 +141,12 @@ class Cutter:
             return part.inwards(first, -far, cut=cut)
         _, near = sweep(outline.near, start, end, part.columns)
         return part.between(first, near, -far, cut=cut)
+
+
+def _low(outlines: list[_Sides]) -> Point:
+    """The least Z and r of outlines; endlessly far away without any."""
+    ends = [(float(each.near.z[0]), float(each.near.r.min())) for each in outlines]
+    return min((z for z, _ in ends), default=math.inf), min((r for _, r in ends), default=math.inf)
 
 
 def _opposite(part: TurnedPart, outline: _Sides, start: Point, end: Point) -> Cut:

@@ -1,0 +1,111 @@
+"""What the part and each of its checks cost in the proof of a program of 200 blocks, warm.
+
+Run with ``python -m tests.benchmarks.bench_checks``.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from unittest import mock
+
+from app.compose.known_part import known_part
+from app.compose.machine_files import load_machine
+from app.compose.machine_setup import setup_for
+from core.interpreter.job_setup import ToolOffset
+from core.language.source import Source
+from core.part.clamping import Clamping
+from core.part.cutter import Cutter
+from core.part.tool_shape import ToolKind, ToolShape
+from core.part.turned_part import NOTHING, Cut
+from core.proving.air_checks import AirChecks
+from core.proving.edge_checks import EdgeChecks
+from core.proving.part_findings import PartFindings
+from core.proving.part_proof import PartSetting, prove_with_part
+from core.proving.prove_program import prove
+from core.proving.thread_checks import ThreadChecks
+
+ROUNDS = 15
+SHAPES = {
+    1: ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.4, insert="DCMT11T304", holder="16x16"),
+    2: ToolShape(ToolKind.PARTING, tip=3, width=2.0, stick_out=30.0),
+    3: ToolShape(ToolKind.DRILL, diameter=6.0, point=118.0, length=40.0),
+}
+
+
+def _none(*_args: object, **_words: object) -> tuple[()]:
+    return ()
+
+
+def _no_metal(*_args: object) -> Cut:
+    return NOTHING
+
+
+# What is left out, by the name of the row; a holder is that of each move.
+CHECKS: dict[str, tuple[tuple[type, str, object], ...]] = {
+    "slips: what meets no metal": ((AirChecks, "feed", _none), (AirChecks, "rapid", _none)),
+    "edge: side, feed, direction": ((EdgeChecks, "look", _none),),
+    "threads and taps": ((ThreadChecks, "look", _none), (ThreadChecks, "before", _none)),
+    "holder into metal": ((Cutter, "strikes", _no_metal),),
+    "chuck, its speed, whirling": ((PartFindings, "_clamped", _none),),
+}
+
+
+def program() -> str:
+    """200 blocks: passes of one tool, as they are most of every program."""
+    lines, x = ["G90G94F300G72", "T1", "M03S1500"], 1.0
+    while len(lines) < 199:
+        x -= 0.01
+        lines += [f"X{x:.3f}Z.05", "G95F.005Z-.9", f"X{x + 0.1:.3f}", "G94F300Z.05"]
+    return "\n".join([*lines[:199], "M30", ""])
+
+
+def spent(work: Callable[[], object]) -> float:
+    """The least of some rounds, ms of processor time."""
+    best = float("inf")
+    for _ in range(ROUNDS):
+        began = time.process_time()
+        work()
+        best = min(best, time.process_time() - began)
+    return best * 1e3
+
+
+@contextmanager
+def without(parts: tuple[tuple[type, str, object], ...]) -> Iterator[None]:
+    """These functions do nothing."""
+    if not parts:
+        yield
+        return
+    kind, name, instead = parts[0]
+    with mock.patch.object(kind, name, instead), without(parts[1:]):
+        yield
+
+
+def main() -> int:
+    """Prints the table."""
+    machine = load_machine(None)
+    tools = {n: ToolOffset(-12.7 - 60.0 * (n - 1), -50.8) for n in SHAPES}
+    setup = setup_for(machine, tools=tools, secondary={})
+    known = known_part(machine, tools, SHAPES)
+    setting = replace(known, clamping=Clamping(100.0, 40.0, 10.0, 60.0, 5000.0))
+    text = Source("CHECKS", program())
+
+    def proved(by: PartSetting) -> float:
+        return spent(lambda: prove_with_part(text, setup, machine, by))
+
+    plain, whole = spent(lambda: prove(text, setup, machine)), proved(setting)
+    rows = [("the proof without the part", plain), ("with the part and all checks", whole)]
+    rows.append(("of it the neighbours on the plate", whole - proved(replace(setting, gang={}))))
+    for name, parts in CHECKS.items():
+        with without(parts):
+            rows.append((f"of it {name}", whole - proved(setting)))
+    for name, milliseconds in rows:
+        sys.stdout.write(f"{name:42} {milliseconds:6.2f} ms\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
