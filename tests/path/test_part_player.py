@@ -231,8 +231,8 @@ def test_to_a_block(player: PartPlayer) -> None:
 
 
 MILLED = HEAD + (
-    "X.6Z.05\nX.45\nG95F.004Z-.5\nX.55\nG94F300X.6Z.1\nT2(END MILL)\nX-.6Z-.4\nM05\nM15\nM19\nX-.4\n"
-    "X-.6\nZ1\nM16\nM30\n"
+    "X.6Z.05\nX.45\nG95F.004Z-.5\nX.55\nG94F300X.6Z.5\nT2(END MILL)\nX-.6Z.5\nM05\nM15\nM19\nZ-.1\nF4X-.43\n"
+    "F300X-.6\nZ-.4\nX-.4\nX-.6\nZ1\nM16\nM30\n"
 )
 
 
