@@ -28,6 +28,7 @@ from PySide6.QtGui import (
     QTextFormat,
 )
 from PySide6.QtSvg import QSvgRenderer
+from PySide6.QtWidgets import QApplication
 
 from app.report.page_style import DRAWINGS, PAPER
 from app.report.pdf_file import Paper
@@ -192,7 +193,7 @@ def usual_paper() -> Paper:
 def _application() -> None:
     """Fonts need one; where there is none yet there is no display either."""
     if QGuiApplication.instance() is None:
-        _kept.append(QGuiApplication(["turndesk", "-platform", "offscreen"]))
+        _kept.append(QApplication(["turndesk", "-platform", "offscreen"]))
     load_fonts()
 
 

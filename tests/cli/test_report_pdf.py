@@ -16,7 +16,6 @@ from tests.cli.test_prove import written
 from tests.cli.test_report import PART
 from tests.pdf_text import Pdf
 
-pytestmark = pytest.mark.usefixtures("qapp")
 BAD = PART.replace("G95F.004Z-.5", "G00Z-.5")
 STOCK = ("--stock", "bar:1.0:2+.02")
 
