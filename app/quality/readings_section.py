@@ -186,7 +186,7 @@ class ReadingsSection(QualitySection):
         if why:
             self.desk.say(why)
 
-    def look(self, *, seen: bool) -> None:
+    def heard(self, *, seen: bool) -> None:
         """Once a frame: what the gauge has sent goes to the marked feature, where that is seen."""
         for found in self.gauge.taken():
             if isinstance(found, Reading) and not seen:

@@ -58,6 +58,9 @@ class SpecialFunction:
     def left(self) -> None:
         """It goes: nothing stays half entered or half asked."""
 
+    def heard(self, *, seen: bool) -> None:
+        """Once a frame, where the page asks: what has come by a wire; ``seen``: it is the one shown."""
+
     def close(self) -> None:
         """The desk shuts: what is under way ends."""
 

@@ -10,9 +10,11 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.desk.sheet import Sheet
+from app.quality.gauge_line import NoGauge, Reading
 from app.quality.parts_watch import PartsWatch
 from app.quality.quality_functions import QualityFunctions
 from app.quality.quality_view import MeasuredPartsPage
+from app.quality.readings_section import ReadingsSection
 from app.screen import page_table
 from core.executor.snapshot import State
 from tests.screen.day import Day, Key, begun
@@ -420,3 +422,28 @@ def test_trends_of_what_was_made(day: Day) -> None:
     day.enter("0-24")
     day.run(0.05)
     assert dict(cells(day))["AVAILABILITY"].startswith("0–24: ")
+
+
+def test_a_reading_that_nobody_sees_is_not_kept(day: Day) -> None:
+    """Of which feature and part it is must be seen when it comes."""
+
+    class Sent(NoGauge):
+        def __init__(self) -> None:
+            self.lines: list[Reading | str] = [Reading(0.5003, "in")]
+
+        def taken(self) -> list[Reading | str]:
+            taken, self.lines = self.lines, []
+            return taken
+
+    spigot(day)
+    parts(day, 1)
+    section(day, CHARTS)
+    readings = next(each for each in model(day).functions if isinstance(each, ReadingsSection))
+    readings.gauge = Sent()
+    day.run(0.05)
+    assert "A READING CAME WHILE THE READINGS WERE NOT SHOWN" in day.prompt
+    section(day, READINGS)
+    assert cells(day)[0][3] == ""
+    readings.gauge = Sent()
+    day.run(0.05)
+    day.sees(lambda: "SPIGOT OF PART 1: 0.50030 KEPT" in day.prompt)
