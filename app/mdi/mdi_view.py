@@ -143,7 +143,7 @@ class MdiPage(ModelPage):
     """At rest, keys are text; while a line is under way the letters are the keys they are everywhere."""
 
     NAME = page_table.MDI
-    LABELS = ("MENU", "AUTO", "", "READOUT", "DRIVES", "RESET", "ALARMS", "SPN STOP", "SECCMP", "")
+    LABELS = ("MENU", "AUTO", "", "READOUT", "DRIVES", "RESET", "ALARMS", "SPN STOP", "SECCMP", "SCOPE")
     STARTS = True
     model: MdiModel
 
@@ -164,6 +164,7 @@ class MdiPage(ModelPage):
             "F6": self.desk.reset,
             "F8": self.model.stop_spindle,
             "F9": partial(self.host.go, page_table.SECCMP),
+            "F10": partial(self.host.press, "Scope"),
         }
 
     def _recall(self, back: int) -> None:

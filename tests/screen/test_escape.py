@@ -195,3 +195,9 @@ def test_the_emergency_stop_keeps_no_page_in_front(day: Day) -> None:
     day.key(Key.Key_Escape)
     day.sees(lambda: day.page == page_table.AUTOMATIC)
     twist_out(day.window)
+
+
+def test_mdi_has_the_scope_on_f10(day: Day) -> None:
+    opened(day, Key.Key_F4, page_table.MDI)
+    day.key(Key.Key_F10)
+    day.sees(lambda: day.page == page_table.SCOPE)
