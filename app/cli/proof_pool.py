@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import multiprocessing
 import os
@@ -67,9 +68,14 @@ class Workers:
         return ProcessPoolExecutor(jobs or self.jobs, mp_context=self._context, initializer=_begin)
 
     def stop(self) -> None:
-        """End the workers at once, with what they are at."""
-        for each in set(multiprocessing.active_children()) - self._before:
-            each.terminate()
+        """End the workers at once, with what they are at.
+
+        The pool's own thread takes them away meanwhile: one that is gone already is no error.
+        """
+        with contextlib.suppress(OSError, ValueError):
+            for each in set(multiprocessing.active_children()) - self._before:
+                with contextlib.suppress(OSError, ValueError):
+                    each.terminate()
 
 
 def _begin() -> None:

@@ -15,6 +15,8 @@ import pytest
 from tests.cli.conftest import Turndesk
 from tests.cli.test_prove import written
 
+pytestmark = pytest.mark.usefixtures("qapp")  # one asks for a PDF, whose fonts need an application
+
 # Faced, turned to .8 in diameter .5 in long, drilled; the M00 holds what a browser would run.
 PART = (
     "G90G94F300\nM03S1500\nT1(TURN)\nX.6Z.05\nG95F.006Z0\nX-.02\nG94F300Z.05\n"
