@@ -3510,6 +3510,11 @@
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
+      <source>NO PART IS PROVED ON A MILL</source>
+      <translation>EN UNA FRESADORA NO SE PRUEBA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
       <source>NOT KEPT: {why}</source>
       <translation>SIN GUARDAR: {why}</translation>
     </message>
@@ -4300,8 +4305,8 @@
     </message>
     <message>
       <location filename="app/screen/alarm_panels.py" />
-      <source>ALARMS AND STOPS  ·  ESC CLOSES  ·  PAGE DOWN: OLDER</source>
-      <translation>ALARMAS Y PAROS  ·  ESC CIERRA  ·  AV PÁG: ANTERIORES</translation>
+      <source>ALARMS AND STOPS  ·  ESC CLOSES  ·  CTRL+ARROWS MARK  ·  SHIFT+F10: ITS RECORD</source>
+      <translation>ALARMAS Y PAROS  ·  ESC CIERRA  ·  CTRL+FLECHAS MARCAN  ·  MAYÚS+F10: SU REGISTRO</translation>
     </message>
     <message>
       <location filename="app/screen/alarm_panels.py" />
@@ -4322,6 +4327,11 @@
       <location filename="app/screen/alarm_panels.py" />
       <source>No alarm and no stop yet.</source>
       <translation>Todavía ninguna alarma ni paro.</translation>
+    </message>
+    <message>
+      <location filename="app/screen/alarm_panels.py" />
+      <source>SCOPE</source>
+      <translation>OSCILOSCOPIO</translation>
     </message>
     <message>
       <location filename="app/screen/alarm_panels.py" />
@@ -4380,6 +4390,11 @@
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
+      <source>ANALYSES</source>
+      <translation>ANÁLISIS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
       <source>AUTOMATIC</source>
       <translation>AUTOMÁTICO</translation>
     </message>
@@ -4432,11 +4447,6 @@
       <location filename="app/screen/page_table.py" />
       <source>PROGRAMS</source>
       <translation>PROGRAMAS</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>SCOPE</source>
-      <translation>OSCILOSCOPIO</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -4662,6 +4672,11 @@
       <location filename="app/screen/window_frame.py" />
       <source>NOT KEPT</source>
       <translation>SIN GUARDAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>NOTHING WAS RECORDED BEFORE THIS ONE: ALARMS AND E-STOPS HAVE A RECORD</source>
+      <translation>ANTES DE ÉSTE NO SE REGISTRÓ NADA: LAS ALARMAS Y LOS PAROS DE EMERGENCIA TIENEN REGISTRO</translation>
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
@@ -8130,6 +8145,11 @@
     </message>
     <message>
       <location filename="core/executor/machine_control.py" />
+      <source>WARNING: %1</source>
+      <translation>AVISO: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/machine_control.py" />
       <source>a driver does not obey: %1</source>
       <translation>un controlador de equipo no obedece: %1</translation>
     </message>
@@ -8147,11 +8167,6 @@
       <location filename="core/executor/machine_control.py" />
       <source>that was meant just now: let both palms go, read the prompt, press them again</source>
       <translation>eso se ha contestado ahora mismo: suelte los dos pulsadores, lea el aviso y vuelva a pulsarlos</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
-      <source>warned %1</source>
-      <translation>avisado %1</translation>
     </message>
     <message>
       <location filename="core/executor/machine_control.py" />
