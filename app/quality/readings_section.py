@@ -77,7 +77,7 @@ class ReadingsSection(QualitySection):
         heads = ("FEATURE", f"NOMINAL {mode.name}", "PART", "MEASURED", "DEVIATION", "")
         notes = (self._gauge_words(), "F8 proposes a correction, F9 takes the last one back.")
         title = f"READINGS  ·  {self.program}" if self.program else "READINGS"
-        return Sheet(title, heads, (0.24, 0.19, 0.1, 0.19, 0.15, 0.13), rows, self.marked, question,
+        return Sheet(title, heads, (0.2, 0.19, 0.08, 0.19, 0.16, 0.18), rows, self.marked, question,
                      self.entry.text, notes, raw=frozenset({0}), figures=frozenset({2}))  # fmt: skip
 
     def _row(self, row: FeatureRow) -> Row:
