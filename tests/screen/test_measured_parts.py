@@ -447,3 +447,28 @@ def test_a_reading_that_nobody_sees_is_not_kept(day: Day) -> None:
     readings.gauge = Sent()
     day.run(0.05)
     day.sees(lambda: "SPIGOT OF PART 1: 0.50030 KEPT" in day.prompt)
+
+
+def test_a_secondary_offset_is_corrected_as_a_radius(day: Day) -> None:
+    """Ø .0012 too large: half of it is .0006 of the diameter, .0003 of D4, which was never set."""
+    section(day, FEATURES)
+    day.key(Key.Key_F2)
+    day.enter("groove")
+    day.key(Key.Key_Down)
+    day.enter(".5", ".001", "-.001")
+    day.key(Key.Key_Return, Key.Key_Down)
+    day.enter("4")
+    day.key(Key.Key_F6)
+    day.sees(lambda: "KEPT" in day.prompt)
+    parts(day, 1)
+    measured(day, ".5012")
+    day.key(Key.Key_Escape)
+    day.key(Key.Key_F8)
+    assert day.prompt.startswith("D4 X −0.00060: GROOVE 0.50120 → 0.50060: PRESS Y")
+    yes(day.window)
+    day.sees(lambda: not day.desk.book.busy)
+    assert day.store.secondary()[4].x == pytest.approx(-0.0003 * 25.4)
+    day.sees(lambda: settled(day))
+    day.key(Key.Key_F9)
+    day.sees(lambda: not day.desk.book.busy)
+    assert 4 not in day.store.secondary()
