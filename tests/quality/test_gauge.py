@@ -113,8 +113,8 @@ def listening(bench: Bench) -> None:
         bench.send(b"1 mm\r\n")
         bench.wire._thread.join(0.05)  # type: ignore[union-attr]
         found = list(bench.wire.taken())
-    bench.wire._thread.join(0.3)  # type: ignore[union-attr]
-    bench.wire.taken()
+    bench.send(b"9999 mm\r\n")
+    bench.hears(lambda found: Reading(9999.0, "mm") in found)
 
 
 def test_both_kinds_of_lines_and_garbage_between(bench: Bench) -> None:
