@@ -26,6 +26,7 @@ LANGUAGES = ("es",)
 COMPOSING = "app/compose"
 COMPOSED = (
     "desk_part.py",
+    "gauge_wire.py",
     "journal.py",
     "screen_desk.py",
     "simulated_backend.py",
@@ -44,10 +45,12 @@ ROOMS = (
         "app/part",
         "app/path",
         "app/programs",
+        "app/quality",
     ),
-    *("app/screen", "app/searchto", "app/special", "app/transfer", "app/working_plane"),
+    *("app/scope", "app/screen", "app/searchto", "app/special", "app/transfer", "app/working_plane"),
     *("core/alarms", "core/executor", "core/store", "core/interpreter"),
     *("core/language", "core/proving", "core/geometry", "core/motion", "core/part", COMPOSING),
+    *("core/quality", "core/records"),
 )
 # Scripts and tables that no screen shows, and what the console is told where there is no screen.
 APART = frozenset(

@@ -789,6 +789,31 @@
       <translation>El material indicado no se puede usar y se supone: %1.</translation>
     </message>
     <message>
+      <location filename="app/compose/gauge_wire.py" />
+      <source>THE GAUGE: {why}; F5 LISTENS AGAIN</source>
+      <translation>EL CALIBRADOR: {why}; F5 VUELVE A ESCUCHAR</translation>
+    </message>
+    <message>
+      <location filename="app/compose/gauge_wire.py" />
+      <source>THE GAUGE: {why}; MEASURE AGAIN</source>
+      <translation>EL CALIBRADOR: {why}; MIDA DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/compose/gauge_wire.py" />
+      <source>The gauge has been silent for {minutes} min: its switch, its cable.</source>
+      <translation>El calibrador calla desde hace {minutes} min: su interruptor, su cable.</translation>
+    </message>
+    <message>
+      <location filename="app/compose/gauge_wire.py" />
+      <source>The gauge is listened to: {count} readings.</source>
+      <translation>Se escucha al calibrador: {count} lecturas.</translation>
+    </message>
+    <message>
+      <location filename="app/compose/gauge_wire.py" />
+      <source>The gauge is not listened to; F5 begins.</source>
+      <translation>No se escucha al calibrador; F5 empieza.</translation>
+    </message>
+    <message>
       <location filename="app/compose/journal.py" />
       <source>MEASURED PARTS CANNOT BE KEPT: %1</source>
       <translation>LAS PIEZAS MEDIDAS NO SE PUEDEN GUARDAR: %1</translation>
@@ -2715,6 +2740,11 @@
     </message>
     <message>
       <location filename="app/mdi/mdi_view.py" />
+      <source>SCOPE</source>
+      <translation>OSCILO</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_view.py" />
       <source>SPN STOP</source>
       <translation>PARO HUS</translation>
     </message>
@@ -4304,6 +4334,1506 @@
       <translation>NO SE GUARDÓ: EL TEXTO TIENE SIGNOS QUE NINGÚN ARCHIVO DE PROGRAMA PUEDE GUARDAR</translation>
     </message>
     <message>
+      <location filename="app/quality/charts_section.py" />
+      <source>AVERAGE</source>
+      <translation>PROMEDIO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/charts_section.py" />
+      <source>CONTROL CHARTS</source>
+      <translation>GRÁFICAS DE CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/quality/charts_section.py" />
+      <source>CONTROL CHARTS  ·  %1</source>
+      <translation>GRÁFICAS DE CONTROL  ·  %1</translation>
+    </message>
+    <message>
+      <location filename="app/quality/charts_section.py" />
+      <source>DRIFT</source>
+      <translation>DERIVA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/charts_section.py" />
+      <source>MEAN %1</source>
+      <translation>MEDIA %1</translation>
+    </message>
+    <message>
+      <location filename="app/quality/charts_section.py" />
+      <source>MOVING RANGE</source>
+      <translation>RANGO MÓVIL</translation>
+    </message>
+    <message>
+      <location filename="app/quality/charts_section.py" />
+      <source>NOTHING IS MEASURED OF THIS FEATURE YET</source>
+      <translation>DE ESTA CARACTERÍSTICA AÚN NO SE HA MEDIDO NADA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/charts_section.py" />
+      <source>RANGE</source>
+      <translation>RANGO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/charts_section.py" />
+      <source>READ</source>
+      <translation>LEÍDAS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/charts_section.py" />
+      <source>SINGLE PARTS</source>
+      <translation>PIEZAS SUELTAS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/charts_section.py" />
+      <source>THE ARROWS CHOOSE A FEATURE; BROKEN LINES: CONTROL LIMITS, DOTTED: TOLERANCE, RINGS: RULES</source>
+      <translation>LAS FLECHAS ELIGEN; LÍNEAS CORTADAS: LÍMITES DE CONTROL, PUNTEADAS: TOLERANCIA, ANILLOS: REGLAS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/charts_section.py" />
+      <source>limits, Cpk, drift</source>
+      <translation>límites, Cpk, deriva</translation>
+    </message>
+    <message>
+      <location filename="app/quality/charts_section.py" />
+      <source>none; Cpk is {least} at least (95 %)</source>
+      <translation>ninguna; Cpk es al menos {least} (95 %)</translation>
+    </message>
+    <message>
+      <location filename="app/quality/cycle_recorder.py" />
+      <source>BETWEEN CYCLES</source>
+      <translation>ENTRE CICLOS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/cycle_recorder.py" />
+      <source>RESTARTED</source>
+      <translation>REANUDADO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>%1 is no whole number</source>
+      <translation>%1 no es un número entero</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>A LARGER OFFSET MAKES IT</source>
+      <translation>UNA COMPENSACIÓN MAYOR LA HACE</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>CHANGE</source>
+      <translation>CAMBIAR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>CORRECTED BY</source>
+      <translation>SE CORRIGE CON</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>ENTER THE FEATURE FIELD BY FIELD; F6 KEEPS IT, ESC LEAVES IT</source>
+      <translation>INTRODUZCA LA CARACTERÍSTICA CAMPO POR CAMPO; F6 LA GUARDA, ESC LA DEJA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>F2 enters a feature, Return changes the marked one. F5: whether parts wait for the plan.</source>
+      <translation>F2 introduce una característica, Return cambia la marcada. F5: si las piezas esperan al plan.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>FEATURES</source>
+      <translation>CARACTERÍSTICAS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>FEATURES  ·  %1</source>
+      <translation>CARACTERÍSTICAS  ·  %1</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>GO ON</source>
+      <translation>SEGUIR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>ITS NUMBER</source>
+      <translation>SU NÚMERO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>KEEP</source>
+      <translation>GUARDAR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>LARGER</source>
+      <translation>MAYOR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>LOWER DEVIATION</source>
+      <translation>DESVIACIÓN INFERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>MEASURE EVERY (0: NO PLAN)</source>
+      <translation>MEDIR CADA (0: SIN PLAN)</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>MEASURED</source>
+      <translation>MEDIDO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>NOMINAL</source>
+      <translation>NOMINAL</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>NOMINAL %1</source>
+      <translation>NOMINAL %1</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>PARTS GO ON</source>
+      <translation>LAS PIEZAS SIGUEN</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>PARTS IN A SAMPLE</source>
+      <translation>PIEZAS POR MUESTRA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>PARTS WAIT UNTIL THE PLAN IS DONE</source>
+      <translation>LAS PIEZAS ESPERAN HASTA CUMPLIR EL PLAN</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>PRESS Y TO MEASURE {name} NO MORE (ITS READINGS STAY IN THE STORE), ESC TO KEEP IT</source>
+      <translation>PULSE Y PARA NO MEDIR MÁS {name} (SUS LECTURAS SE CONSERVAN), ESC PARA DEJARLA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>REMOVE</source>
+      <translation>QUITAR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>RETURN CHANGES THE MARKED FEATURE, F2 ENTERS ANOTHER; ESC GOES BACK TO THE LIST</source>
+      <translation>RETURN CAMBIA LA MARCADA, F2 INTRODUCE OTRA; ESC VUELVE A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>RETURN TURNS IT OVER</source>
+      <translation>RETURN LO CAMBIA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>Return takes what is typed and goes on; F6 keeps the feature, Esc leaves it as it was.</source>
+      <translation>Return toma lo escrito y sigue; F6 guarda la característica, Esc la deja como estaba.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>SECONDARY OFFSET</source>
+      <translation>COMPENSACIÓN SECUNDARIA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>SMALLER</source>
+      <translation>MENOR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>TOLERANCE</source>
+      <translation>TOLERANCIA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>UPPER DEVIATION</source>
+      <translation>DESVIACIÓN SUPERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>WAIT</source>
+      <translation>ESPERAR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>WEAR OF A TOOL</source>
+      <translation>DESGASTE DE HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>every {count}</source>
+      <translation>cada {count}</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>nominal, tolerance, tool, sample plan</source>
+      <translation>nominal, tolerancia, herramienta, plan</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>{name} KEPT</source>
+      <translation>{name} GUARDADA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>{name} REMOVED</source>
+      <translation>{name} QUITADA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/gauge_line.py" />
+      <source>No gauge: [gauge] of the machine file names its serial port.</source>
+      <translation>Sin calibrador: [gauge] del archivo de máquina nombra su puerto serie.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/gauge_line.py" />
+      <source>THE MACHINE FILE NAMES NO GAUGE: [gauge] port = …</source>
+      <translation>EL ARCHIVO DE MÁQUINA NO NOMBRA CALIBRADOR: [gauge] port = …</translation>
+    </message>
+    <message>
+      <location filename="app/quality/gauge_line.py" />
+      <source>no gauge is plugged in, or it is off</source>
+      <translation>no hay calibrador conectado, o está apagado</translation>
+    </message>
+    <message>
+      <location filename="app/quality/gauge_line.py" />
+      <source>the gauge has sent something unreadable</source>
+      <translation>el calibrador ha enviado algo ilegible</translation>
+    </message>
+    <message>
+      <location filename="app/quality/parts_book.py" />
+      <source>NO MEASURED PARTS ARE KEPT HERE</source>
+      <translation>AQUÍ NO SE GUARDAN PIEZAS MEDIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/parts_function.py" />
+      <source>DUE</source>
+      <translation>PENDIENTE</translation>
+    </message>
+    <message>
+      <location filename="app/quality/parts_function.py" />
+      <source>KEPT</source>
+      <translation>SE CONSERVA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/parts_function.py" />
+      <source>MEASURED PARTS</source>
+      <translation>PIEZAS MEDIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/parts_function.py" />
+      <source>PRESS RETURN FOR THE MEASURED PARTS; ESC GOES BACK TO THE LIST</source>
+      <translation>PULSE RETURN PARA LAS PIEZAS MEDIDAS; ESC VUELVE A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/parts_function.py" />
+      <source>READINGS</source>
+      <translation>LECTURAS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/parts_function.py" />
+      <source>Return opens the page; W of the main menu does so too.</source>
+      <translation>Return abre la página; W del menú principal también.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/parts_function.py" />
+      <source>readings, charts, tool life, trends</source>
+      <translation>lecturas, gráficas, vida útil, tendencias</translation>
+    </message>
+    <message>
+      <location filename="app/quality/plots_view.py" />
+      <source>NOTHING TO DRAW YET</source>
+      <translation>AÚN NO HAY NADA QUE DIBUJAR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>%1 is more than 0; type the measured size, not the deviation</source>
+      <translation>%1 es mayor que 0; escriba la medida, no la desviación</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>A READING CAME WHILE THE READINGS WERE NOT SHOWN: MEASURE AGAIN</source>
+      <translation>LLEGÓ UNA LECTURA SIN ESTAR LAS LECTURAS A LA VISTA: MIDA DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>ANOTHER CHANGE CAME AFTER IT; F8 AND F9 OF THE MAIN MENU HAVE THE HISTORY</source>
+      <translation>DESPUÉS HUBO OTRO CAMBIO; F8 Y F9 DEL MENÚ PRINCIPAL TIENEN EL HISTORIAL</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>CORRECT</source>
+      <translation>CORREGIR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>DEVIATION</source>
+      <translation>DESVIACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>F8 proposes a correction, F9 takes the last one back.</source>
+      <translation>F8 propone una corrección, F9 deshace la última.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>GAUGE</source>
+      <translation>CALIBR.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>GOOD</source>
+      <translation>BUENA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>NO CORRECTION WAS TAKEN OVER HERE; F8 AND F9 OF THE MAIN MENU HAVE THE HISTORY</source>
+      <translation>AQUÍ NO SE HA TOMADO NINGUNA CORRECCIÓN; F8 Y F9 DEL MENÚ PRINCIPAL TIENEN EL HISTORIAL</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>NO GAUGE</source>
+      <translation>SIN CAL.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>NONE YET</source>
+      <translation>AÚN NADA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>PRESS Y TO TAKE {size} OF PART {part} OUT, ESC TO KEEP IT</source>
+      <translation>PULSE Y PARA QUITAR {size} DE LA PIEZA {part}, ESC PARA DEJARLA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>READINGS  ·  %1</source>
+      <translation>LECTURAS  ·  %1</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>STILL READING WHAT WAS KEPT: PRESS F8 AGAIN</source>
+      <translation>AÚN LEYENDO LO GUARDADO: PULSE F8 OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>TAKE OUT</source>
+      <translation>QUITAR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>THE CORRECTION IS TAKEN BACK</source>
+      <translation>LA CORRECCIÓN SE HA DESHECHO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>THE READING IS TAKEN OUT</source>
+      <translation>LA LECTURA SE HA QUITADO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>TOO LARGE</source>
+      <translation>GRANDE</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>TOO SMALL</source>
+      <translation>PEQUEÑA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>TYPE THE MEASURED SIZE AND PRESS RETURN; ESC GOES BACK TO THE LIST</source>
+      <translation>ESCRIBA LA MEDIDA Y PULSE RETURN; ESC VUELVE A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>WRITTEN: {path}</source>
+      <translation>ESCRITO: {path}</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>measure a part, take over a correction</source>
+      <translation>medir una pieza, tomar una corrección</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>{name} OF PART {part}: {size} KEPT</source>
+      <translation>{name} DE LA PIEZA {part}: {size} GUARDADA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>{name} OF PART {part}?</source>
+      <translation>¿{name} DE LA PIEZA {part}?</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>{name} {size} IS FAR OFF: PRESS Y TO KEEP IT ALL THE SAME, ESC TO MEASURE AGAIN</source>
+      <translation>{name} {size} ESTÁ MUY LEJOS: PULSE Y PARA GUARDARLA AUN ASÍ, ESC PARA MEDIR DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>{words}: PRESS Y TO TAKE IT OVER, ESC TO LEAVE IT</source>
+      <translation>{words}: PULSE Y PARA TOMARLA, ESC PARA DEJARLA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>{words}; IT COUNTS FROM THE NEXT PART</source>
+      <translation>{words}; CUENTA DESDE LA PRÓXIMA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/sample_plan.py" />
+      <source>MEASURE PART {part}: {names}</source>
+      <translation>MIDA LA PIEZA {part}: {names}</translation>
+    </message>
+    <message>
+      <location filename="app/quality/sample_plan.py" />
+      <source>part %1 is to be measured first: %2</source>
+      <translation>antes hay que medir la pieza %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/quality/section.py" />
+      <source>CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN FEATURES</source>
+      <translation>ELIJA PRIMERO UN PROGRAMA: CADA UNO TIENE SUS CARACTERÍSTICAS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/section.py" />
+      <source>NO FEATURE IS ENTERED YET: SECTION 1, F2</source>
+      <translation>AÚN NO HAY CARACTERÍSTICAS: SECCIÓN 1, F2</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>%1 is no number of parts; type a whole number</source>
+      <translation>%1 no es un número de piezas; escriba un entero</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>LEFT</source>
+      <translation>FALTA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>MINUTES</source>
+      <translation>MINUTOS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>Minutes are those at feed. 0 takes a limit away. STOP: no other part begins when it is gone.</source>
+      <translation>Los minutos son los de avance. 0 quita el límite. PARO: al agotarse no empieza otra pieza.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>NO TOOL IS SET YET</source>
+      <translation>AÚN NO HAY HERRAMIENTA PUESTA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>PRESS Y WHEN T{number} HAS A FRESH INSERT ({words} ARE ON THE OLD ONE), ESC IF NOT</source>
+      <translation>PULSE Y CUANDO T{number} TENGA INSERTO NUEVO (EL VIEJO LLEVA {words}), ESC SI NO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>STOP</source>
+      <translation>PARO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>STOPS</source>
+      <translation>PARADAS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>TOOL LIFE</source>
+      <translation>VIDA ÚTIL</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>TYPE THE LIMIT AND PRESS RETURN; F2 CHOOSES WHICH, F4 WHEN THE INSERT IS CHANGED</source>
+      <translation>ESCRIBA EL LÍMITE Y PULSE RETURN; F2 ELIGE CUÁL, F4 AL CAMBIAR EL INSERTO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>T{number} SAVED</source>
+      <translation>T{number} GUARDADA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>T{number} {limit}?</source>
+      <translation>¿T{number} {limit}?</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>USED</source>
+      <translation>USADO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>WARN</source>
+      <translation>AVISO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>WARN AT %</source>
+      <translation>AVISAR AL %</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>parts and minutes of an insert</source>
+      <translation>piezas y minutos de un inserto</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>{count} parts</source>
+      <translation>{count} piezas</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_watch.py" />
+      <source>T{number}: A FRESH INSERT, ITS LIFE BEGINS AT NOUGHT</source>
+      <translation>T{number}: INSERTO NUEVO, SU VIDA EMPIEZA DE CERO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_watch.py" />
+      <source>T{number}: ITS LIFE IS GONE, {words}</source>
+      <translation>T{number}: SU VIDA SE ACABÓ, {words}</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_watch.py" />
+      <source>T{number}: {words} OF ITS LIFE ARE GONE</source>
+      <translation>T{number}: {words} DE SU VIDA ESTÁN GASTADOS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_watch.py" />
+      <source>the life of T%1 is gone, %2: change the insert and tell it in TOOL LIFE</source>
+      <translation>la vida de T%1 se acabó, %2: cambie el inserto y dígalo en VIDA ÚTIL</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>AVAILABILITY</source>
+      <translation>DISPONIBILIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>CYCLE TIME</source>
+      <translation>TIEMPO DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>CYCLE TIME, s</source>
+      <translation>TIEMPO DE CICLO, s</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>CYCLES RAN</source>
+      <translation>EN CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>MINUTES BY REASON; TOGETHER WITH THOSE ABOVE</source>
+      <translation>MINUTOS POR CAUSA; JUNTO CON LAS DE ARRIBA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>MINUTES OF THE SHIFT</source>
+      <translation>MINUTOS DEL TURNO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>SHIFT FROM-TO, SUCH AS 6-14?</source>
+      <translation>¿TURNO DE-A, COMO 6-14?</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>SPINDLE LOAD</source>
+      <translation>CARGA DEL HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>SPINDLE LOAD, %</source>
+      <translation>CARGA DEL HUSILLO, %</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>STOOD</source>
+      <translation>PARADA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>THE ARROWS CHOOSE A TREND; ESC GOES BACK TO THE LIST</source>
+      <translation>LAS FLECHAS ELIGEN UNA TENDENCIA; ESC VUELVE A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>TRENDS</source>
+      <translation>TENDENCIAS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>TRENDS  ·  %1</source>
+      <translation>TENDENCIAS  ·  %1</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>a shift is two hours of the day, such as 6-14</source>
+      <translation>un turno son dos horas del día, como 6-14</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>cycle times, wear, stops, availability</source>
+      <translation>ciclos, desgaste, paros, disponibilidad</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>last {last} %, highest {most} %</source>
+      <translation>última {last} %, mayor {most} %</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>last {last}, shortest {best}, mean {mean} of {count} parts</source>
+      <translation>último {last}, menor {best}, media {mean} de {count} piezas</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>no correction yet</source>
+      <translation>aún sin correcciones</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>no drive of this machine tells its load</source>
+      <translation>ningún accionamiento de esta máquina dice su carga</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>no part was made yet</source>
+      <translation>aún no se ha hecho ninguna pieza</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>no stop yet</source>
+      <translation>aún sin paros</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>parts</source>
+      <translation>piezas</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>{count} corrections; last {offset}: X {x} Z {z} behind part {part}</source>
+      <translation>{count} correcciones; última {offset}: X {x} Z {z} tras la pieza {part}</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>{count} stops, {mean} between them; {reason}: {time}</source>
+      <translation>{count} paros, {mean} entre ellos; {reason}: {time}</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>{first}–{last}: the shift has not begun</source>
+      <translation>{first}–{last}: el turno no ha empezado</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>{first}–{last}: {share} %, {run} of {planned}</source>
+      <translation>{first}–{last}: {share} %, {run} de {planned}</translation>
+    </message>
+    <message>
+      <location filename="app/quality/wear_correction.py" />
+      <source>%1: no part begun since the last change of %2 is measured yet</source>
+      <translation>%1: aún no se ha medido ninguna pieza empezada tras el último cambio de %2</translation>
+    </message>
+    <message>
+      <location filename="app/quality/wear_correction.py" />
+      <source>T{number} WAS NEVER SET</source>
+      <translation>T{number} NUNCA FUE PUESTA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/wear_correction.py" />
+      <source>measured {name}: mean {mean} of {count}, {change}</source>
+      <translation>medido {name}: media {mean} de {count}, {change}</translation>
+    </message>
+    <message>
+      <location filename="app/quality/wear_correction.py" />
+      <source>{offset} {change}: {feature} {old} → {new}</source>
+      <translation>{offset} {change}: {feature} {old} → {new}</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>%1 actual</source>
+      <translation>%1 real</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>%1 demand</source>
+      <translation>%1 consigna</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>%1 mm/m</source>
+      <translation>%1 mm/m</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>A dash: the arc is too short to tell it.</source>
+      <translation>Una raya: el arco es muy corto para saberlo.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>BACKLASH {axis}</source>
+      <translation>JUEGO {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>BALL BAR</source>
+      <translation>BALL BAR</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>DEEPER</source>
+      <translation>MÁS HONDO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>ENTRY</source>
+      <translation>ENTRADA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>Entry angles lie within {angle}°</source>
+      <translation>Los ángulos de entrada quedan en {angle}°</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>Greatest: {far}</source>
+      <translation>Mayor: {far}</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>Infeed along a flank shifts the entry, by its depth.</source>
+      <translation>El avance por un flanco corre la entrada, según su profundidad.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>LEAD OFF</source>
+      <translation>PASO ERRADO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>Lead: {lead} a turn</source>
+      <translation>Paso: {lead} por vuelta</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>Line {line}, arc {number} of {count}: radius {radius}, {angle}°</source>
+      <translation>Línea {line}, arco {number} de {count}: radio {radius}, {angle}°</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>NOTHING IS RECORDED ON THIS MACHINE: OPEN A RECORD WITH F9</source>
+      <translation>EN ESTA MÁQUINA NO SE REGISTRA NADA: ABRA UN REGISTRO CON F9</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>OFF THE PATH</source>
+      <translation>FUERA DE TRAYECTORIA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>OUT OF SQUARE</source>
+      <translation>FUERA DE ESCUADRA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>PASS</source>
+      <translation>PASADA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>PATH ERROR</source>
+      <translation>ERROR DE TRAYECTORIA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>Play behind the encoder is not seen by it.</source>
+      <translation>El juego detrás del encoder no se ve en él.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>Positive lies to the left of the way the tool goes.</source>
+      <translation>Positivo queda a la izquierda del avance de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>RADIUS OFF</source>
+      <translation>RADIO ERRADO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>RESPONSE</source>
+      <translation>RESPUESTA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>REVERSAL SPIKE {axis}</source>
+      <translation>PICO DE INVERSIÓN {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>ROUNDNESS</source>
+      <translation>REDONDEZ</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>RPM LOST</source>
+      <translation>RPM PERDIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>SCALE {u} TO {v}</source>
+      <translation>ESCALA {u} A {v}</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>THREAD</source>
+      <translation>ROSCA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>The slide can follow this lead up to {rpm} rpm</source>
+      <translation>El carro puede seguir este paso hasta {rpm} rpm</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>WORKED OUT …</source>
+      <translation>CALCULANDO …</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>asked and done of the last move, and its following error, over seconds</source>
+      <translation>lo pedido y lo hecho del último movimiento, y su error de seguimiento, en segundos</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>error drawn {times} times as large; Z changes that</source>
+      <translation>error dibujado {times} veces mayor; Z lo cambia</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>line {line}</source>
+      <translation>línea {line}</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>passes over each other by the spindle's angle: way beside the thread, and speed</source>
+      <translation>pasadas encimadas por el ángulo del husillo: desvío de la rosca, y velocidad</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>spindle speed</source>
+      <translation>velocidad del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>spindle turns</source>
+      <translation>vueltas del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>the record has no two slides, and so no path</source>
+      <translation>el registro no tiene dos carros, y por eso no hay trayectoria</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>there is no arc of 60 degrees or more in this time: record while a G02 or G03 is cut</source>
+      <translation>en este tiempo no hay un arco de 60 grados o más: registre mientras se corta un G02 o G03</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses_view.py" />
+      <source>ARROWS MARK A ROW; Z AND THE WHEEL MAGNIFY; THE SAME KEY AGAIN TAKES NEWER SAMPLES</source>
+      <translation>LAS FLECHAS MARCAN UNA FILA; Z Y LA RUEDA AMPLÍAN; LA MISMA TECLA TOMA MUESTRAS NUEVAS</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses_view.py" />
+      <source>NEXT ARC</source>
+      <translation>OTRO ARC</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>%1 ms</source>
+      <translation>%1 ms</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>A step of the Jog page is a good one.</source>
+      <translation>Sirve bien un paso de la página Jog.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>AT {share} OF THE SPEED</source>
+      <translation>A {share} DE LA VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>GREATEST FOLLOWING ERROR</source>
+      <translation>MAYOR ERROR DE SEGUIM.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>GREATEST SPEED</source>
+      <translation>VELOCIDAD MAYOR</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>IN POSITION AFTER</source>
+      <translation>EN POSICIÓN TRAS</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>LAG BEHIND THE SPEED</source>
+      <translation>RETRASO POR VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>OVERSHOOT</source>
+      <translation>SOBREPASO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>Of the last move of {axis}; worked out, nothing was changed.</source>
+      <translation>Del último movimiento de {axis}; calculado, nada se cambió.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>RISE, 10 TO 90 %</source>
+      <translation>SUBIDA, 10 A 90 %</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>WAY</source>
+      <translation>CAMINO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>WINDOW AT THIS SPEED</source>
+      <translation>VENTANA A ESTA VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>WITH {share} OF THE WINDOW</source>
+      <translation>CON {share} DE LA VENTANA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>holds</source>
+      <translation>aguanta</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>no axis moved from rest to rest in this time: make a step on the Jog page</source>
+      <translation>ningún eje se movió de reposo a reposo en este tiempo: haga un paso en la página Jog</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>trips at {at}</source>
+      <translation>dispara a los {at}</translation>
+    </message>
+    <message>
+      <location filename="app/scope/record_shelf.py" />
+      <source>%1 IS NOT WRITTEN: THE DISK IS FULL; DELETE RECORDS OR PROGRAMS</source>
+      <translation>%1 NO SE HA ESCRITO: EL DISCO ESTÁ LLENO; BORRE REGISTROS O PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/scope/record_shelf.py" />
+      <source>alarm time</source>
+      <translation>hora de la alarma</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_function.py" />
+      <source>CHANNELS</source>
+      <translation>CANALES</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_function.py" />
+      <source>NOTHING ON THIS MACHINE</source>
+      <translation>NADA EN ESTA MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_function.py" />
+      <source>PRESS RETURN FOR THE SCOPE; ESC GOES BACK TO THE LIST</source>
+      <translation>PULSE RETURN PARA EL OSCILOSCOPIO; ESC VUELVE A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_function.py" />
+      <source>RECORDED</source>
+      <translation>SE REGISTRA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_function.py" />
+      <source>Return opens the page; Shift+F10 does so from every page, and goes back.</source>
+      <translation>Return abre la página; Mayús+F10 lo hace desde cualquier página, y regresa.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_function.py" />
+      <source>THE LAST {minutes} MINUTES</source>
+      <translation>LOS ÚLTIMOS {minutes} MINUTOS</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_function.py" />
+      <source>axes and spindle as curves</source>
+      <translation>ejes y husillo como curvas</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_model.py" />
+      <source>ARMED</source>
+      <translation>ARMADO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_model.py" />
+      <source>DELETED: {path}</source>
+      <translation>BORRADO: {path}</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_model.py" />
+      <source>PRESS Y TO DELETE {path}, ESC TO KEEP IT</source>
+      <translation>PULSE Y PARA BORRAR {path}, ESC PARA CONSERVARLO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_model.py" />
+      <source>THE CURVES ARE LIVE: PRESS F2 TO FREEZE THEM FIRST</source>
+      <translation>LAS CURVAS CORREN: PRIMERO CONGÉLELAS CON F2</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_model.py" />
+      <source>THE RECORD IS EMPTY: NOTHING WAS SAMPLED IN THAT TIME</source>
+      <translation>EL REGISTRO ESTÁ VACÍO: NO SE MUESTREÓ NADA EN ESE TIEMPO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_model.py" />
+      <source>TRIGGER HELD: F2 ARMS IT</source>
+      <translation>DISPARO RETENIDO: F2 LO ARMA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_model.py" />
+      <source>TRIGGERED</source>
+      <translation>DISPARADO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_model.py" />
+      <source>{most} CURVES ARE SHOWN, AND NO MORE CAN BE TOLD APART: TAKE ONE AWAY FIRST</source>
+      <translation>SE MUESTRAN {most} CURVAS Y NO SE DISTINGUEN MÁS: QUITE UNA PRIMERO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_readings_view.py" />
+      <source>%1 Hz</source>
+      <translation>%1 Hz</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_readings_view.py" />
+      <source>B − A   %1 ms</source>
+      <translation>B − A   %1 ms</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_readings_view.py" />
+      <source>F4 chooses curves.</source>
+      <translation>F4 elige curvas.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_readings_view.py" />
+      <source>FIGURES</source>
+      <translation>VALORES</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>ARROWS MOVE THE CURSOR, TAB TAKES THE OTHER; Z ZOOMS, CTRL+ARROWS PAN AND STRETCH</source>
+      <translation>LAS FLECHAS MUEVEN EL CURSOR, TAB TOMA EL OTRO; Z AMPLÍA, CTRL+FLECHAS DESPLAZAN Y ESTIRAN</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>CURVES</source>
+      <translation>CURVAS</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>F2 SAVES WHAT IS SEEN; RETURN OPENS A RECORD; ESC GOES BACK TO THE CURVES</source>
+      <translation>F2 GUARDA LO QUE SE VE; RETURN ABRE UN REGISTRO; ESC VUELVE A LAS CURVAS</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>LEVEL</source>
+      <translation>NIVEL</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>LEVEL?</source>
+      <translation>¿NIVEL?</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>LIES IN THE WINDOW AT</source>
+      <translation>EN LA VENTANA QUEDA AL</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>LINE?</source>
+      <translation>¿LÍNEA?</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>No record is kept yet: F2 saves what is seen.</source>
+      <translation>Aún no hay registros: F2 guarda lo que se ve.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>OVERLAY</source>
+      <translation>ENCIMA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>RECORDS</source>
+      <translation>REGISTROS</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>RELEASED BY</source>
+      <translation>LO SUELTA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>RETURN GOES ON TO THE NEXT CHOICE; A LEVEL IS TYPED; ESC GOES BACK TO THE CURVES</source>
+      <translation>RETURN PASA A LA OPCIÓN SIGUIENTE; EL NIVEL SE ESCRIBE; ESC VUELVE A LAS CURVAS</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>RETURN SHOWS THE MARKED CURVE, OR TAKES IT AWAY; ESC GOES BACK TO THE CURVES</source>
+      <translation>RETURN MUESTRA LA CURVA MARCADA O LA QUITA; ESC VUELVE A LAS CURVAS</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>SIGNAL</source>
+      <translation>SEÑAL</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>TRIGGER</source>
+      <translation>DISPARO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>UP AND DOWN CHOOSE A CURVE; Z ZOOMS, CTRL+ARROWS PAN AND STRETCH; F2 FREEZES</source>
+      <translation>ARRIBA Y ABAJO ELIGEN UNA CURVA; Z AMPLÍA, CTRL+FLECHAS DESPLAZAN Y ESTIRAN; F2 CONGELA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>Velocities and ripple are taken over a span: it stands beside them.</source>
+      <translation>Velocidades y rizado se toman en un lapso: está junto a ellos.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>WRITTEN</source>
+      <translation>ESCRITO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>When it is released the curves are frozen: once.</source>
+      <translation>Al soltarse se congelan las curvas: una vez.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_sheets.py" />
+      <source>a line of the program is a whole number from 1 on</source>
+      <translation>una línea del programa es un número entero desde 1</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_trigger.py" />
+      <source>A LINE OF THE PROGRAM BEGINS</source>
+      <translation>EMPIEZA UNA LÍNEA DEL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_trigger.py" />
+      <source>AN ALARM OR E-STOP</source>
+      <translation>UNA ALARMA O PARO DE EMERGENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_trigger.py" />
+      <source>FALLS THROUGH A LEVEL</source>
+      <translation>BAJA POR UN NIVEL</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_trigger.py" />
+      <source>GOES BEYOND ± A LEVEL</source>
+      <translation>PASA DE ± UN NIVEL</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_trigger.py" />
+      <source>OFF: THE CURVES ROLL</source>
+      <translation>APAGADO: LAS CURVAS CORREN</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_trigger.py" />
+      <source>RISES THROUGH A LEVEL</source>
+      <translation>SUBE POR UN NIVEL</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_view.py" />
+      <source>ANALYSE</source>
+      <translation>ANALIZAR</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_view.py" />
+      <source>CURSORS</source>
+      <translation>CURSORES</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_view.py" />
+      <source>FREEZE</source>
+      <translation>CONGELAR</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_view.py" />
+      <source>FROZEN</source>
+      <translation>CONGELADO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_view.py" />
+      <source>LIVE</source>
+      <translation>EN VIVO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_view.py" />
+      <source>OPENING …</source>
+      <translation>ABRIENDO …</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_view.py" />
+      <source>PICTURE</source>
+      <translation>IMAGEN</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_view.py" />
+      <source>over it {name}</source>
+      <translation>encima {name}</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_view.py" />
+      <source>window {span}</source>
+      <translation>ventana {span}</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_view.py" />
+      <source>{rate} samples a second</source>
+      <translation>{rate} muestras por segundo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>%1 acceleration</source>
+      <translation>%1 aceleración</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>%1 demand velocity</source>
+      <translation>%1 velocidad de consigna</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>%1 following error</source>
+      <translation>%1 error de seguimiento</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>%1 load</source>
+      <translation>%1 carga</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>%1 velocity</source>
+      <translation>%1 velocidad</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>ACCELERATION</source>
+      <translation>ACELERACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>ANGLE</source>
+      <translation>ÁNGULO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>FOLLOWING ERROR</source>
+      <translation>ERROR DE SEGUIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>Feed override</source>
+      <translation>Sobremando de avance</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>INPUTS AND OUTPUTS</source>
+      <translation>ENTRADAS Y SALIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>LATENESS</source>
+      <translation>RETRASO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>LOAD</source>
+      <translation>CARGA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>Lateness</source>
+      <translation>Retraso del control</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>Line</source>
+      <translation>Línea</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>OVERRIDE</source>
+      <translation>SOBREMANDO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>QUEUE</source>
+      <translation>COLA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>Queue depth</source>
+      <translation>Cola de consignas</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>SPINDLE RIPPLE</source>
+      <translation>RIZADO DEL HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>SPINDLE TURNS</source>
+      <translation>VUELTAS DEL HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>Spindle commanded</source>
+      <translation>Husillo mandado</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>Spindle load</source>
+      <translation>Carga del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>Spindle measured</source>
+      <translation>Husillo medido</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>Spindle override</source>
+      <translation>Sobremando de husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>Spindle ripple</source>
+      <translation>Rizado del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>Spindle turns</source>
+      <translation>Vueltas del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>TURNING ACCELERATION</source>
+      <translation>ACELERACIÓN DE GIRO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>TURNING SPEED</source>
+      <translation>VELOCIDAD DE GIRO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>VELOCITY</source>
+      <translation>VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>acceleration</source>
+      <translation>aceleración</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>commanded</source>
+      <translation>mandada</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>feed override</source>
+      <translation>regulación del avance</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>following error</source>
+      <translation>error de seguimiento</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>load</source>
+      <translation>carga</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>measured</source>
+      <translation>medida</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>over {ms} ms</source>
+      <translation>en {ms} ms</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>spindle command</source>
+      <translation>consigna del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>spindle load</source>
+      <translation>carga del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>spindle override</source>
+      <translation>regulación del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>spindle ripple</source>
+      <translation>rizado del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>turns</source>
+      <translation>vueltas</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>velocity</source>
+      <translation>velocidad</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>velocity commanded</source>
+      <translation>velocidad mandada</translation>
+    </message>
+    <message>
       <location filename="app/screen/alarm_panels.py" />
       <source>ALARMS AND STOPS  ·  ESC CLOSES  ·  CTRL+ARROWS MARK  ·  SHIFT+F10: ITS RECORD</source>
       <translation>ALARMAS Y PAROS  ·  ESC CIERRA  ·  CTRL+FLECHAS MARCAN  ·  MAYÚS+F10: SU REGISTRO</translation>
@@ -4327,11 +5857,6 @@
       <location filename="app/screen/alarm_panels.py" />
       <source>No alarm and no stop yet.</source>
       <translation>Todavía ninguna alarma ni paro.</translation>
-    </message>
-    <message>
-      <location filename="app/screen/alarm_panels.py" />
-      <source>SCOPE</source>
-      <translation>OSCILOSCOPIO</translation>
     </message>
     <message>
       <location filename="app/screen/alarm_panels.py" />
@@ -4432,16 +5957,6 @@
       <location filename="app/screen/page_table.py" />
       <source>MDI</source>
       <translation>MDI</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>MEASURED</source>
-      <translation>MEDIDO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>MEASURED PARTS</source>
-      <translation>PIEZAS MEDIDAS</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -4625,11 +6140,6 @@
     </message>
     <message>
       <location filename="app/screen/station_dock.py" />
-      <source>STOP</source>
-      <translation>PARO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/station_dock.py" />
       <source>TWIST</source>
       <translation>GIRE</translation>
     </message>
@@ -4662,11 +6172,6 @@
       <location filename="app/screen/window_frame.py" />
       <source>LAST</source>
       <translation>ÚLTIMO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_frame.py" />
-      <source>LEFT</source>
-      <translation>FALTA</translation>
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
@@ -5187,11 +6692,6 @@
       <location filename="app/special/inputs_outputs.py" />
       <source>INPUTS</source>
       <translation>ENTRADAS</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>INPUTS AND OUTPUTS</source>
-      <translation>ENTRADAS Y SALIDAS</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
@@ -5745,11 +7245,6 @@
     </message>
     <message>
       <location filename="app/special/setup_sheet_page.py" />
-      <source>PICTURE</source>
-      <translation>IMAGEN</translation>
-    </message>
-    <message>
-      <location filename="app/special/setup_sheet_page.py" />
       <source>SECONDARY AND ZERO OFFSETS</source>
       <translation>CORRECTORES SECUNDARIOS Y DE CERO</translation>
     </message>
@@ -5757,11 +7252,6 @@
       <location filename="app/special/setup_sheet_page.py" />
       <source>STATION</source>
       <translation>PUESTO</translation>
-    </message>
-    <message>
-      <location filename="app/special/setup_sheet_page.py" />
-      <source>STOPS</source>
-      <translation>PARADAS</translation>
     </message>
     <message>
       <location filename="app/special/setup_sheet_page.py" />
@@ -6372,11 +7862,6 @@
       <location filename="core/alarms/axis_alarms.py" />
       <source>close the safety circuit, Reset, Drives On; home where the axis asks for it</source>
       <translation>cierre el circuito de seguridad, Reset, encienda servos; referencia donde el eje la pida</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/axis_alarms.py" />
-      <source>following error</source>
-      <translation>error de seguimiento</translation>
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
@@ -8287,11 +9772,6 @@
       <location filename="core/executor/recorder.py" />
       <source>alarm line</source>
       <translation>línea de la alarma</translation>
-    </message>
-    <message>
-      <location filename="core/executor/recorder.py" />
-      <source>alarm time</source>
-      <translation>hora de la alarma</translation>
     </message>
     <message>
       <location filename="core/executor/recorder.py" />
@@ -14012,6 +15492,361 @@
       <location filename="core/proving/unchecked_parts.py" />
       <source>the speed that the chuck may turn at, without max_rpm under [clamping]</source>
       <translation>la velocidad que admite el plato, sin max_rpm en [clamping]</translation>
+    </message>
+    <message>
+      <location filename="core/quality/availability.py" />
+      <source>a cycle ends before it begins; the clock was set back</source>
+      <translation>un ciclo acaba antes de empezar; el reloj se atrasó</translation>
+    </message>
+    <message>
+      <location filename="core/quality/availability.py" />
+      <source>a shift ends after it begins; correct its times</source>
+      <translation>un turno acaba después de empezar; corrija sus horas</translation>
+    </message>
+    <message>
+      <location filename="core/quality/capability.py" />
+      <source>%1 of %2 readings that a Cpk needs at least</source>
+      <translation>%1 de las %2 lecturas que un Cpk necesita al menos</translation>
+    </message>
+    <message>
+      <location filename="core/quality/capability.py" />
+      <source>a capability needs a tolerance; enter one for this feature</source>
+      <translation>la capacidad necesita una tolerancia; introdúzcala</translation>
+    </message>
+    <message>
+      <location filename="core/quality/capability.py" />
+      <source>the lower limit is not below the upper; correct the tolerance</source>
+      <translation>el límite inferior no está bajo el superior; corrija la tolerancia</translation>
+    </message>
+    <message>
+      <location filename="core/quality/control_charts.py" />
+      <source>a chart of individuals needs 2 values; measure more parts</source>
+      <translation>la gráfica de individuales necesita 2 valores; mida más piezas</translation>
+    </message>
+    <message>
+      <location filename="core/quality/control_charts.py" />
+      <source>a sample of %1 has no control chart; take 1 to %2 parts</source>
+      <translation>una muestra de %1 no tiene gráfica; tome de 1 a %2 piezas</translation>
+    </message>
+    <message>
+      <location filename="core/quality/control_charts.py" />
+      <source>a value is no number; take the reading out</source>
+      <translation>un valor no es un número; quite la lectura</translation>
+    </message>
+    <message>
+      <location filename="core/quality/control_charts.py" />
+      <source>an X-bar chart needs 2 whole samples of %1; measure more parts</source>
+      <translation>la gráfica X-barra necesita 2 muestras enteras de %1; mida más piezas</translation>
+    </message>
+    <message>
+      <location filename="core/quality/control_charts.py" />
+      <source>samples of an X-bar chart have 2 to 10 values, all the same number</source>
+      <translation>las muestras de X-barra tienen de 2 a 10 valores, todas igual</translation>
+    </message>
+    <message>
+      <location filename="core/quality/drift_rules.py" />
+      <source>beyond a control limit</source>
+      <translation>fuera de un límite de control</translation>
+    </message>
+    <message>
+      <location filename="core/quality/drift_rules.py" />
+      <source>eight in a row beyond one sigma</source>
+      <translation>ocho seguidas más allá de un sigma</translation>
+    </message>
+    <message>
+      <location filename="core/quality/drift_rules.py" />
+      <source>fifteen in a row within one sigma</source>
+      <translation>quince seguidas dentro de un sigma</translation>
+    </message>
+    <message>
+      <location filename="core/quality/drift_rules.py" />
+      <source>four of five beyond one sigma on one side</source>
+      <translation>cuatro de cinco más allá de un sigma a un lado</translation>
+    </message>
+    <message>
+      <location filename="core/quality/drift_rules.py" />
+      <source>fourteen in a row going up and down by turns</source>
+      <translation>catorce seguidas subiendo y bajando</translation>
+    </message>
+    <message>
+      <location filename="core/quality/drift_rules.py" />
+      <source>nine in a row on one side of the centre line</source>
+      <translation>nueve seguidas a un lado de la línea central</translation>
+    </message>
+    <message>
+      <location filename="core/quality/drift_rules.py" />
+      <source>six in a row rising or falling</source>
+      <translation>seis seguidas subiendo o bajando</translation>
+    </message>
+    <message>
+      <location filename="core/quality/drift_rules.py" />
+      <source>two of three beyond two sigma on one side</source>
+      <translation>dos de tres más allá de dos sigmas a un lado</translation>
+    </message>
+    <message>
+      <location filename="core/quality/measured_feature.py" />
+      <source>%1: a sample has 1 to %2 parts</source>
+      <translation>%1: una muestra tiene de 1 a %2 piezas</translation>
+    </message>
+    <message>
+      <location filename="core/quality/measured_feature.py" />
+      <source>%1: it grows with its correction or shrinks with it, +1 or -1</source>
+      <translation>%1: crece con su corrección o mengua con ella, +1 o -1</translation>
+    </message>
+    <message>
+      <location filename="core/quality/measured_feature.py" />
+      <source>%1: its lower limit is nothing or less; correct the deviation</source>
+      <translation>%1: su límite inferior es cero o menos; corrija la desviación</translation>
+    </message>
+    <message>
+      <location filename="core/quality/measured_feature.py" />
+      <source>%1: measured every 1 to %2 parts, 0: no plan</source>
+      <translation>%1: se mide cada 1 a %2 piezas, 0: sin plan</translation>
+    </message>
+    <message>
+      <location filename="core/quality/measured_feature.py" />
+      <source>%1: nominal and limits are numbers</source>
+      <translation>%1: nominal y límites son números</translation>
+    </message>
+    <message>
+      <location filename="core/quality/measured_feature.py" />
+      <source>%1: offsets are 1 to %2, not %3</source>
+      <translation>%1: las compensaciones son 1 a %2, no %3</translation>
+    </message>
+    <message>
+      <location filename="core/quality/measured_feature.py" />
+      <source>%1: the lower deviation is not below the upper; correct one of them</source>
+      <translation>%1: la desviación inferior no está bajo la superior; corrija una</translation>
+    </message>
+    <message>
+      <location filename="core/quality/measured_feature.py" />
+      <source>%1: the nominal is more than 0 and at most %2 mm</source>
+      <translation>%1: el nominal es mayor que 0 y a lo más %2 mm</translation>
+    </message>
+    <message>
+      <location filename="core/quality/measured_feature.py" />
+      <source>a feature has a name of 1 to %1 characters</source>
+      <translation>una característica tiene un nombre de 1 a %1 letras</translation>
+    </message>
+    <message>
+      <location filename="core/quality/stops.py" />
+      <source>%1: a stop that ends before it begins; the clock was set back</source>
+      <translation>%1: un paro que acaba antes de empezar; el reloj se atrasó</translation>
+    </message>
+    <message>
+      <location filename="core/quality/tool_life.py" />
+      <source>%1 of %2 min</source>
+      <translation>%1 de %2 min</translation>
+    </message>
+    <message>
+      <location filename="core/quality/tool_life.py" />
+      <source>%1 of %2 parts</source>
+      <translation>%1 de %2 piezas</translation>
+    </message>
+    <message>
+      <location filename="core/quality/tool_life.py" />
+      <source>%1 parts, %2 min</source>
+      <translation>%1 piezas, %2 min</translation>
+    </message>
+    <message>
+      <location filename="core/quality/tool_life.py" />
+      <source>T%1: a life is 0 to %2 cutting minutes, 0: no limit</source>
+      <translation>T%1: una vida es de 0 a %2 minutos de corte, 0: sin límite</translation>
+    </message>
+    <message>
+      <location filename="core/quality/tool_life.py" />
+      <source>T%1: a life is 0 to %2 parts, 0: no limit</source>
+      <translation>T%1: una vida es de 0 a %2 piezas, 0: sin límite</translation>
+    </message>
+    <message>
+      <location filename="core/quality/tool_life.py" />
+      <source>T%1: it is warned at 1 to 100 % of the life</source>
+      <translation>T%1: se avisa del 1 al 100 % de la vida</translation>
+    </message>
+    <message>
+      <location filename="core/quality/tool_life.py" />
+      <source>no limit</source>
+      <translation>sin límite</translation>
+    </message>
+    <message>
+      <location filename="core/quality/wear_proposal.py" />
+      <source>%1: a correction of %2 mm is no wear; touch the tool off</source>
+      <translation>%1: una corrección de %2 mm no es desgaste; toque la herramienta de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/quality/wear_proposal.py" />
+      <source>%1: a reading is more than %2 tolerances off; that is no wear, measure again</source>
+      <translation>%1: una lectura está a más de %2 tolerancias; eso no es desgaste, mida de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/quality/wear_proposal.py" />
+      <source>%1: a reading is no number; take it out</source>
+      <translation>%1: una lectura no es un número; quítela</translation>
+    </message>
+    <message>
+      <location filename="core/quality/wear_proposal.py" />
+      <source>%1: no part was measured since the last correction</source>
+      <translation>%1: no se ha medido ninguna pieza desde la última corrección</translation>
+    </message>
+    <message>
+      <location filename="core/quality/wear_proposal.py" />
+      <source>less than the smallest step: nothing to correct</source>
+      <translation>menos que el paso menor: nada que corregir</translation>
+    </message>
+    <message>
+      <location filename="core/quality/wear_proposal.py" />
+      <source>within the dead band: nothing to correct</source>
+      <translation>dentro de la banda muerta: nada que corregir</translation>
+    </message>
+    <message>
+      <location filename="core/records/ball_bar.py" />
+      <source>a ball-bar plot needs %1 samples of an arc; run it slower or larger</source>
+      <translation>un ball bar pide %1 muestras de un arco; hágalo más lento o mayor</translation>
+    </message>
+    <message>
+      <location filename="core/records/ball_bar.py" />
+      <source>the arc is shorter than %1 degrees: too short for a ball-bar plot</source>
+      <translation>el arco es más corto que %1 grados: demasiado corto para un diagrama ball-bar</translation>
+    </message>
+    <message>
+      <location filename="core/records/ball_bar.py" />
+      <source>the driver does not tell where the slides are; there is no arc to see</source>
+      <translation>el driver no dice dónde están los carros; no hay arco que ver</translation>
+    </message>
+    <message>
+      <location filename="core/records/ball_bar.py" />
+      <source>there is no arc in this time: choose the line of a G02 or G03</source>
+      <translation>en este tiempo no hay arco: elija la línea de un G02 o G03</translation>
+    </message>
+    <message>
+      <location filename="core/records/path_error.py" />
+      <source>a path error needs %1 samples of a path at least; record while a program runs</source>
+      <translation>un error de trayectoria pide al menos %1 muestras; registre mientras corre un programa</translation>
+    </message>
+    <message>
+      <location filename="core/records/path_error.py" />
+      <source>nothing moved in this time; record while a program runs</source>
+      <translation>nada se movió en este tiempo; registre mientras corre un programa</translation>
+    </message>
+    <message>
+      <location filename="core/records/path_error.py" />
+      <source>points and lines of the path do not belong together</source>
+      <translation>los puntos y las líneas de la trayectoria no van juntos</translation>
+    </message>
+    <message>
+      <location filename="core/records/path_error.py" />
+      <source>the driver does not tell where the slides are; there is no path to compare</source>
+      <translation>el driver no dice dónde están los carros; no hay trayectoria que comparar</translation>
+    </message>
+    <message>
+      <location filename="core/records/record_errors.py" />
+      <source>%1: the disk is full; make room on it</source>
+      <translation>%1: el disco está lleno; haga sitio en él</translation>
+    </message>
+    <message>
+      <location filename="core/records/record_errors.py" />
+      <source>%1: there is no such file</source>
+      <translation>%1: no existe ese archivo</translation>
+    </message>
+    <message>
+      <location filename="core/records/record_file.py" />
+      <source>%1 is cut off; it cannot be read</source>
+      <translation>%1 está cortado; no se puede leer</translation>
+    </message>
+    <message>
+      <location filename="core/records/record_file.py" />
+      <source>%1 is damaged and cannot be read (%2)</source>
+      <translation>%1 está dañado y no se puede leer (%2)</translation>
+    </message>
+    <message>
+      <location filename="core/records/record_file.py" />
+      <source>%1 is no record of the scope; name a file that ends in %2</source>
+      <translation>%1 no es un registro del osciloscopio; indique un archivo que termine en %2</translation>
+    </message>
+    <message>
+      <location filename="core/records/record_file.py" />
+      <source>%1 is no record of the scope; name one of the folder records, %2 or .ring</source>
+      <translation>%1 no es un registro del osciloscopio; indique uno de la carpeta records, %2 o .ring</translation>
+    </message>
+    <message>
+      <location filename="core/records/record_file.py" />
+      <source>%1 was written by a newer TurnDesk (version %2); open it with that one</source>
+      <translation>%1 fue escrito por un TurnDesk más nuevo (versión %2); ábralo con ese</translation>
+    </message>
+    <message>
+      <location filename="core/records/ring_file.py" />
+      <source>%1 is being written by another TurnDesk</source>
+      <translation>otro TurnDesk está escribiendo %1</translation>
+    </message>
+    <message>
+      <location filename="core/records/ring_file.py" />
+      <source>%1 is cut off: %2 of %3 bytes are there; it cannot be read</source>
+      <translation>%1 está cortado: hay %2 de %3 bytes; no se puede leer</translation>
+    </message>
+    <message>
+      <location filename="core/records/ring_file.py" />
+      <source>%1 is damaged at its beginning; there is nothing to read in it</source>
+      <translation>%1 está dañado al principio; no hay nada que leer en él</translation>
+    </message>
+    <message>
+      <location filename="core/records/ring_file.py" />
+      <source>%1 is no record of TurnDesk; name a file of the folder records</source>
+      <translation>%1 no es un registro de TurnDesk; indique un archivo de la carpeta records</translation>
+    </message>
+    <message>
+      <location filename="core/records/ring_file.py" />
+      <source>%1 was written by a newer TurnDesk (version %2); open it with that</source>
+      <translation>%1 fue escrito por un TurnDesk más nuevo (versión %2); ábralo con ese</translation>
+    </message>
+    <message>
+      <location filename="core/records/step_response.py" />
+      <source>a response needs %1 samples at least; this driver gives too few</source>
+      <translation>una respuesta pide al menos %1 muestras; este driver da muy pocas</translation>
+    </message>
+    <message>
+      <location filename="core/records/step_response.py" />
+      <source>a step of %1 is no larger than its window of %2: take more</source>
+      <translation>un paso de %1 no es mayor que su ventana de %2: tome más</translation>
+    </message>
+    <message>
+      <location filename="core/records/step_response.py" />
+      <source>the driver does not tell where the slide is; there is no response to see</source>
+      <translation>el driver no dice dónde está el carro; no hay respuesta que ver</translation>
+    </message>
+    <message>
+      <location filename="core/records/step_response.py" />
+      <source>the record holds less than one wave of the sine; take more</source>
+      <translation>el registro contiene menos de una onda del seno; tome más</translation>
+    </message>
+    <message>
+      <location filename="core/records/step_response.py" />
+      <source>the request has no ramp of even speed; take a longer one</source>
+      <translation>la consigna no tiene rampa de velocidad constante; tome una más larga</translation>
+    </message>
+    <message>
+      <location filename="core/records/step_response.py" />
+      <source>the request has no sine of %1 Hz</source>
+      <translation>la consigna no tiene un seno de %1 Hz</translation>
+    </message>
+    <message>
+      <location filename="core/records/thread_passes.py" />
+      <source>the passes of a thread need 100 samples at least; record while one is cut</source>
+      <translation>las pasadas de una rosca piden al menos 100 muestras; registre mientras se corta</translation>
+    </message>
+    <message>
+      <location filename="core/records/thread_passes.py" />
+      <source>the spindle does not turn in this time; record while a thread is cut</source>
+      <translation>el husillo no gira en este tiempo; registre mientras se corta una rosca</translation>
+    </message>
+    <message>
+      <location filename="core/records/thread_passes.py" />
+      <source>the spindle has no encoder that is counted: its angle is not in the record</source>
+      <translation>el husillo no tiene encoder contado: su ángulo no está en el registro</translation>
+    </message>
+    <message>
+      <location filename="core/records/thread_passes.py" />
+      <source>there is no pass of a thread in this time: nothing goes two turns evenly</source>
+      <translation>en este tiempo no hay pasada de rosca: nada avanza parejo dos vueltas</translation>
     </message>
     <message>
       <location filename="core/store/backup.py" />
