@@ -4,9 +4,49 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from typing import Protocol
 
-from drivers.lookalikes.grblhal_slides import Place, PlannedBlock, Shape, circle, straight
-from drivers.lookalikes.grblhal_state import ControllerState
+from drivers.lookalikes.grblhal_settings import Quirks, Registers
+from drivers.lookalikes.grblhal_slides import Place, PlannedBlock, Shape, Slides, circle, straight
+from drivers.lookalikes.spindle_motor import SpindleMotor
+
+
+class Controller(Protocol):
+    """What a line may look at, and do to the controller that it has come to."""
+
+    quirks: Quirks
+    registers: Registers
+    slides: Slides
+    spindle: SpindleMotor
+    outputs: dict[str, bool]
+    inputs: dict[int, bool]
+    pins: str
+    alarm: int
+    blocking: bool
+    homed: int
+    jogs: bool
+    read: int | None
+    rpm: float
+    spindle_percent: int
+
+    @property
+    def state(self) -> str: ...
+
+    @property
+    def reads(self) -> bool: ...
+
+    def begin_homing(self, axes: int) -> None: ...
+
+    def next_line(self) -> str | None: ...
+
+    def queue(self, block: PlannedBlock) -> None: ...
+
+    def say(self, text: str) -> None: ...
+
+    def answer(self, error: int = 0) -> None: ...
+
+    def turn(self, rpm: float) -> None: ...
+
 
 # --- The look-alike's modal state, and the words that change it.
 
@@ -69,7 +109,7 @@ _AXES = {"": 7, "X": 1, "Y": 2, "Z": 4}
 _BLOCKING = frozenset(("$X", "$J", "$H", "$HX", "$HY", "$HZ"))  # refused behind a critical alarm
 
 
-def identity(m: ControllerState) -> list[str]:
+def identity(m: Controller) -> list[str]:
     """What ``$I`` tells; auxiliary ports only where there are any."""
     quirks = m.quirks
     lathe = "LATHE," if m.registers.lathe else ""
@@ -89,7 +129,7 @@ def identity(m: ControllerState) -> list[str]:
     ]
 
 
-def answer(m: ControllerState, line: str, modes: str) -> int | None:
+def answer(m: Controller, line: str, modes: str) -> int | None:
     """Carry a line out: its error, 0 for none; None where the answer comes later. ``$G`` tells ``modes``."""
     command = line.partition("=")[0]
     if m.blocking and (command in _BLOCKING):
@@ -109,7 +149,7 @@ def answer(m: ControllerState, line: str, modes: str) -> int | None:
     return m.registers.store(int(found[1]), found[2]) if idle else 8
 
 
-def _told(m: ControllerState, line: str, modes: str) -> list[str]:
+def _told(m: Controller, line: str, modes: str) -> list[str]:
     if line == "$I":
         return identity(m)
     if line == "$$":
@@ -117,7 +157,7 @@ def _told(m: ControllerState, line: str, modes: str) -> list[str]:
     return [modes] if line == "$G" else []
 
 
-def _unlock(m: ControllerState) -> int:
+def _unlock(m: Controller) -> int:
     if not m.alarm:
         return 0
     if "E" in m.pins:
@@ -129,7 +169,7 @@ def _unlock(m: ControllerState) -> int:
     return 0
 
 
-def _home(m: ControllerState, letter: str) -> int | None:
+def _home(m: Controller, letter: str) -> int | None:
     flags = int(m.registers[22])
     if letter not in _AXES:
         return 3
@@ -148,7 +188,7 @@ __all__ = ["Modes", "Program"]
 class Program:
     """Carries lines out in order, as far as planner and standstills allow."""
 
-    def __init__(self, machine: ControllerState) -> None:
+    def __init__(self, machine: Controller) -> None:
         self._m = machine
         self.modes = Modes(radius="G7" if machine.quirks.diameter else "G8")
         self.offset = [0.0, 0.0, 0.0]  # G54
