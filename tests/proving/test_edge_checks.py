@@ -129,14 +129,17 @@ def test_faces_and_insert_backs_that_meet_nothing_are_no_wrong_side() -> None:
     assert found(text(faced)) == []
 
 
-def test_a_long_thin_bar_turns_slower_than_it_whirls() -> None:
+@pytest.mark.parametrize(("metric", "diameter"), WAYS)
+def test_a_long_thin_bar_turns_slower_than_it_whirls(metric: bool, diameter: bool) -> None:
     """f = 1.8751²/2π · 3500 m/s · (r/2) / L²: 6 mm thick, 200 mm long, that is 73.3 a second, 4397 rpm."""
     rod, long = bar(6.0, 0.0, -220.0), Clamping(100.0, 200.0, 10.0, 60.0)
     turned = "M05\nM03S{s}\nT1\nX[.2]Z[.1]\nX[.1]\nG95F[.004]Z[-.2]\nX[.2]\nG94F[300]Z[1]"
-    fast = part_of(text(turned.format(s=2250)), rod, clamping=long)
+    wrong = text(turned.format(s=2250), metric=metric, diameter=diameter)
+    fast = part_of(wrong, rod, clamping=long)
     assert [each.check for each in fast.findings] == ["stock-whips"] * len(fast.findings)
     assert fast.findings
-    assert part_of(text(turned.format(s=2150)), rod, clamping=long).findings == ()
+    sound = text(turned.format(s=2150), metric=metric, diameter=diameter)
+    assert part_of(sound, rod, clamping=long).findings == ()
 
 
 def test_what_could_not_be_checked_is_said() -> None:
