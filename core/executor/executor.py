@@ -166,18 +166,22 @@ class Executor:
         context, status = self._context, self._control.status
         self._late = max(self._late, context.now - self._due)
         self._due = context.now + TICK
-        seen = (
-            status.state,
-            context.sample[1:],
-            context.inputs,
-            context.signals,
-            context.ports.io.outputs(),
-            context.spindle.measured,
-            context.spindle.command,
-            status.alarms,
-            context.stop,
-            status.job,
-        )
+        seen: tuple[object, ...] = ()
+        with Attempt() as look:  # a driver that breaks here is told of by whoever needs what it does not say
+            seen = (
+                status.state,
+                context.sample[1:],
+                context.inputs,
+                context.signals,
+                context.ports.io.outputs(),
+                context.spindle.measured,
+                context.spindle.command,
+                status.alarms,
+                context.stop,
+                status.job,
+            )
+        if look.error is not None:
+            return True
         changed = self._same < 0 or status.state not in _RESTING or seen != self._seen
         self._same = 0 if changed else self._same + 1
         self._seen = seen

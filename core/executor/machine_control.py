@@ -156,8 +156,9 @@ class MachineControl:
         """What the proof of the program that would begin has warned of: it is read before it is begun."""
         status = self.status
         job, proof = status.job, status.proof
-        begins = self.state in _AT_REST and status.starts is not Starts.LINE
-        if begins and job is not None and proof is not None and proof.digest == job.digest and proof.warned:
+        if self.state not in _AT_REST or status.starts is Starts.LINE or job is None or proof is None:
+            return
+        if proof.digest == job.digest and proof.warned and not proof.errors:  # else nothing begins
             more = f" ({len(proof.warned) - 1} MORE)" if len(proof.warned) > 1 else ""
             said = f"{proof.warned[0]}{more}"
             yield Starting("warned" + job.digest, f"WARNING: {said}", lambda: None)
