@@ -200,21 +200,22 @@ class Waiting:
 
 
 def test_another_thread_that_ends_is_told_once() -> None:
+    name = "ends-in-this-test"
     rig = Simulated()
     ending = threading.Event()
-    other = threading.Thread(target=ending.wait, name="store-writer", daemon=True)
+    other = threading.Thread(target=ending.wait, name=name, daemon=True)
     other.start()
     told: list[str] = []
-    dog = Watchdog(Ticked(rig.executor), None, ("store-writer", "never-there"), told.append)  # type: ignore[arg-type]
+    dog = Watchdog(Ticked(rig.executor), None, (name, "never-there"), told.append)  # type: ignore[arg-type]
     dog.start()
     dog.close()
     assert told == []
     ending.set()
     other.join()
-    assert not running("store-writer")
+    assert not running(name)
     dog.look()
     dog.look()
-    assert told == ["store-writer"]
+    assert told == [name]
 
 
 def test_a_watchdog_whose_driver_breaks_still_says_so() -> None:
