@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pty
+import threading
 import tty
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -136,6 +137,10 @@ def test_a_cable_that_is_pulled_is_told_and_f5_listens_again(bench: Bench) -> No
     (why,) = bench.hears(bool)
     assert str(why).startswith("THE GAUGE: ")
     assert "F5 LISTENS AGAIN" in str(why)
+    for _ in range(10_000):  # told first, then closed, by its own thread
+        if not bench.wire.open:
+            break
+        threading.Event().wait(0.001)
     assert not bench.wire.open
 
 
