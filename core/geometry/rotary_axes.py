@@ -198,32 +198,57 @@ class PivotMove:
         """The slides never run in proportion to the angles."""
         return False
 
-    def slides(self, angles: Mapping[str, float]) -> Vector:
-        """Machine position of X Y Z at these angles, mm."""
-        up = scaled(self.kinematics.tool_axis(angles), self.distance)
-        return plus(self._place(angles).machine(self.pivot), up)
-
     def machine(self, share: FloatArray) -> FloatArray:
         """Machine positions (k, axes), in the machine's order, at fractions (k,) of the way."""
-        rows = []
-        for fraction in share.tolist():
-            angles = {name: at + fraction * (self.end[name] - at) for name, at in self.start.items()}
-            places = angles | dict(zip("XYZ", self.slides(angles), strict=True))
-            rows.append([places[name] for name in self.kinematics.names])
-        return np.array(rows)
+        at: dict[str, FloatArray] = {
+            name: start + share * (self.end[name] - start) for name, start in self.start.items()
+        }
+        slides = _carried_by_tables(self.kinematics, at, plus(self.kinematics.origin, self.pivot))
+        slides = slides - _noses(self.kinematics, at, self.tool_length + self.distance)
+        at |= {"X": slides[:, 0], "Y": slides[:, 1], "Z": slides[:, 2]}
+        rows: FloatArray = np.stack([at[name] for name in self.kinematics.names], axis=1)
+        return rows
 
     def part(self, points: FloatArray) -> FloatArray:
         """Where the tip is on the workpiece (k, 3), mm, at machine positions (k, axes)."""
-        names = self.kinematics.names
-        rows = []
-        for row in points.tolist():
-            at = dict(zip(names, row, strict=True))
-            rows.append(self._place(at).point((at["X"], at["Y"], at["Z"])))
-        return np.array(rows)
+        at = dict(zip(self.kinematics.names, points.T, strict=True))
+        spots: FloatArray = np.stack([at[name] for name in "XYZ"], axis=1)
+        spots = spots + _noses(self.kinematics, at, self.tool_length)
+        for axis in reversed(self.kinematics.rotaries):
+            if axis.table:
+                spots = _carried(axis, at[axis.name], spots)
+        spots -= np.array(self.kinematics.origin)
+        return spots
 
     def nearest(self) -> float:
         """The middle: no fraction is harder than another."""
         return 0.5
 
-    def _place(self, angles: Mapping[str, float]) -> Place:
-        return self.kinematics.place(angles, tool_length=self.tool_length)
+
+def _carried_by_tables(machine: Kinematics, at: Mapping[str, FloatArray], spot: Vector) -> FloatArray:
+    """Where the tables at these angles (k,) bring a machine-parallel point at 0: (k, 3) or one row, mm."""
+    spots: FloatArray = np.array([spot])
+    for axis in machine.rotaries:
+        if axis.table:
+            spots = _carried(axis, -at[axis.name], spots)
+    return spots
+
+
+def _noses(machine: Kinematics, at: Mapping[str, FloatArray], tool_length: float) -> FloatArray:
+    """From the spindle nose at 0 to the tip with the heads at these angles (k,): (k, 3) or one row, mm."""
+    tips: FloatArray = np.array([[0.0, 0.0, -tool_length]])
+    for axis in reversed(machine.rotaries):
+        if not axis.table:
+            tips = _carried(axis, at[axis.name], tips)
+    return tips
+
+
+def _carried(axis: Rotary, degrees: FloatArray, points: FloatArray) -> FloatArray:
+    """Points (k, 3), or one for all, turned about the axis' line by the angles (k,) (Rodrigues' formula)."""
+    along, angle = np.array(axis.direction), np.radians(degrees)[:, np.newaxis]
+    from_line = points - np.array(axis.point)
+    straight: FloatArray = along * (from_line @ along)[:, np.newaxis]
+    aside: FloatArray = np.cross(along, from_line)
+    there: FloatArray = from_line * np.cos(angle) + aside * np.sin(angle) + straight * (1.0 - np.cos(angle))
+    there += np.array(axis.point)
+    return there

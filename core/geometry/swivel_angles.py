@@ -141,11 +141,16 @@ def _tilts(chain: tuple[Rotary, ...], normal: Vector) -> Iterator[tuple[dict[str
 
 
 def _second(a1: Vector, a2: Vector, normal: Vector) -> Iterator[tuple[float, float]]:
-    """Both angles of the axis next to the tool, each with its distance from their mean."""
+    """Both angles of the axis next to the tool, the greater first, each with its distance from their mean.
+
+    The mean of the angles as the axis shows them, -180 to 180, whichever way the other axis counts.
+    """
     middle = math.degrees(math.atan2(dot(a1, cross(a2, Z_AXIS)), dot(a1, Z_AXIS)))
     away = math.degrees(math.atan2(math.hypot(*cross(a1, normal)), dot(a1, normal)))
-    for symmetry in (away, -away):
-        yield _wrapped(middle + symmetry), symmetry
+    low, high = sorted((_wrapped(middle + away), _wrapped(middle - away)))
+    half = (high - low) / 2.0
+    yield high, half
+    yield low, -half
 
 
 def _angle(axis: Vector, start: Vector, end: Vector) -> float:

@@ -153,6 +153,15 @@ def test_a_reversed_axis_counts_the_other_way() -> None:
     assert (found.angles["A"], found.angles["C"] % 360.0) == pytest.approx((-45.0, 0.0))
 
 
+def test_a_table_that_counts_the_other_way_swaps_no_side() -> None:
+    """SYM+ is the side of the greater A angle, whichever way C counts."""
+    chain, frame = machine(dataclasses.replace(C, direction=(0.0, 0.0, -1.0)), A), from_points(*CHAMFERS[2])
+    for side, wanted in ((SolutionSide.SYM_PLUS, (45.0, 270.0)), (SolutionSide.SYM_MINUS, (-45.0, 90.0))):
+        found = choose(chain, frame, {}, side)
+        assert found is not None
+        assert (found.angles["A"], found.angles["C"]) == pytest.approx(wanted)
+
+
 def test_a_machine_without_rotary_axes_knows_its_own_plane_alone() -> None:
     assert choose(machine(), turned(Z_AXIS, 30.0), {}) is not None
     assert choose(machine(), from_points(*CHAMFERS[1]), {}) is None

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
+import numpy as np
+
 from core.geometry.rotary_axes import PivotMove
 from core.geometry.rotation_frames import (
     IDENTITY,
@@ -212,7 +214,7 @@ def _swivel(
     if pivot is None or turn <= SAME_POINT:
         return state.move(Kind.PLANE, goal, rate)
     way = PivotMove(state.kinematics, start, goal, pivot, distance, state.tool_length, turn)
-    end = {**goal, **dict(zip(SLIDES, way.slides(goal), strict=True))}
+    end = {**dict(zip(state.kinematics.names, way.machine(np.ones(1))[0].tolist(), strict=True)), **goal}
     return state.move(Kind.PLANE, end, rate, way)
 
 
