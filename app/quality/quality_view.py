@@ -19,6 +19,13 @@ if TYPE_CHECKING:
     from app.quality.plots_view import PlotsPane
 
 
+def _pane_class() -> type[PlotsPane]:
+    """On a worker: pyqtgraph takes a third of a second."""
+    from app.quality.plots_view import PlotsPane
+
+    return PlotsPane
+
+
 class MeasuredPartsPage(SpecialPage):
     """As the special functions, and a chart where a section draws one: loaded when the first is drawn."""
 
@@ -30,6 +37,7 @@ class MeasuredPartsPage(SpecialPage):
         self.items.title = page_table.MEASURED
         self.chart: PlotsPane | None = None
         self._share = 0.0
+        self._asked = False  # for the chart
 
     def refresh(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
         """Table and chart of this snapshot."""
@@ -39,17 +47,16 @@ class MeasuredPartsPage(SpecialPage):
         if share != self._share:
             self._share = share
             self._lay_out()
-        if share and isinstance(shown, QualitySection):
-            self._pane().show_drawing(shown.drawing())
+        if share and not self._asked:
+            self._asked = True
+            self.model.worker.queue(_pane_class, self._pane_there, self.desk.say)
+        if self.chart is not None and isinstance(shown, QualitySection) and share:
+            self.chart.show_drawing(shown.drawing())
 
-    def _pane(self) -> PlotsPane:
-        if self.chart is None:
-            from app.quality.plots_view import PlotsPane
-
-            self.chart = PlotsPane(self.look, self)
-            self.chart.show()
-            self._lay_out()
-        return self.chart
+    def _pane_there(self, pane: type[PlotsPane]) -> None:
+        self.chart = pane(self.look, self)
+        self.chart.show()
+        self._lay_out()
 
     def dress(self) -> None:
         """The chart keeps its own colours."""

@@ -328,6 +328,7 @@ def test_the_chart_is_loaded_when_it_is_opened(day: Day) -> None:
     assert isinstance(page, MeasuredPartsPage)
     assert page.chart is None
     section(day, CHARTS)
+    day.sees(lambda: page.chart is not None)
     assert page.chart is not None
     assert not page.chart.isHidden()
     assert "9 of 10" not in str(cells(day))
