@@ -5,6 +5,7 @@ Beside the proof of the program, and after it: decision 0045 says what waits for
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -30,6 +31,8 @@ Shapes = Callable[[], Mapping[int, "ToolShape"]]
 """The shapes of tools, by T, as they are when it is called; on the worker."""
 Kept = Callable[[str], KeptPart]
 """What is kept of a program's part, by its name; on the worker."""
+
+_log = logging.getLogger(__name__)
 
 NOT_MADE, NO_STOCK = "part-not-made", "stock-unusable"
 
@@ -89,6 +92,7 @@ class PartDesk:
         except AbandonedError:
             raise
         except Exception as error:  # noqa: BLE001 - the program itself is proved, and may be run
+            _log.exception("proving the part")
             failed = Diagnostic(
                 0,
                 0,

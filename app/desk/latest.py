@@ -6,6 +6,7 @@ written is written to its end. Whoever asks is answered on his own thread, when 
 
 from __future__ import annotations
 
+import logging
 import threading
 import time
 from collections import deque
@@ -13,6 +14,8 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import TypeVar
+
+_log = logging.getLogger(__name__)
 
 T = TypeVar("T")
 Watch = Callable[[float], None]
@@ -211,5 +214,12 @@ def _answer_of(request: Request) -> Callable[[], None] | None:
     except AbandonedError:
         return None
     except BaseException as error:  # noqa: BLE001 - whatever it is, it is told where it was asked for
+        if _is_a_defect(error):
+            _log.error("on the worker %s", request.worker.name, exc_info=error)
         why = sentence(error)
         return lambda: request.failed(why)
+
+
+def _is_a_defect(error: BaseException) -> bool:
+    """Whether it is no sentence of ours or of the system: whoever mends it needs its traceback."""
+    return type(error).__module__ == "builtins" and not isinstance(error, OSError | ValueError)

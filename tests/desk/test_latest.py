@@ -139,6 +139,23 @@ def test_a_failure_is_a_sentence_and_the_next_request_is_worked_at(
     assert heard.answers == ["good"]
 
 
+@pytest.mark.parametrize(
+    ("error", "logged"), [(KeyError("x"), 1), (ValueError("no number"), 0), (OSError(28, "full"), 0)]
+)
+def test_of_a_defect_the_traceback_is_logged(
+    worker: Latest, caplog: pytest.LogCaptureFixture, error: Exception, logged: int
+) -> None:
+    heard = Heard()
+
+    def fail(_watch: Watch) -> None:
+        raise error
+
+    worker.ask(fail, heard.done, heard.failed)
+    worker.settle(LIMIT)
+    assert [bool(each.exc_info) for each in caplog.records] == [True] * logged
+    assert len(heard.failures) == 1
+
+
 def test_an_answer_may_ask_again(worker: Latest) -> None:
     heard = Heard()
 

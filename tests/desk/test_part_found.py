@@ -192,7 +192,7 @@ def test_the_stock_is_what_another_program_leaves(desk: Make, tmp_path: Path) ->
 
 
 def test_a_proof_of_the_part_that_fails_keeps_nobody_from_his_program(
-    desk: Make, monkeypatch: pytest.MonkeyPatch
+    desk: Make, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     def broken(*_given: object) -> None:
         raise ZeroDivisionError("division by zero")
@@ -202,6 +202,7 @@ def test_a_proof_of_the_part_that_fails_keeps_nobody_from_his_program(
     assert [d.code for d in loaded.diagnostics] == [NOT_MADE]
     assert loaded.phase is Phase.READY
     assert part_of(loaded).warned
+    assert [each.exc_info[0] for each in caplog.records if each.exc_info] == [ZeroDivisionError]
 
 
 def test_of_a_program_that_is_too_long_it_is_told_why_there_is_no_part(
