@@ -6,6 +6,7 @@ import gc
 import os
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 
 os.environ["QT_QPA_PLATFORM"] = "offscreen"
 
@@ -15,12 +16,16 @@ from PySide6.QtCore import QCoreApplication, QEvent, QThread, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
+from app.compose.journal import Journal
+from app.desk.desk import Desk
 from app.screen.look import Look, dress, load_fonts
 from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
-from tests.screen.hands import Hands
+from tests.screen.hands import Hands, window_on
+from tests.screen.lathe import Operator
+from tests.screen.pictures import Stage
 
 
 def left_over() -> list[str]:
@@ -62,17 +67,35 @@ def machine() -> FakeMachine:
 
 
 @pytest.fixture
-def hands(qtbot: QtBot, machine: FakeMachine) -> Iterator[Hands]:
-    """An operator in front of an open desk."""
-    desk = desk_on(machine)
+def journal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
+    """What is kept in an empty folder."""
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+    journal = Journal.at_home()
+    yield journal
+    journal.close()
+
+
+@pytest.fixture
+def desk(machine: FakeMachine) -> Desk:
+    """The desk that is open; a module that needs another one has its own."""
+    return desk_on(machine)
+
+
+@pytest.fixture
+def hands(qtbot: QtBot, machine: FakeMachine, desk: Desk) -> Iterator[Hands]:
+    """An operator in front of the open desk."""
+    with window_on(qtbot, desk, machine) as window:
+        yield Hands(qtbot, window, desk, machine)
+
+
+@pytest.fixture
+def operator(qapp: QApplication) -> Iterator[Operator]:
+    """An operator in front of the simulated lathe."""
+    stage = Stage()
     window = MainWindow(Look(DARK))
     window.resize(1024, 600)
-    with qtbot.waitExposed(window):
-        window.show()
-    window.open_desk(desk)
-    window.activateWindow()
-    yield Hands(qtbot, window, desk, machine)
-    machine.idle()
-    window.close()
-    desk.close()
-    window.deleteLater()
+    window.open_desk(stage.desk)
+    window.show()
+    yield Operator(stage, window)
+    window.put_away()
+    stage.close()

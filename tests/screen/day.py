@@ -18,7 +18,9 @@ from pytestqt.qtbot import QtBot
 from app.compose.journal import Journal
 from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import stored_offsets
+from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
+from app.programs.whole_file import write_whole
 from app.screen.look import Look
 from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
@@ -158,8 +160,10 @@ class Day:
 
 
 @contextmanager
-def begun(qtbot: QtBot) -> Iterator[Day]:
-    """The desk is switched on in an empty folder; put away again afterwards."""
+def begun(qtbot: QtBot, name: str = "", program: str = "") -> Iterator[Day]:
+    """The desk is switched on, with a program in its folder or none; put away again afterwards."""
+    if name:
+        write_whole(data_folder() / "programs" / name, program.encode())
     clock, journal = StepClock(), Journal.at_home()
     desk, executor = desk_and_executor(None, stored_offsets, clock, journal)
     desk.hands.clock = clock.now

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from PySide6.QtCore import Qt
@@ -12,13 +13,31 @@ from pytestqt.qtbot import QtBot
 
 from app.automatic.automatic_view import AutomaticPage
 from app.desk.desk import Desk
+from app.screen.look import Look
 from app.screen.main_window import MainWindow
+from app.screen.theme import DARK
 from app.screen.window_frame import Frame
 from core.executor.snapshot import State
 from tests.screen.fake import FakeMachine
 
 Key = Qt.Key
 LIMIT = 8000  # ms after which what should have happened has not
+
+
+@contextmanager
+def window_on(qtbot: QtBot, desk: Desk, machine: FakeMachine) -> Iterator[MainWindow]:
+    """The window with a desk open in it; both are put away at the end, whatever the machine was at."""
+    window = MainWindow(Look(DARK))
+    window.resize(1024, 600)
+    with qtbot.waitExposed(window):
+        window.show()
+    window.open_desk(desk)
+    window.activateWindow()
+    yield window
+    machine.idle()
+    window.close()
+    desk.close()
+    window.deleteLater()
 
 
 @dataclass

@@ -26,10 +26,7 @@ TEXT = "G90G94F10\nX1Z1\nM30\n"
 @pytest.fixture
 def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Day]:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
-    programs = tmp_path / "programs"
-    programs.mkdir()
-    (programs / "slow.nc").write_text(TEXT, encoding="utf-8")
-    with begun(qtbot) as day:
+    with begun(qtbot, "slow.nc", TEXT) as day:
         yield day
 
 

@@ -17,14 +17,11 @@ from app.programs.folder_chooser import Stick, sticks
 from app.programs.program_list import ProgramList
 from app.programs.programs_view import ProgramsPage
 from app.screen import page_table
-from app.screen.look import Look
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
 from core.executor.commands import LoadJob
 from core.executor.snapshot import State
 from tests.screen.desks import SAMPLES, desk_on
 from tests.screen.fake import FakeMachine
-from tests.screen.hands import Hands, Key
+from tests.screen.hands import Hands, Key, window_on
 from tests.screen.yes import yes
 
 
@@ -62,30 +59,16 @@ class Shop(Hands):
 
 
 @pytest.fixture
-def shop(
-    qtbot: QtBot, machine: FakeMachine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[Shop]:
-    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+def shop(qtbot: QtBot, machine: FakeMachine, journal: Journal, tmp_path: Path) -> Iterator[Shop]:
     own, stick = tmp_path / "programs", tmp_path / "STICK"
     for folder in (own, stick):
         folder.mkdir()
     shutil.copy(SAMPLES / "pin.nc", own / "alpha.nc")
     shutil.copy(SAMPLES / "bushing.nc", own / "beta.nc")
-    journal = Journal.at_home()
     desk = desk_on(machine, own, SAMPLES, keep=journal)
     desk.attached(ProgramList).transfer.chooser.plugged = lambda: (Stick("STICK", stick, 1_000_000),)
-    window = MainWindow(Look(DARK))
-    window.resize(1024, 600)
-    with qtbot.waitExposed(window):
-        window.show()
-    window.open_desk(desk)
-    window.activateWindow()
-    yield Shop(qtbot, window, desk, machine, own, stick, journal)
-    machine.idle()
-    window.close()
-    desk.close()
-    journal.close()
-    window.deleteLater()
+    with window_on(qtbot, desk, machine) as window:
+        yield Shop(qtbot, window, desk, machine, own, stick, journal)
 
 
 def test_a_name_is_found_by_typing_and_loaded_by_return(shop: Shop) -> None:

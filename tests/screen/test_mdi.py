@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import chain
 
 import pytest
@@ -10,27 +9,11 @@ import pytest
 from app.mdi.mdi_view import MdiPage
 from app.screen import page_table
 from app.screen.letter_keys import LINES
-from app.screen.look import Look
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
 from core.executor.snapshot import Starts, State
 from tests.screen.lathe import Key, Operator
-from tests.screen.pictures import Stage
 from tests.screen.yes import yes
 
 INCH = 25.4
-
-
-@pytest.fixture
-def operator(qapp: object) -> Iterator[Operator]:
-    stage = Stage()
-    window = MainWindow(Look(DARK))
-    window.resize(1024, 600)
-    window.open_desk(stage.desk)
-    window.show()
-    yield Operator(stage, window)
-    window.put_away()
-    stage.close()
 
 
 @pytest.fixture

@@ -19,10 +19,7 @@ from tests.screen.day import Day, Key, begun
 @pytest.fixture
 def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Day]:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
-    programs = tmp_path / "programs"
-    programs.mkdir()
-    (programs / "slip.nc").write_text(SLIP, encoding="utf-8")
-    with begun(qtbot) as day:
+    with begun(qtbot, "slip.nc", SLIP) as day:
         yield day
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,17 +13,15 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QColor, QWheelEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
-from pytestqt.qtbot import QtBot
 
+from app.desk.desk import Desk
 from app.scope.analyses_view import AnalysesPage
 from app.scope.record_shelf import RecordShelf, ShelfError
 from app.scope.scope_model import Scope, Side
 from app.scope.scope_trigger import When
 from app.scope.scope_view import ScopePage
 from app.screen import page_table
-from app.screen.look import Look
-from app.screen.main_window import MainWindow
-from app.screen.theme import CURVES, DARK
+from app.screen.theme import CURVES
 from app.screen.window_layout import FINGER
 from core.executor.commands import FeedHold
 from core.executor.raised_alarm import make_alarm
@@ -45,27 +42,12 @@ def played() -> PlayedSamples:
 
 
 @pytest.fixture
-def hands(
-    qtbot: QtBot,
-    machine: FakeMachine,
-    played: PlayedSamples,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> Iterator[Hands]:
-    """An operator in front of a desk that records."""
+def desk(
+    machine: FakeMachine, played: PlayedSamples, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Desk:
+    """A desk that records."""
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
-    desk = desk_on(machine, live=played)
-    window = MainWindow(Look(DARK))
-    window.resize(1024, 600)
-    with qtbot.waitExposed(window):
-        window.show()
-    window.open_desk(desk)
-    window.activateWindow()
-    yield Hands(qtbot, window, desk, machine)
-    machine.idle()
-    window.close()
-    desk.close()
-    window.deleteLater()
+    return desk_on(machine, live=played)
 
 
 def opened(hands: Hands) -> ScopePage:

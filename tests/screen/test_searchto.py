@@ -2,34 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import pytest
 from PySide6.QtCore import QPointF
 
 from app.desk.prompt_line import HOW_TO_HOLD
 from app.screen import page_table
-from app.screen.look import Look
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
 from app.searchto.searchto_model import SearchtoModel, SearchtoStage
 from app.searchto.searchto_view import SearchtoPage
 from core.executor.snapshot import Starts, State
 from tests.screen.lathe import Key, Operator
-from tests.screen.pictures import Stage as Lathe
 from tests.screen.yes import twist_out
-
-
-@pytest.fixture
-def operator(qapp: object) -> Iterator[Operator]:
-    stage = Lathe()
-    window = MainWindow(Look(DARK))
-    window.resize(1024, 600)
-    window.open_desk(stage.desk)
-    window.show()
-    yield Operator(stage, window)
-    window.put_away()
-    stage.close()
 
 
 def model_of(operator: Operator) -> SearchtoModel:

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
 from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
+from app.desk.desk import Desk
 from app.programs.folder_chooser import Stick
 from app.report.pdf_file import Paper
-from app.screen.look import Look
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
 from app.special.setup_sheet_function import MOST_NOTES, SetupSheetFunction
 from app.special.special_view import SpecialPage
 from tests.pdf_text import Pdf
@@ -29,27 +25,8 @@ SETUP = "SETUP SHEET"
 
 
 @pytest.fixture
-def journal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
-    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
-    journal = Journal.at_home()
-    yield journal
-    journal.close()
-
-
-@pytest.fixture
-def hands(qtbot: QtBot, machine: FakeMachine, journal: Journal) -> Iterator[Hands]:
-    desk = desk_on(machine, keep=journal)
-    window = MainWindow(Look(DARK))
-    window.resize(1024, 600)
-    with qtbot.waitExposed(window):
-        window.show()
-    window.open_desk(desk)
-    window.activateWindow()
-    yield Hands(qtbot, window, desk, machine)
-    machine.idle()
-    window.close()
-    desk.close()
-    window.deleteLater()
+def desk(machine: FakeMachine, journal: Journal) -> Desk:
+    return desk_on(machine, keep=journal)
 
 
 def opened(hands: Hands, program: str = "bushing") -> tuple[SpecialPage, SetupSheetFunction]:

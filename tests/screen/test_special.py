@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
-from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
+from app.desk.desk import Desk
 from app.screen import page_table
-from app.screen.look import Look
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
 from app.special.backup_and_restore import BARRED
 from app.special.inputs_outputs import NOT_NOW
 from app.special.special_view import SpecialPage
@@ -26,28 +21,8 @@ from tests.screen.yes import yes
 
 
 @pytest.fixture
-def journal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
-    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
-    journal = Journal.at_home()
-    yield journal
-    journal.close()
-
-
-@pytest.fixture
-def hands(qtbot: QtBot, machine: FakeMachine, journal: Journal) -> Iterator[Hands]:
-    """An operator in front of a desk that keeps what it is told."""
-    desk = desk_on(machine, keep=journal)
-    window = MainWindow(Look(DARK))
-    window.resize(1024, 600)
-    with qtbot.waitExposed(window):
-        window.show()
-    window.open_desk(desk)
-    window.activateWindow()
-    yield Hands(qtbot, window, desk, machine)
-    machine.idle()
-    window.close()
-    desk.close()
-    window.deleteLater()
+def desk(machine: FakeMachine, journal: Journal) -> Desk:
+    return desk_on(machine, keep=journal)
 
 
 def open_function(hands: Hands, number: int) -> SpecialPage:

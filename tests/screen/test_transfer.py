@@ -11,9 +11,6 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
-from app.screen.look import Look
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
 from app.special.special_functions import SpecialFunctions
 from app.special.special_view import SpecialPage
 from app.transfer.line_transfer import Received
@@ -24,7 +21,7 @@ from core.machine.serial_table import DncModel
 from core.ports import DriverError
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
-from tests.screen.hands import Hands, Key
+from tests.screen.hands import Hands, Key, window_on
 from tests.screen.yes import yes
 
 DEFAULT = DncModel("/dev/ttyUSB0", 9600, 7, "E", 1, "xonxoff", "%", "\r\n")
@@ -86,14 +83,6 @@ class FakeLines:
 
 
 @pytest.fixture
-def journal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
-    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
-    journal = Journal.at_home()
-    yield journal
-    journal.close()
-
-
-@pytest.fixture
 def lines() -> FakeLines:
     return FakeLines()
 
@@ -110,21 +99,12 @@ def hands(
     functions[line].close()
     functions[line] = section
     desk.attached(SpecialFunctions).functions = functions
-    window = MainWindow(Look(DARK))
-    window.resize(1024, 600)
-    with qtbot.waitExposed(window):
-        window.show()
-    window.open_desk(desk)
-    window.activateWindow()
-    made = Hands(qtbot, window, desk, machine)
-    made.key(Key.Key_F10)
-    made.type("9")
-    made.sees(lambda: page(made).model.inside and section.ports != ())
-    yield made
-    machine.idle()
-    window.close()
-    desk.close()
-    window.deleteLater()
+    with window_on(qtbot, desk, machine) as window:
+        made = Hands(qtbot, window, desk, machine)
+        made.key(Key.Key_F10)
+        made.type("9")
+        made.sees(lambda: page(made).model.inside and section.ports != ())
+        yield made
 
 
 def page(hands: Hands) -> SpecialPage:
