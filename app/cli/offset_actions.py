@@ -27,6 +27,7 @@ from core.store.store_rows import (
     Value,
     ZeroRow,
     inches,
+    with_fields,
 )
 
 if TYPE_CHECKING:
@@ -123,7 +124,7 @@ def _check_shape(store: Store, number: int, shape: dict[str, Value], offset: dic
     """Raises CommandError where the tool's shape would contradict itself or begin without a kind."""
     from app.desk.stored_shapes import row_mistakes
 
-    row = store.shapes().get(number, ShapeRow())._replace(**shape)  # type: ignore[arg-type]
+    row = with_fields(store.shapes().get(number, ShapeRow()), shape)
     if not row.kind:
         kinds = FIELDS[Kind.SHAPE]["kind"].range
         raise CommandError(f"T{number} has no shape yet; give its kind too: kind= one of {kinds}")
@@ -131,7 +132,7 @@ def _check_shape(store: Store, number: int, shape: dict[str, Value], offset: dic
     if offset and number not in tools and not {"x", "z"} <= offset.keys():
         text = f"T{number} was never set, and {' and '.join(offset)} would stand beside an offset of 0"
         raise CommandError(f"{text}; give x and z too, or touch it off first")
-    tool = tools.get(number, ToolRow())._replace(**offset)  # type: ignore[arg-type]
+    tool = with_fields(tools.get(number, ToolRow()), offset)
     if mistakes := row_mistakes(row, tool):
         raise CommandError(f"T{number}: " + "; ".join(f"{wrong.field}: {wrong.text}" for wrong in mistakes))
 

@@ -9,6 +9,8 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from app.desk.command_errors import EXIT_OK, CommandError
 
 if TYPE_CHECKING:
@@ -77,7 +79,7 @@ def _channel(record: Record, channel: Channel) -> dict[str, object]:
 def _bounds(record: Record, channel: Channel) -> tuple[float, float] | tuple[None, None]:
     """Of what is known; None where nothing is."""
     column = record.columns[channel.name]
-    known = column[column == column]  # noqa: PLR0124  nan
+    known = column[~np.isnan(column)]
     return (float(known.min()), float(known.max())) if len(known) else (None, None)
 
 

@@ -5,6 +5,7 @@ A page shows the table, the line that is typed under it, the history, and what a
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import ClassVar
 
@@ -21,7 +22,7 @@ from core.store.store_rows import Kind, SecondaryRow, ToolRow
 Proposed = tuple[Mapping[int, ToolRow], Mapping[int, SecondaryRow]]
 
 
-class OffsetTable:
+class OffsetTable(ABC):
     """One of the three tables; each has its own way to enter a value. The page only draws."""
 
     kind: ClassVar[Kind]
@@ -51,9 +52,9 @@ class OffsetTable:
         return ""
 
     @property
+    @abstractmethod
     def question(self) -> str:
         """What the operator is asked to type now."""
-        raise NotImplementedError
 
     @property
     def entered(self) -> str:
@@ -61,34 +62,34 @@ class OffsetTable:
         return self.text
 
     @property
+    @abstractmethod
     def old_to_new(self) -> str:
         """The change that is being entered, or else the last one."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def foot(self) -> str:
         """What can be done beside answering."""
-        raise NotImplementedError
 
+    @abstractmethod
     def hint(self, snapshot: Snapshot) -> str:
         """How a value is entered, or from when it will count, for the prompt line."""
-        raise NotImplementedError
 
+    @abstractmethod
     def takes(self, key: str) -> bool:
         """Whether a character goes to the entry."""
-        raise NotImplementedError
 
+    @abstractmethod
     def enter_key(self, key: str) -> bool:
         """A key of the entry; False when it means nothing here."""
-        raise NotImplementedError
 
+    @abstractmethod
     def take_back(self) -> bool:
         """Forget what is being entered and say so; False when there was nothing."""
-        raise NotImplementedError
 
+    @abstractmethod
     def drop(self) -> None:
         """Forget what is being entered."""
-        raise NotImplementedError
 
     def proposed(self) -> Proposed:
         """Tool and secondary offsets as they would be with what is being entered."""

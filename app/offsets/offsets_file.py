@@ -23,6 +23,7 @@ from core.store.store_rows import (
     ToolRow,
     Value,
     ZeroRow,
+    with_fields,
 )
 
 if TYPE_CHECKING:
@@ -56,14 +57,13 @@ def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], 
     mistakes = _unknown_tables(data)
     tools = _tools(data, mistakes).placed
     secondary = {
-        n: SecondaryRow(**values)  # type: ignore[arg-type]
-        for n, values in _table(data, Kind.SECONDARY, mistakes)
+        n: with_fields(SecondaryRow(), values) for n, values in _table(data, Kind.SECONDARY, mistakes)
     }
     masters = [f"tool.{n}" for n, row in tools.items() if row.master]
     if len(masters) > 1:
         mistakes.append(f"{' and '.join(masters)} are both master; one tool at most is")
     refuse(path, mistakes)
-    zero = {code: ZeroRow(**values) for code, values in _table(data, Kind.ZERO, mistakes)}  # type: ignore[arg-type]
+    zero = {code: with_fields(ZeroRow(), values) for code, values in _table(data, Kind.ZERO, mistakes)}
     refuse(path, mistakes)
     return tools, secondary, zero
 
@@ -109,11 +109,11 @@ def _tools(data: dict[str, object], mistakes: list[str]) -> _Tools:
     for number, values in _table(data, Kind.TOOL, mistakes):
         shape = {name: value for name, value in values.items() if name in FIELDS[Kind.SHAPE]}
         offset = {name: value for name, value in values.items() if name not in shape}
-        found.rows[number] = ToolRow(**offset)  # type: ignore[arg-type]
+        found.rows[number] = with_fields(ToolRow(), offset)
         if not shape or {"x", "z"} & offset.keys():
             found.placed[number] = found.rows[number]
         if shape:
-            found.shapes[number] = ShapeRow(**shape)  # type: ignore[arg-type]
+            found.shapes[number] = with_fields(ShapeRow(), shape)
             mistakes += _shape_mistakes(number, found.shapes[number], found.rows[number])
     return found
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import ClassVar
@@ -103,14 +104,14 @@ class ToolEntry(OffsetTable):
         return self.book.tools.get(self.number)
 
     @property
+    @abstractmethod
     def name(self) -> str:
         """The field under the cursor."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def before(self) -> str:
         """The field as it is, without what is typed."""
-        raise NotImplementedError
 
     def cell_barred(self) -> str:
         """Why the field under the cursor may not be changed now; empty when it may."""
@@ -154,9 +155,9 @@ class ToolEntry(OffsetTable):
             return False
         return True
 
+    @abstractmethod
     def enter(self) -> None:
         """Return on the field."""
-        raise NotImplementedError
 
     def _add(self, key: str) -> None:
         if self.is_text and not self.writing:

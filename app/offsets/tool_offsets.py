@@ -14,7 +14,7 @@ from app.offsets.offset_values import (
 )
 from app.offsets.tool_fields import ToolEntry, ToolFields
 from core.executor.snapshot import Snapshot
-from core.store.store_rows import OFFSETS, Kind
+from core.store.store_rows import OFFSETS, Kind, with_fields
 
 COLUMNS = ("x", "z", "nose_radius", "quadrant", "wear_x", "wear_z", "master", "remark")
 PAGE = 5  # rows that are shown, each of a finger's height, and that Page up and Page down go
@@ -82,7 +82,7 @@ class ToolOffsets(ToolEntry):
             value = value_typed(self.name, self.text, self.mode)
         except EntryError:
             return tools, secondary
-        return {**tools, self.number: self.tool._replace(**{self.name: value})}, secondary  # type: ignore[arg-type]
+        return {**tools, self.number: with_fields(self.tool, {self.name: value})}, secondary
 
     @property
     def corrects(self) -> bool:

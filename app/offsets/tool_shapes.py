@@ -13,7 +13,7 @@ from core.part.shape_rules import FIELDS_OF, ShapeMistake
 from core.part.tool_outline import ToolOutline, outline
 from core.part.tool_shape import ToolKind
 from core.store.offset_fields import Sort
-from core.store.store_rows import OFFSETS, Kind, ShapeRow, ToolRow, Value
+from core.store.store_rows import OFFSETS, Kind, ShapeRow, ToolRow, Value, with_fields
 
 _OF_THE_OFFSET = {"tip": "quadrant", "nose_radius": "nose_radius"}  # kept with the tool's offset
 _MOVES = {"Up": -1, "Down": 1, "Tab": 1}
@@ -198,9 +198,9 @@ class ToolShapes(ToolEntry):
         """What is wrong with this very field is refused; what it does to the others is shown."""
         tool, row = self.tool or ToolRow(), self.row or ShapeRow()
         if name in ToolRow._fields:
-            tool = tool._replace(**{name: value})  # type: ignore[arg-type]
+            tool = with_fields(tool, {name: value})
         else:
-            row = row._replace(**{name: value})  # type: ignore[arg-type]
+            row = with_fields(row, {name: value})
         wrong = [
             each for each in row_mistakes(row, tool) if _OF_THE_OFFSET.get(each.field, each.field) == name
         ]

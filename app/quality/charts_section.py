@@ -44,6 +44,10 @@ class ChartsSection(QualitySection):
         """Nothing is typed here."""
         return False
 
+    def take(self, _text: str) -> bool:
+        """Nothing is typed here."""
+        return False
+
     def typed(self, key: str) -> bool:
         """The arrows alone."""
         return self.moves(key)

@@ -63,8 +63,11 @@ class TrendsSection(QualitySection):
                 kept = self.desk.counter.persistence.setting(_SHIFT)
             except StoreError:
                 kept = None
-            good = isinstance(kept, list) and len(kept) == 2 and all(isinstance(each, int) for each in kept)
-            self._shift = (kept[0], kept[1]) if good else _USUAL  # type: ignore[index]
+            match kept:
+                case [int(first), int(last)]:
+                    self._shift = first, last
+                case _:
+                    self._shift = _USUAL
         return self._shift
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:

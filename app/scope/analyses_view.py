@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from importlib import import_module
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QRectF
@@ -28,7 +27,13 @@ if TYPE_CHECKING:
     from app.scope.analyses_chart_view import AnalysisChart
 
 _TABLE, _HEAD = 50.0, 3.4  # units
-CHART = "app.scope.analyses_chart_view"
+
+
+def _chart_class() -> type[AnalysisChart]:
+    """On a worker: pyqtgraph takes a third of a second."""
+    from app.scope.analyses_chart_view import AnalysisChart
+
+    return AnalysisChart
 
 
 class Above(Panel):
@@ -57,10 +62,10 @@ class AnalysesPage(ListPage):
         self.table = SheetPanel(self.look, analyses.mark, self)
         self.chart: AnalysisChart | None = None
         self._drawn: object = None
-        analyses.worker.queue(lambda: import_module(CHART), self._chart_there, self.desk.say)
+        analyses.worker.queue(_chart_class, self._chart_there, self.desk.say)
 
-    def _chart_there(self, module: object) -> None:
-        self.chart = module.AnalysisChart(self.look, self.room)  # type: ignore[attr-defined]
+    def _chart_there(self, chart: type[AnalysisChart]) -> None:
+        self.chart = chart(self.look, self.room)
         self.chart.setGeometry(self.room.rect())
         self.chart.show()
 

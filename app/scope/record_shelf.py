@@ -11,7 +11,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from app.desk.formats import file_size, local_time
 from core.records.record import Record
@@ -45,6 +45,7 @@ class Kept(NamedTuple):
         return file_size(self.size)
 
 
+T = TypeVar("T")
 Save = Callable[[Record, Path], None]
 Open = Callable[[Path], Record]
 WriteTable = Callable[[Record, Callable[[str], object]], None]
@@ -131,10 +132,10 @@ class RecordShelf:
 
         self._told(path, carefully)
 
-    def _told(self, path: Path, work: Callable[[], Record | None]) -> Record:
+    def _told(self, path: Path, work: Callable[[], T]) -> T:
         """Do it; what goes wrong is told with the file's name."""
         try:
-            return work()  # type: ignore[return-value]  # who writes takes no answer
+            return work()
         except ShelfError:
             raise
         except OSError as error:

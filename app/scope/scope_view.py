@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import partial
-from importlib import import_module
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QBuffer, QEvent, QIODevice, QPointF, QRectF, Qt
-from PySide6.QtGui import QImage, QMouseEvent, QResizeEvent, QTouchEvent, QWheelEvent
+from PySide6.QtCore import QBuffer, QByteArray, QEvent, QIODevice, QPointF, QRectF, Qt
+from PySide6.QtGui import QImage, QImageWriter, QMouseEvent, QResizeEvent, QTouchEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk import formats
@@ -35,7 +34,13 @@ _READINGS, _TABLE, _PAD, _HEAD = 34.0, 56.0, 28.4, 3.4  # units: widths, height 
 _NOTCH = 120  # of the mouse's wheel, as Qt has it
 _NEAR, _STILL = 22.0, 6.0  # pixels: a finger takes a cursor; what is no drag yet
 _LEAST = 24.0  # pixels between two fingers
-CHART = "app.scope.scope_chart_view"
+
+
+def _chart_class() -> type[ScopeChart]:
+    """On a worker: pyqtgraph takes a third of a second."""
+    from app.scope.scope_chart_view import ScopeChart
+
+    return ScopeChart
 
 
 class HeadLine(Panel):
@@ -171,11 +176,11 @@ class ScopePage(ListPage):
         self.pad = KeyPad(self.look, self.touched, own=None, parent=self)
         self._laid: object = None
         self._drawn: object = None
-        scope.filing.queue(lambda: import_module(CHART), self._chart_there, self.desk.say)
+        scope.filing.queue(_chart_class, self._chart_there, self.desk.say)
 
-    def _chart_there(self, module: object) -> None:
+    def _chart_there(self, chart_class: type[ScopeChart]) -> None:
         """What draws curves was loaded beside the screen, 0.3 s of it."""
-        chart: ScopeChart = module.ScopeChart(self.look, self.curves)  # type: ignore[attr-defined]
+        chart = chart_class(self.look, self.curves)
         self.curves.chart = chart
         chart.setGeometry(self.curves.rect())
         chart.show()
@@ -359,5 +364,5 @@ def _png(image: QImage) -> bytes:
     """The file of a picture; on a worker."""
     buffer = QBuffer()
     buffer.open(QIODevice.OpenModeFlag.WriteOnly)
-    image.save(buffer, "PNG")  # type: ignore[call-overload]
+    QImageWriter(buffer, QByteArray(b"png")).write(image)
     return bytes(buffer.data().data())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
@@ -13,7 +14,7 @@ from app.desk.sheet import STEPS, Entry, Key, Sheet
 from core.executor.snapshot import Snapshot
 
 
-class SpecialFunction:
+class SpecialFunction(ABC):
     """One special function. Nothing here waits; what cannot be done is said by ``desk.say``."""
 
     name: ClassVar[str]
@@ -24,9 +25,9 @@ class SpecialFunction:
         self.desk = desk
         self.marked = 0
 
+    @abstractmethod
     def sheet(self, snapshot: Snapshot) -> Sheet:
         """The table of this instant."""
-        raise NotImplementedError
 
     def keys(self) -> Mapping[str, Key]:
         """Its function keys, F2…F10 but for F7."""
@@ -93,9 +94,9 @@ class FigureFunction(SpecialFunction):
         super().__init__(desk)
         self.entry = Entry()
 
+    @abstractmethod
     def take(self, text: str) -> bool:
         """Whether what was typed is taken. Raises EntryError where it is no good figure."""
-        raise NotImplementedError
 
     def enter(self) -> None:
         """Take what was typed, or say why it is refused."""

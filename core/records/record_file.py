@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import struct
 import zipfile
 import zlib
@@ -157,5 +158,5 @@ def save_csv(record: Record, path: Path) -> None:
 def _texts(column: FloatArray, *, whole: bool) -> list[str]:
     """Every digit of a figure, so that what is read is what was recorded."""
     if whole:
-        return ["" if value != value else str(int(value)) for value in column.tolist()]  # noqa: PLR0124  nan
-    return ["" if value != value else repr(value) for value in column.tolist()]  # noqa: PLR0124  nan
+        return ["" if math.isnan(value) else str(int(value)) for value in column.tolist()]
+    return ["" if math.isnan(value) else repr(value) for value in column.tolist()]

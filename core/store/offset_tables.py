@@ -9,7 +9,7 @@ from __future__ import annotations
 import sqlite3
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 from core.store.offset_fields import Field, Sort
 from core.store.store_errors import StoreError
@@ -19,6 +19,7 @@ from core.store.store_rows import (
     ZERO_CODES,
     Change,
     Kind,
+    R,
     Row,
     SecondaryRow,
     ShapeRow,
@@ -30,7 +31,6 @@ from core.store.store_rows import (
 )
 
 Changes = Mapping[int, tuple[Row | None, Row | None]]
-R = TypeVar("R", bound=Row)
 
 
 class Reason(NamedTuple):
@@ -169,7 +169,7 @@ def _told(field: Field, value: Value) -> str:
 def _row(kind: Kind, values: Sequence[Value | None]) -> Row:
     """A row from its columns; those that were not kept yet when it was written are as they were then."""
     whole = [_plain(field, value) for field, value in zip(FIELDS[kind].values(), values, strict=True)]
-    return _TABLES[kind].row(*whole)  # type: ignore[arg-type]  # by the sort of each field
+    return _TABLES[kind].row._make(whole)
 
 
 def _plain(field: Field, value: Value | None) -> Value:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from datetime import UTC, datetime
 from enum import StrEnum
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple, TypeVar
 
 from core.store.offset_fields import (
     ANGLE_REACH,
@@ -114,6 +114,13 @@ FIELDS: Mapping[Kind, Mapping[str, Field]] = {
     Kind.SHAPE: fields_of(ShapeRow),
 }
 Row = ToolRow | SecondaryRow | ZeroRow | ShapeRow
+R = TypeVar("R", ToolRow, SecondaryRow, ZeroRow, ShapeRow)
+
+
+def with_fields(row: R, values: Mapping[str, Value]) -> R:
+    """The row with these fields, by their names in ``FIELDS``. Raises ValueError for one that it has not."""
+    named: dict[str, Any] = dict(values)  # each field is of its own sort
+    return row._replace(**named)
 
 
 class Change(NamedTuple):
