@@ -384,6 +384,18 @@ class Tripping(Protocol):
     def acknowledge(self, trip: Trip) -> None: ...
 
 
+class Unknown(StrEnum):
+    """Of what nothing is heard any more: its wire is lost, or is silent."""
+
+    SLIDES = "slides"
+    SPINDLE = "spindle"
+    OUTPUTS = "outputs"
+    INPUTS = "inputs"
+
+
+ALL_UNKNOWN = frozenset(Unknown)
+
+
 class Clock(Protocol):
     """Monotonic time, and the only way to wait for it."""
 
@@ -407,6 +419,9 @@ class MachinePorts:
     blocks: BlockSink | None = None  # a controller that plans by itself: it takes no setpoints
     trips: Tripping | None = None  # None: nothing switches off by itself when the control is silent
     samples: SampleSource | None = None  # None: the scope has what the axes say at each tick
+    # What is not known now. The ports go on to tell the last that was known of it, and nobody may take that
+    # for the present: a spindle of which nothing is heard may turn. Known again once its wire tells it anew.
+    unknown: Callable[[], frozenset[Unknown]] = frozenset
     # Stops slides and spindle, outputs safe, by a way of its own: for the watchdog, from any thread and again
     # and again, when the executor is dead or stuck. It never waits for what the executor may hold.
     halt: Callable[[], None] | None = None

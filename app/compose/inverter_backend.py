@@ -8,7 +8,7 @@ from functools import partial
 
 from app.compose.serial_ports import open_wire
 from core.machine.machine_model import Machine
-from core.ports import AxisSink, Clock, DriverError, FloatArray, MachinePorts, SampleSource
+from core.ports import AxisSink, Clock, DriverError, FloatArray, MachinePorts, SampleSource, Unknown
 from drivers.clocks import StepClock
 from drivers.inverter.inverter_attendant import Keeper
 from drivers.inverter.inverter_spindle import Encoder, InverterSpindle, attendant
@@ -88,8 +88,15 @@ def _attended(
         samples=SlidesAlone(ports.samples, len(ports.axes.axes)) if ports.samples is not None else None,
         warnings=(*ports.warnings, *said),
         halt=partial(halt_with, ports, spindle),
+        unknown=partial(unknown_with, ports, spindle),
     )
     return keeper, joined
+
+
+def unknown_with(ports: MachinePorts, spindle: InverterSpindle) -> frozenset[Unknown]:
+    """Of the rest what it says; of the spindle what its own line and its encoder say."""
+    rest = ports.unknown() - {Unknown.SPINDLE}
+    return rest | {Unknown.SPINDLE} if spindle.unknown else rest
 
 
 def halt_with(ports: MachinePorts, spindle: InverterSpindle) -> None:

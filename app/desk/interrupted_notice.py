@@ -18,11 +18,15 @@ _SAME = 0.05  # mm, degrees: nearer than this the tool still stands where it sto
 
 @dataclass(frozen=True, slots=True)
 class NoticeRow:
-    """What stands until somebody acts: a text, figures under it, and keys beside it: name and label."""
+    """What stands until somebody acts: a text, figures under it, and keys beside it: name and label.
+
+    ``tone`` is the colour that it is filled with.
+    """
 
     text: str
     figures: str = ""
     keys: tuple[tuple[str, str], ...] = ()
+    tone: str = "pause"
 
 
 def notice_of(snapshot: Snapshot, loaded: Loaded, units: Units) -> NoticeRow | None:

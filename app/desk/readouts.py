@@ -10,12 +10,14 @@ from app.desk import formats
 from app.desk.translation import tr
 from core.executor.snapshot import Snapshot
 from core.interpreter.working_plane import Swivel
+from core.ports import Unknown
 
 # --- lit words ----------------------------------------------------------------------------------------
 
 
 TURNING = 1.0  # rpm above which a spindle is said to turn
 AT_ZERO = 0.01  # degrees from 0 at which a table still stands there
+UNKNOWN = "?"  # in the place of a figure that nobody knows, or behind the last that was known
 LATHE = ("X", "Z", "C")
 
 
@@ -45,15 +47,23 @@ def lamps_of(snapshot: Snapshot) -> tuple[Lamp, ...]:
     if snapshot.axes != LATHE:
         return (
             _spindle_lamp(snapshot),
-            Lamp("COOLANT", "coolant" in snapshot.outputs),
+            _output_lamp(snapshot, Lamp("COOLANT", "coolant" in snapshot.outputs)),
             *_table_lamps(snapshot),
         )
-    return (
-        _spindle_lamp(snapshot),
-        Lamp("COOLANT", "coolant" in snapshot.outputs),
-        _collet_lamp(snapshot),
-        Lamp("LIVE TOOL", any(name.startswith("live") for name in snapshot.outputs)),
-    )
+    live = Lamp("LIVE TOOL", any(name.startswith("live") for name in snapshot.outputs))
+    coolant = Lamp("COOLANT", "coolant" in snapshot.outputs)
+    if Unknown.OUTPUTS in snapshot.unknown:
+        collet = Lamp("COLLET ?", lit=True, warn=True)
+    else:
+        collet = _collet_lamp(snapshot)
+    return (_spindle_lamp(snapshot), _output_lamp(snapshot, coolant), collet, _output_lamp(snapshot, live))
+
+
+def _output_lamp(snapshot: Snapshot, lamp: Lamp) -> Lamp:
+    """The lamp; of an output that nobody hears neither on nor off can be said."""
+    if Unknown.OUTPUTS not in snapshot.unknown:
+        return lamp
+    return Lamp(f"{lamp.word} {UNKNOWN}", lit=True, warn=True)
 
 
 def _table_lamps(snapshot: Snapshot) -> tuple[Lamp, ...]:
@@ -66,6 +76,8 @@ def _table_lamps(snapshot: Snapshot) -> tuple[Lamp, ...]:
 
 def _spindle_lamp(snapshot: Snapshot) -> Lamp:
     """Turning is told from the measured speed: one that coasts is as dangerous as one that is driven."""
+    if Unknown.SPINDLE in snapshot.unknown:
+        return Lamp("SPINDLE UNKNOWN", lit=True, warn=True)
     turning = abs(snapshot.rpm_actual) > TURNING
     if turning and snapshot.rpm_command == 0:
         return Lamp("SPINDLE COASTS", lit=True, warn=True)
@@ -154,13 +166,17 @@ class Readout(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class AxisFigures:
-    """One row of the readout; ``mark`` says Ø or R on X, ``beside`` is the second figure."""
+    """One row of the readout; ``mark`` says Ø or R on X, ``beside`` is the second figure.
+
+    Not ``known``: nothing is heard of the slide any more, the figures are the last that were.
+    """
 
     name: str
     mark: str
     value: str
     beside: str
     homed: bool
+    known: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,8 +229,9 @@ def position_figures(snapshot: Snapshot, readout: Readout, with_c: bool, metric:
     beside = Readout.POSITION if readout is Readout.TO_GO else Readout.TO_GO
     large, small = (_figures(snapshot, r, metric, diameter) for r in (readout, beside))
     mark = "" if snapshot.axes != LATHE else "Ø" if diameter else "R"
+    known = Unknown.SLIDES not in snapshot.unknown
     rows = [
-        AxisFigures(name, mark if name == "X" else "", a, b, homed)
+        AxisFigures(name, mark if name == "X" else "", a, b, homed, known)
         for name, a, b, homed in zip(snapshot.axes, large, small, snapshot.homed, strict=True)
     ]
     return PositionFigures(
@@ -276,6 +293,7 @@ class SpindleFigures:
     surface_label: str
     override: float
     auto: bool
+    known: bool = True  # else nothing is heard of it: it may turn
 
 
 def feed_figures(snapshot: Snapshot, metric: bool) -> FeedFigures:
@@ -292,11 +310,14 @@ def feed_figures(snapshot: Snapshot, metric: bool) -> FeedFigures:
         speed = snapshot.velocity
     unit = formats.feed_unit(metric, per_rev)
     known = snapshot.rapid or snapshot.feed > 0
+    measured = formats.feed(speed, metric, per_rev) if math.isfinite(speed) else formats.NOTHING
+    if Unknown.SLIDES in snapshot.unknown or (per_rev and Unknown.SPINDLE in snapshot.unknown):
+        measured = UNKNOWN
     value = "RAPID" if snapshot.rapid else formats.feed(snapshot.feed, metric, modal.per_rev)
     return FeedFigures(
         value=value if known else formats.NOTHING,
         unit="" if snapshot.rapid else unit,
-        actual=formats.feed(speed, metric, per_rev) if math.isfinite(speed) else formats.NOTHING,
+        actual=measured,
         actual_unit=unit,
         override=snapshot.feed_override,
     )
@@ -305,6 +326,17 @@ def feed_figures(snapshot: Snapshot, metric: bool) -> FeedFigures:
 def spindle_figures(snapshot: Snapshot, metric: bool) -> SpindleFigures:
     """Speed as it is commanded and measured, and the surface speed in m/min or feet/min."""
     modal = snapshot.modal
+    if Unknown.SPINDLE in snapshot.unknown:
+        return SpindleFigures(
+            direction="UNKNOWN",
+            rpm=UNKNOWN,
+            actual=UNKNOWN,
+            surface=UNKNOWN,
+            surface_label="M/MIN" if metric else "SFM",
+            override=snapshot.spindle_override,
+            auto=snapshot.spindle_auto,
+            known=False,
+        )
     radius = snapshot.actual[0] - snapshot.offset[0]
     lathe = snapshot.axes == LATHE  # on a mill it would be the tool's, whose radius nobody knows
     surface = 2 * math.pi * radius * snapshot.rpm_actual / 60 if lathe else math.nan

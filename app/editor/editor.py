@@ -32,6 +32,7 @@ from app.editor.drafts import Drafts
 from app.editor.live_proof import LiveProof
 from app.editor.versions import Archive
 from core.executor.snapshot import Snapshot
+from core.ports import Unknown
 
 
 class Stage(StrEnum):
@@ -301,6 +302,8 @@ def refusal(snapshot: Snapshot) -> str:
         return messages.UNDER_WAY
     if snapshot.rpm_command:
         return messages.SPINDLE_ON
+    if Unknown.SPINDLE in snapshot.unknown:
+        return messages.SPINDLE_UNKNOWN
     return messages.COASTING if abs(snapshot.rpm_actual) > TURNING else ""
 
 

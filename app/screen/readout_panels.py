@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QWidget
 from app.desk import formats
 from app.desk.formats import percent
 from app.desk.machine_status import MachineStatus, Tone
-from app.desk.readouts import AxisFigures, FeedFigures, PositionFigures, SpindleFigures
+from app.desk.readouts import UNKNOWN, AxisFigures, FeedFigures, PositionFigures, SpindleFigures
 from app.desk.translation import tr
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter, draw_sign, put
 from app.screen.panel import Panel, Shown
@@ -59,12 +59,13 @@ class PositionPanel(Panel):
             box = QRectF(7.4 * u, row.center().y() - 2.6 * u, 4.8 * u, 5.2 * u)
             draw_mark(painter, box, axis.mark, 4.6, 0.4)
         large = QRectF(12.6 * u, row.y(), 39.0 * u, row.height())
-        painter.write(large, axis.value, 7.0 * share, "text" if axis.homed else "soft", at=RIGHT)
+        plain = axis.homed and axis.known
+        painter.write(large, axis.value, 7.0 * share, "text" if plain else "soft", at=RIGHT)
         beside = QRectF(52.4 * u, row.y(), self.width() - 54.0 * u, row.height())
         painter.write(beside, axis.beside, 2.7 * max(share, 0.8), "soft", at=RIGHT, bold=False)
-        if not axis.homed:
+        if not plain:
             above = QRectF(beside.x(), row.y() + 0.6 * u, beside.width(), 2.0 * u)
-            painter.write(above, "NOT HOMED", 1.5, "alarm", at=RIGHT)
+            painter.write(above, "NOT HOMED" if axis.known else "LAST KNOWN", 1.5, "alarm", at=RIGHT)
 
     def _share(self, row: QRectF) -> float:
         """Of the full size: five axes of a mill leave less room than three of a lathe."""
@@ -148,6 +149,9 @@ class SpindleGauge(Gauge):
             return
         u = self.look.u
         top = self.row(2.3, 4.8)
+        if not view.known:
+            self._unheard(painter)
+            return
         self.label(painter, QRectF(top.x(), top.y() - u, 11.6 * u, top.height()), view.direction)
         self._switch(painter, QRectF(top.x(), top.y() + 2.8 * u, 9.2 * u, 2.0 * u), view)
         unit = QRectF(top.right() - 5.0 * u, top.y() + u, 5.0 * u, top.height())
@@ -163,6 +167,16 @@ class SpindleGauge(Gauge):
         self.label(painter, surface, view.surface_label)
         self.figure(painter, surface.adjusted(5 * u, 0, 0, 0), view.surface, 2.5)
         self.bar(painter, self.row(11.2, 2.8), view.override, 1.0)
+
+    def _unheard(self, painter: Painter) -> None:
+        """Nobody knows whether it stands: that is said instead of any figure."""
+        for row, size, text in (
+            (self.row(2.6, 4.0), 3.6, "UNKNOWN"),
+            (self.row(7.0, 3.0), 2.4, "SPINDLE MAY TURN"),
+            (self.row(10.6, 3.0), 2.4, "PRESS E-STOP"),
+        ):
+            painter.fill(row, "alarm")
+            painter.write(row, text, size, "on_state", at=CENTRE)
 
     def _switch(self, painter: Painter, box: QRectF, view: SpindleFigures) -> None:
         painter.fill(box, "key" if view.auto else "alarm")
@@ -243,7 +257,8 @@ class HeadLine(Panel):
             box = QRectF(at.x() + 2.8 * u, at.center().y() - 1.5 * u, 3.0 * u, 3.0 * u)
             draw_mark(painter, box, axis.mark, 2.4, 0.25)
         room = at.adjusted((6.4 if axis.mark else 3.2) * u, 0, 0, 0)
-        painter.write(room, axis.value, 3.4, "text" if axis.homed else "alarm", at=RIGHT)
+        figure = axis.value if axis.known else f"{axis.value} {UNKNOWN}"
+        painter.write(room, figure, 3.4, "text" if axis.homed and axis.known else "alarm", at=RIGHT)
 
     def _figures(self, painter: Painter, room: QRectF, view: MachineStatus) -> None:
         u = self.look.u

@@ -201,7 +201,7 @@ NOTICE_ROW, NOTICE_KEY = 5.0, 17.0  # units: height of a row, width of a key
 
 
 class NoticeRows(Panel):
-    """Filled in the colour of what waits for an operator; a finger on a key presses it."""
+    """Each filled in the colour of what it says; a finger on a key presses it."""
 
     rows: Shown[tuple[NoticeRow, ...]] = Shown(())
 
@@ -232,7 +232,7 @@ class NoticeRows(Panel):
 
     def _row(self, painter: Painter, box: QRectF, row: NoticeRow) -> None:
         u = self.look.u
-        painter.fill(box, "pause")
+        painter.fill(box, row.tone)
         wide = box.width() - len(row.keys) * NOTICE_KEY * u - 2.4 * u
         upper = QRectF(box.x() + 1.2 * u, box.y(), wide, box.height() * (0.52 if row.figures else 1.0))
         painter.write(upper, row.text, 2.0, "on_state", raw=True)

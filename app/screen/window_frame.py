@@ -17,6 +17,7 @@ from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.readouts import Lamp
 from app.desk.translation import tr
+from app.desk.unheard_notice import unheard_notice
 from app.screen import page_table
 from app.screen.alarm_panels import AlarmList, Notice
 from app.screen.look import Look
@@ -308,6 +309,9 @@ class Frame(QWidget):
     def _notices_of(self, snapshot: Snapshot, loaded: Loaded, *, here: bool) -> tuple[NoticeRow, ...]:
         """What stands until somebody does something; its keys where they mean that (``here``)."""
         desk, rows = self.desk, []
+        unheard = unheard_notice(snapshot)
+        if unheard is not None:
+            rows.append(unheard)
         found = notice_of(snapshot, loaded, desk.settings.units)
         if found is not None:
             offered = here and snapshot.state is State.IDLE and bool(snapshot.interrupted_line)

@@ -12,6 +12,7 @@ from core.alarms import CATALOGUE, Code, Reaction
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.snapshot import Alarm, Snapshot, Starts, State
 from core.machine.machine_model import Machine
+from core.ports import Unknown
 
 # --- Which alarm is a condition of what: slide, spindle drive, wires, interlocks, program, control.
 
@@ -210,30 +211,31 @@ class FloorReader:
 
     def _axes(self, snapshot: Snapshot) -> dict[str, Value]:
         """Machine frame, X a radius; an axis that has no home does not know where it is."""
+        known = Unknown.SLIDES not in snapshot.unknown
         at = zip(snapshot.axes, snapshot.actual, snapshot.homed, strict=True)
         return {
-            f"{name}abs": actual if homed and (name != "C" or self.machine.c_enabled) else None
+            f"{name}abs": actual if known and homed and (name != "C" or self.machine.c_enabled) else None
             for name, actual, homed in at
         }
 
     def _spindle(self, snapshot: Snapshot) -> dict[str, Value]:
-        turning = abs(snapshot.rpm_actual)
+        known, turning = Unknown.SPINDLE not in snapshot.unknown, abs(snapshot.rpm_actual)
         held = (
             turning >= self.machine.spindle.stop_below and not self.machine.interlocks.unclamp_while_turning
         )
         return {
-            "Srpm": turning if turning >= _STILL else 0.0,
+            "Srpm": None if not known else turning if turning >= _STILL else 0.0,
             "Scmd": abs(snapshot.spindle_asked),
             "Sovr": 100.0 * snapshot.spindle_override,
             "rotmode": "CONTOUR" if snapshot.modal.c_locked and self.machine.spindle_is_c else "SPINDLE",
-            "chuckil": "ACTIVE" if held else "INACTIVE",
+            "chuckil": None if not known else "ACTIVE" if held else "INACTIVE",
         }
 
     def _wired(self, snapshot: Snapshot) -> dict[str, Value]:
         """Of what is a switch; where none is wired nothing is known."""
 
         def told(name: str, on: str, off: str) -> Value:
-            if name not in self.machine.inputs:
+            if name not in self.machine.inputs or Unknown.INPUTS in snapshot.unknown:
                 return None
             return on if name in snapshot.inputs else off
 
@@ -257,7 +259,8 @@ def _program(snapshot: Snapshot) -> dict[str, Value]:
 
 
 def _motion(snapshot: Snapshot) -> dict[str, Value]:
+    known = Unknown.SLIDES not in snapshot.unknown
     return {
-        "Fact": snapshot.velocity if snapshot.velocity >= _STANDS else 0.0,
+        "Fact": None if not known else snapshot.velocity if snapshot.velocity >= _STANDS else 0.0,
         "Fovr": 100.0 * snapshot.feed_override,
     }

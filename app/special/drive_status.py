@@ -5,10 +5,12 @@ from __future__ import annotations
 from app.desk import formats
 from app.desk.desk import Desk
 from app.desk.machine_status import Tone
+from app.desk.readouts import UNKNOWN
 from app.desk.sheet import Row, Sheet
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.machine.machine_model import Axis, Machine
+from core.ports import Unknown
 
 OF_DRIVES = frozenset({"axis", "following", "in-position", "driver"})
 HOW = {"lathe": "X IS A RADIUS FROM HOME", "mill": "FROM HOME"}
@@ -57,24 +59,27 @@ class DriveStatus(SpecialFunction):
         fault = _fault(snapshot.alarms, OF_DRIVES, axis)
         home = "HOMED" if snapshot.homed[number] else "NOT HOMED"
         power = "ON" if on else "OFF"
-        cells = (axis.name, power, home, *(write(value) for value in values), fault)
-        return Row(cells, on and fault == formats.NOTHING, Tone.RUN)
+        known = Unknown.SLIDES not in snapshot.unknown
+        figures = [write(value) if known else f"{write(value)} {UNKNOWN}" for value in values[:3]]
+        cells = (axis.name, power if known else UNKNOWN, home, *figures, write(values[3]), fault)
+        return Row(cells, on and known and fault == formats.NOTHING, Tone.RUN)
 
     def _spindle(self, snapshot: Snapshot) -> Row:
         fault = _fault(snapshot.alarms, OF_SPINDLE, None)
         band = abs(snapshot.rpm_command) * self.machine.spindle.at_speed
         off = snapshot.rpm_actual - snapshot.rpm_command
+        known = Unknown.SPINDLE not in snapshot.unknown
         cells = (
             "S",
             "AUTO" if snapshot.spindle_auto else "OFF",
             "rpm",
             formats.fixed(snapshot.rpm_command, 0),
-            formats.fixed(snapshot.rpm_actual, 0),
-            formats.fixed(off, 0),
+            formats.fixed(snapshot.rpm_actual, 0) if known else UNKNOWN,
+            formats.fixed(off, 0) if known else UNKNOWN,
             formats.fixed(band, 0),
             fault,
         )
-        return Row(cells, snapshot.spindle_auto and fault == formats.NOTHING, Tone.RUN)
+        return Row(cells, snapshot.spindle_auto and known and fault == formats.NOTHING, Tone.RUN)
 
     def prompt(self) -> str:
         """Where alarms are found, for the prompt line."""

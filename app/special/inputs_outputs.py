@@ -7,13 +7,14 @@ from enum import StrEnum
 
 from app.desk.desk import Desk
 from app.desk.machine_status import Tone
-from app.desk.readouts import Lamp, lamps_of
+from app.desk.readouts import UNKNOWN, Lamp, lamps_of
 from app.desk.sheet import Key, Row, Sheet, following
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
 from core.executor.commands import ForceOutput
 from core.executor.snapshot import Snapshot, State
 from core.machine.machine_model import Machine
+from core.ports import Unknown
 
 NOT_NOW = "OUTPUTS ARE SWITCHED BY HAND ONLY WHILE NO PROGRAM IS UNDER WAY AND NOTHING MOVES"
 AT_REST = frozenset({State.IDLE, State.DISABLED})
@@ -64,11 +65,12 @@ class InputsOutputs(SpecialFunction):
             return self._lamps(snapshot)
         outputs = self.kind is Kind.OUTPUTS
         on = snapshot.outputs if outputs else snapshot.inputs
+        known = (Unknown.OUTPUTS if outputs else Unknown.INPUTS) not in snapshot.unknown
         models = self.machine.outputs if outputs else self.machine.inputs
         rows = tuple(
             Row(
-                (name, model.terminal, "ON" if name in on else "OFF", self._used(name, outputs)),
-                name in on,
+                (name, model.terminal, _state(name in on) if known else UNKNOWN, self._used(name, outputs)),
+                name in on and known,
                 Tone.RUN if name in on else Tone.OFF,
             )
             for name, model in models.items()
@@ -85,7 +87,7 @@ class InputsOutputs(SpecialFunction):
             Lamp("AXES HOMED", all(snapshot.homed)),
         )
         rows = tuple(
-            Row((lamp.word, "ON" if lamp.lit else "OFF"), lamp.lit, Tone.PAUSE if lamp.warn else Tone.RUN)
+            Row((lamp.word, _state(lamp.lit)), lamp.lit, Tone.PAUSE if lamp.warn else Tone.RUN)
             for lamp in lamps
         )
         return Sheet(self.kind.value, ("LAMP", "STATE"), (0.6, 0.4), rows)
@@ -133,6 +135,10 @@ class InputsOutputs(SpecialFunction):
         if self.desk.snapshot().state not in AT_REST:
             return NOT_NOW
         return "RETURN SWITCHES THE MARKED OUTPUT BY HAND: LOOK AT THE MACHINE FIRST"
+
+
+def _state(on: bool) -> str:
+    return "ON" if on else "OFF"
 
 
 def _codes(machine: Machine) -> dict[str, str]:

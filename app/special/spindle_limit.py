@@ -8,12 +8,14 @@ from functools import partial
 from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.desk import Desk
+from app.desk.readouts import UNKNOWN
 from app.desk.sheet import Key, Row, Sheet
 from app.desk.translation import tr
 from app.special.special_functions import FigureFunction
 from core.executor.commands import SpindleLimit
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import SpindleModel
+from core.ports import Unknown
 
 LIFT = "PRESS Y TO LIFT THE LIMIT, ESC TO KEEP IT"
 
@@ -38,7 +40,7 @@ class SpindleSpeedLimit(FigureFunction):
                 bool(limit),
             ),
             Row(("COMMANDED NOW", formats.rpm(snapshot.rpm_command), "rpm")),
-            Row(("MEASURED NOW", formats.rpm(snapshot.rpm_actual), "rpm")),
+            Row(("MEASURED NOW", _measured(snapshot), "rpm")),
         )
         return Sheet(
             "MAXIMUM SPINDLE SPEED",
@@ -80,3 +82,7 @@ class SpindleSpeedLimit(FigureFunction):
     def prompt(self) -> str:
         """How to set the limit, for the prompt line."""
         return "TYPE A SPEED AND PRESS RETURN; IT TAKES ARITHMETIC; ESC GOES BACK TO THE LIST"
+
+
+def _measured(snapshot: Snapshot) -> str:
+    return UNKNOWN if Unknown.SPINDLE in snapshot.unknown else formats.rpm(snapshot.rpm_actual)

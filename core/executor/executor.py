@@ -29,7 +29,7 @@ from core.executor.station_signals import StationWatch
 from core.interpreter.job_setup import Setup
 from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionError
-from core.ports import DriverError, MachinePorts, TrippedError
+from core.ports import DriverError, MachinePorts, TrippedError, Unknown
 
 _log = logging.getLogger(__name__)
 TICK = 0.01  # s from the end of one to the beginning of the next
@@ -179,6 +179,7 @@ class Executor:
                 status.alarms,
                 context.stop,
                 status.job,
+                context.unknown,
             )
         if look.error is not None:
             return True
@@ -215,6 +216,8 @@ class Executor:
         context.inputs = dict(self._ports.io.inputs())
         context.outputs.look(context.now)
         context.spindle.guard_open = guard_open(context)
+        context.unknown = self._ports.unknown()
+        context.spindle.known = Unknown.SPINDLE not in context.unknown
         context.spindle.look()
         context.signals = self._station.read(self._ports.station.snapshot(), context.now)
         context.spindle.override, context.spindle.auto = context.signals.spindle, context.signals.auto

@@ -14,7 +14,7 @@ from core.executor.snapshot import Alarm, Event
 from core.executor.spindle_control import SpindleControl
 from core.executor.station_signals import StationSignals
 from core.machine.machine_model import Machine
-from core.ports import AxisSample, MachinePorts
+from core.ports import AxisSample, MachinePorts, Unknown
 
 _log = logging.getLogger(__name__)
 _QUIET = StationSignals(estop=False, start=False, hold=False, feed=1.0, spindle=1.0, auto=True, trouble="")
@@ -44,6 +44,7 @@ class MachineContext:
     inputs: dict[str, bool]
     outputs: CommandedOutputs  # the same as ``ports.io``
     signals: StationSignals = _QUIET
+    unknown: frozenset[Unknown] = frozenset()  # of what nothing is heard
     switches: Switches = field(default_factory=Switches)
     soft_override: float = 1.0
     line: int = 0  # of the block being executed, for the log

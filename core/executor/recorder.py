@@ -20,7 +20,7 @@ import numpy as np
 from core.executor.attempt import Attempt
 from core.executor.snapshot import Event, Snapshot, State
 from core.machine.machine_model import Machine
-from core.ports import FloatArray, MachinePorts
+from core.ports import FloatArray, MachinePorts, Unknown
 from core.records.record import Record
 from core.records.record_errors import RecordError
 from core.records.record_file import ENDING, open_record, save_record
@@ -91,6 +91,7 @@ class Recorder:
         self._skipped: list[float] | None = None  # the last tick, where it said nothing new
         self._figures: list[float] = []
         self._late = 0.0
+        self._silent = False  # nothing is heard of the slides
         self._place: tuple[object, ...] = ()
         self._resting: list[float] | None = None
         self._file: RingFile | None = None
@@ -199,10 +200,11 @@ class Recorder:
             s = tick.snapshot
             if s.t <= last:
                 continue
+            heard = Unknown.SPINDLE not in s.unknown
             figures = [
                 s.rpm_command,
-                s.rpm_actual,
-                tick.turns,
+                s.rpm_actual if heard else _NAN,
+                tick.turns if heard else _NAN,
                 s.feed_override,
                 s.spindle_override,
                 tick.queue,
@@ -210,8 +212,8 @@ class Recorder:
                 float(s.line),
                 float(s.block),
                 _STATES[s.state],
-                *bits_of(recorded.inputs, s.inputs),
-                *bits_of(recorded.outputs, s.outputs),
+                *_told(bits_of(recorded.inputs, s.inputs), Unknown.INPUTS not in s.unknown),
+                *_told(bits_of(recorded.outputs, s.outputs), Unknown.OUTPUTS not in s.unknown),
             ]
             self._late = max(self._late, tick.late)
             if figures == self._figures and s.t < last + _AT_REST - _GRAIN:
@@ -226,9 +228,21 @@ class Recorder:
         width, last = self.ring.recorded.sample_width, self.ring.samples.last
         told = [tick.samples for tick in ticks if tick.samples is not None and len(tick.samples)]
         rows = np.concatenate(told) if told else self._seen(ticks, last)
+        rows = self._with_gap(rows, ticks)
         if rows.shape[1:] != (width,):
             return np.empty((0, width))
         return rows[rows[:, 0] > np.maximum.accumulate(np.concatenate(([last], rows[:-1, 0])))]
+
+    def _with_gap(self, rows: FloatArray, ticks: Iterable[Tick]) -> FloatArray:
+        """Where slides begin not to be heard of there is a row without figures: nothing is drawn across."""
+        silent = [tick.snapshot.t for tick in ticks if Unknown.SLIDES in tick.snapshot.unknown]
+        begins, self._silent = bool(silent) and not self._silent, bool(silent)
+        if not silent:
+            return rows
+        before, behind = rows[rows[:, 0] < silent[0]], rows[rows[:, 0] > silent[-1]]
+        gap = np.full((int(begins), self.ring.recorded.sample_width), _NAN)
+        gap[:, 0] = silent[0]
+        return np.concatenate([before, gap, behind])
 
     def _seen(self, ticks: Iterable[Tick], last: float) -> FloatArray:
         """Samples by the snapshots: the last row before anything changes is among them."""
@@ -236,7 +250,7 @@ class Recorder:
         rows: list[list[float]] = []
         for tick in ticks:
             s = tick.snapshot
-            if tick.samples is not None or s.t <= last:
+            if tick.samples is not None or s.t <= last or Unknown.SLIDES in s.unknown:
                 continue
             place = (s.demand, s.actual, s.rpm_actual)
             row = [s.t, *s.demand, *s.actual, *none, s.rpm_actual, tick.turns, _NAN, tick.queue]
@@ -282,6 +296,11 @@ class Recorder:
         except RecordError as error:
             self.trouble = f"the record of an alarm is lost: {error}"
             _log.warning("%s", self.trouble)
+
+
+def _told(figures: list[float], heard: bool) -> list[float]:
+    """The figures; of what nothing is heard none."""
+    return figures if heard else [_NAN] * len(figures)
 
 
 def _over(now: Snapshot, alarm: float) -> bool:

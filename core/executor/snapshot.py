@@ -14,6 +14,7 @@ from core.alarms import Code
 from core.executor.interrupted_job import InterruptedJob
 from core.interpreter.modal_state import Modal
 from core.interpreter.working_plane import Swivel
+from core.ports import Unknown
 
 
 class State(StrEnum):
@@ -126,6 +127,8 @@ class Snapshot:
     start_refused: str = ""  # why the last Cycle Start did nothing
     wheel: str = ""  # axis that the handwheel moves, empty for none
     wheel_ended: str = ""  # why the control has taken the handwheel away
+    # Nothing is heard of these: what is said of them in here is the last that was known, not what is so.
+    unknown: frozenset[Unknown] = frozenset()
 
     @property
     def interrupted_line(self) -> int:

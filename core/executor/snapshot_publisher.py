@@ -99,6 +99,7 @@ class Publisher:
             start_refused=status.start_refused,
             wheel=control.wheel.axis,
             wheel_ended=control.wheel.ended,
+            unknown=context.unknown,
         )
 
     def _system(self, block: Block | None, *, under_way: bool) -> Swivel | None:

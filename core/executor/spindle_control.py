@@ -128,6 +128,7 @@ class SpindleControl:
         self.limit: float | None = None  # F10, until restart
         self.command = 0.0  # signed rpm as sent
         self.measured = 0.0
+        self.known = True  # else ``measured`` is the last that was heard of it
         self.angle = SpindleAngle()
         self.override = 1.0
         self.auto = True
@@ -163,8 +164,8 @@ class SpindleControl:
 
     @property
     def stopped(self) -> bool:
-        """Whether it stands still, measured."""
-        return abs(self.measured) < self._model.stop_below
+        """Whether it stands still, measured; of one that nobody hears nobody knows that."""
+        return self.known and abs(self.measured) < self._model.stop_below
 
     @property
     def lost(self) -> bool:

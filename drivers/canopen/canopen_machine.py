@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from core.ports import Clock, DriverError, FloatArray, MachinePorts, Spindle, Stop
+from core.ports import ALL_UNKNOWN, Clock, DriverError, FloatArray, MachinePorts, Spindle, Stop, Unknown
 from drivers.canopen.canopen_axes import CanopenAxes
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig
@@ -99,8 +99,22 @@ class CanopenMachine:
             station=self.io,
             lock=self.c,
             samples=self.samples,
+            unknown=self.unknown,
             warnings=tuple(each for axis in self.axes.drives.axes for each in axis.drive.setup.warnings),
         )
+
+    def unknown(self) -> frozenset[Unknown]:
+        """What has not answered of late; of a bus that has failed nothing is known."""
+        if self.bus.trouble:
+            return ALL_UNKNOWN
+        found: set[Unknown] = set()
+        if any(axis.drive.silent for axis in self.axes.drives.axes):
+            found.add(Unknown.SLIDES)
+        if self.spindle is not None and self.spindle.drive.silent:
+            found.add(Unknown.SPINDLE)
+        if any(module.silent for module in self.io.modules.values()):
+            found |= {Unknown.OUTPUTS, Unknown.INPUTS}
+        return frozenset(found)
 
     def tick(self) -> None:
         """One round: take in, supervise, feed, send, SYNC. Call it every few milliseconds."""

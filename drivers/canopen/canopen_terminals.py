@@ -21,7 +21,7 @@ BYTES = 8  # of inputs, and of outputs, that one PDO carries
 _WORDS = 4  # analog ones
 _DELTA = 328  # 1 % of an analog word
 _AGAIN = 0.1  # s after which outputs are sent although nothing has changed
-_SYNCS = 3
+_SYNCS, _BEATS = 3, 3.0  # answers to SYNC, heartbeats that may be missing
 _KINDS = ((od.DIGITAL_IN, "bytes of inputs"), (od.DIGITAL_OUT, "bytes of outputs"), (od.ANALOG_IN, "pots"))
 
 
@@ -94,10 +94,19 @@ class Module401:
             self._bus.send_message(0x200 + self.config.id, outputs)
             self._sent = (now, outputs)
 
-    def look(self, patience: float) -> None:
+    @property
+    def silent(self) -> bool:
+        """Whether nothing has been heard of it for too long: its terminals are as they were before."""
+        return self.missing > _SYNCS or self._without_beat > _BEATS * self._bus.config.heartbeat
+
+    @property
+    def _without_beat(self) -> float:
+        return self._bus.clock.now() - self.heard
+
+    def look(self) -> None:
         """Supervise; ``trouble`` stays until the module is connected anew."""
-        name, silent = self.config.name, self._bus.clock.now() - self.heard
-        if silent > patience:
+        name, silent = self.config.name, self._without_beat
+        if silent > _BEATS * self._bus.config.heartbeat:
             self._wrong(f"{name}: no heartbeat of the I/O module for {silent:.2f} s; check cable and power")
         elif self.missing > _SYNCS:
             self._wrong(f"{name}: the I/O module does not answer SYNC; check cable and power")
@@ -179,7 +188,7 @@ class CanopenIO:
         """Supervise and send; what is wrong with a module, or nothing."""
         trouble: str = ""
         for module in self.modules.values():
-            module.look(3.0 * self._bus.config.heartbeat)
+            module.look()
             trouble = trouble or module.trouble
             module.send(now)
         return trouble

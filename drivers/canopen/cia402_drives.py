@@ -71,6 +71,11 @@ class Drive402:
         """Power is on and the drive obeys."""
         return self.state is DriveState.ENABLED
 
+    @property
+    def silent(self) -> bool:
+        """Whether it has left too many SYNCs unanswered: what it shows is of before."""
+        return self.missing > SYNCS
+
     def connect(
         self, mappings: tuple[int, ...], modes: int, values: tuple[tuple[int, int, int], ...]
     ) -> None:
@@ -120,7 +125,7 @@ class Drive402:
                 f"{self.name}: no heartbeat for {now - self.heard:.2f} s; check cable and power",
                 "drive-silent",
             )
-        elif self.missing > SYNCS:
+        elif self.silent:
             self._wrong(f"{self.name}: the drive does not answer SYNC; check cable and power", "drive-silent")
         elif self.state in {DriveState.FAULT, DriveState.REACTING} and not self._resetting:
             self._wrong(f"{self.name}: drive fault", "axis")

@@ -11,6 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from core.ports import (
+    ALL_UNKNOWN,
     AxisSample,
     Cam,
     Clock,
@@ -24,6 +25,7 @@ from core.ports import (
     Stop,
     Trip,
     TrippedError,
+    Unknown,
 )
 from drivers.feeder.feeder_messages import (
     NOTHING,
@@ -111,6 +113,12 @@ class Line:
             for note in texts(self._state.get("notes")):
                 _log.warning("feeder: %s", note)
         return self._state
+
+    def unknown(self) -> frozenset[Unknown]:
+        """What the drivers do not hear of; of a feeder that is gone nothing is known."""
+        if self.lost:
+            return ALL_UNKNOWN
+        return frozenset(map(Unknown, texts(self.look().get("unknown"))))
 
     def hang_up(self) -> None:
         """From any thread: the feeder sees that its control is gone, and stops the machine for good."""
@@ -329,6 +337,7 @@ def feeder_ports(line: Line) -> MachinePorts:
         trips=FeederTrips(line),
         halt=line.hang_up,
         samples=FeederSamples(line, hello) if hello.get("samples") else None,
+        unknown=line.unknown,
     )
 
 

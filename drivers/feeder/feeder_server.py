@@ -308,6 +308,7 @@ class Feeder:
             "held": ports.lock is not None and ports.lock.held(),
             "trip": self._guard.tripped,
             "notes": self._notes,
+            "unknown": sorted(ports.unknown()),
         }
         self._notes = []
         sampled = ports.samples.take(_ROWS).ravel() if ports.samples is not None else NOTHING

@@ -59,7 +59,8 @@ class Controller:
         self.stream = Stream(self._write)
         self.banners = 0  # how many resets have been told
         self.fault: Fault | str = ""
-        self.lost = False  # for good: start the control again
+        self.lost = False  # the wire is gone, and nothing is said any more
+        self.mute = True  # nothing is heard: what has been told is of before, not of now
         self.alarm = 0
         self.trusted = True  # the position
         self.ready = False  # modes verified, nothing wrong
@@ -340,7 +341,7 @@ class Controller:
         self.keep(report)
         if report.diameter and self.ready:
             self.fail("X counts in diameter (D:1): the controller has lost its modes", "controller-modes")
-        self.owed_since = None
+        self.owed_since, self.mute = None, False
         self._mind(report)
         self.on_report(report)
 
@@ -374,7 +375,7 @@ class Controller:
             self._gone(error)
 
     def _gone(self, error: WireLostError) -> None:
-        self.lost = True
+        self.lost = self.mute = True
         self.runner.drop()
         self.fail(
             f"the connection to the controller is lost: {error}; it moves what it has, then rests",
@@ -424,7 +425,7 @@ class Controller:
             return
         patience = _INDEX if self.index_wait else _SILENT
         if self.owed_since is not None and self.listened - self.owed_since > patience:
-            self.owed_since = self.listened
+            self.owed_since, self.mute = self.listened, True
             self.fail(
                 "the controller does not answer; look at the cable and at the controller", "controller-silent"
             )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from core.ports import Clock, DriverError, MachinePorts, Stop
+from core.ports import ALL_UNKNOWN, Clock, DriverError, MachinePorts, Stop, Unknown
 from drivers.grblhal import grblhal_scripts
 from drivers.grblhal.grblhal_axes import GrblAxes
 from drivers.grblhal.grblhal_blocks import GrblBlocks
@@ -62,6 +62,7 @@ class GrblMachine:
             warnings=self._warnings(),
             blocks=self.blocks,
             halt=self.controller.halt,
+            unknown=self.unknown,
         )
 
     def pump(self) -> None:
@@ -71,6 +72,10 @@ class GrblMachine:
         self.spindle.pump()
         self.io.pump()
         self.inputs.pump()
+
+    def unknown(self) -> frozenset[Unknown]:
+        """A controller that is not heard goes on with what it has, and its spindle turns on."""
+        return ALL_UNKNOWN if self.controller.mute else frozenset()
 
     def close(self) -> None:
         """Nothing is left moving; then the wire goes."""

@@ -31,8 +31,10 @@ class GrblEncoder:
         return self._c.report is not None and self._c.report.measured is not None
 
     def speed(self) -> float:
-        """rpm; one that runs down has the sign that it had."""
+        """rpm; one that runs down has the sign that it had. By what turns it while the controller is mute."""
         way, report = self.way(), self._c.report
+        if self._c.mute:
+            return way
         self._sign = math.copysign(1.0, way) if way else self._sign
         return self._sign * abs(report.measured or 0.0) if report is not None else 0.0
 

@@ -67,6 +67,14 @@ class Attendant:
         """Whether enough has been answered to trust it."""
         return self._family is not None and self._family.good >= self._family.warm_up
 
+    @property
+    def unheard(self) -> bool:
+        """Whether nothing is known of the inverter now: its port is gone, or it has not answered of late."""
+        now = self._clock.now()
+        if self._family is None or self.seen is None:
+            return True
+        return now - self.seen.t > LOST and now > self.grace
+
     def connect(self) -> None:
         """Open, stop, check, look until it is trusted. Raises DriverError."""
         self._prepare()

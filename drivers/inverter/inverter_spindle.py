@@ -137,6 +137,13 @@ class InverterSpindle:
             self._unmeasured = self._lost() or self._agreement.look(encoder.speed(), self.reported_rpm, now)
         return bool(self._unmeasured)
 
+    @property
+    def unknown(self) -> bool:
+        """Whether nobody knows if it turns: no encoder tells, and the inverter has not been heard of late."""
+        if self._encoder is not None and not (self._unmeasured or self._lost()):
+            return False
+        return not self._alive() or self._attendant.unheard
+
     def status(self) -> str:
         """One line about it, for a check."""
         seen = self._attendant.seen

@@ -12,6 +12,7 @@ from app.desk.readouts import Readout, coordinates
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal_state import Modal
+from core.ports import ALL_UNKNOWN, Unknown
 
 INCH = 25.4
 AT = Snapshot(
@@ -212,3 +213,23 @@ def test_the_feed_of_c_alone_is_in_degrees() -> None:
     by_turn = replace(alone, feed=2.0, modal=Modal(metric=True, per_rev=True))
     feed = status_of(by_turn, Readout.POSITION, with_c=True).feed
     assert (feed.value, feed.unit) == ("2.0000", "°/rev")
+
+
+def test_what_nothing_is_heard_of_is_not_shown_as_standing_or_off() -> None:
+    """The last that was known: 0 rpm, coolant off, collet closed. None of it may be read as so."""
+    stood = replace(AT, outputs=frozenset({"collet"}), unknown=ALL_UNKNOWN)
+    view = status_of(stood, Readout.POSITION, True)
+    assert not any(axis.known for axis in view.position.axes)
+    assert (view.spindle.rpm, view.spindle.actual, view.spindle.surface) == ("?", "?", "?")
+    assert (view.spindle.direction, view.spindle.known) == ("UNKNOWN", False)
+    assert view.feed.actual == "?"
+    told = [(lamp.word, lamp.lit, lamp.warn) for lamp in view.lamps]
+    words = ("SPINDLE UNKNOWN", "COOLANT ?", "COLLET ?", "LIVE TOOL ?")
+    assert told == [(word, True, True) for word in words]
+
+
+def test_only_the_part_that_is_silent_is_unknown() -> None:
+    view = status_of(replace(AT, unknown=frozenset({Unknown.SPINDLE})), Readout.POSITION, True)
+    assert all(axis.known for axis in view.position.axes)
+    assert view.lamps[0].word == "SPINDLE UNKNOWN"
+    assert view.lamps[1].word == "COOLANT"

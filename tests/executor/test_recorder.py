@@ -14,7 +14,7 @@ from core.executor.commands import CycleStart, EnableDrives
 from core.executor.executor import Executor
 from core.executor.recorder import KEPT, Recorder, Tick, recorded_of, rotate
 from core.executor.snapshot import Event, State
-from core.ports import DriverError, FloatArray
+from core.ports import ALL_UNKNOWN, DriverError, FloatArray, Unknown
 from core.records.record_errors import RecordError
 from core.records.record_file import open_record
 from core.records.ring_file import NOW, read_ring
@@ -259,3 +259,24 @@ def test_a_disk_that_fails_later_ends_the_file_and_not_the_record(
     assert "now.ring: Input/output error" in it.recorder.trouble
     assert it.recorder.between(-np.inf, np.inf).columns["X demand"].max() > 5.0
     assert read_ring(tmp_path / NOW).times.size >= 10
+
+
+@pytest.mark.parametrize("own", [True, False])
+def test_of_what_nothing_is_heard_the_record_has_a_gap(own: bool) -> None:
+    """0.5 s without a word, then it is heard again: nothing is drawn across."""
+    it = rig(own=own)
+    it.make_part()
+    unknown: list[frozenset[Unknown]] = [frozenset()]
+    it.executor._ports = dataclasses.replace(it.executor._ports, unknown=lambda: unknown[0])
+    it.run(0.2)
+    lost, unknown[0] = it.executor._ports.clock.now(), ALL_UNKNOWN
+    it.run(0.5)
+    back, unknown[0] = it.executor._ports.clock.now(), frozenset()
+    it.run(0.5)
+    it.recorder.drain()
+    record = it.recorder.between(lost - 0.1, back + 0.3)
+    dark = (record.times > lost + 0.0099) & (record.times < back - 0.02)
+    assert dark.sum() == 1
+    for name in ("X actual", "X demand", "spindle speed", "output collet"):
+        assert np.isnan(record.columns[name][dark]).all()
+        assert np.isfinite(record.columns[name][[0, -1]]).all()

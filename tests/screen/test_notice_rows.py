@@ -8,6 +8,7 @@ import pytest
 
 from app.screen import page_table
 from core.executor.snapshot import State
+from core.ports import ALL_UNKNOWN, Unknown
 from tests.interrupted import broken_off
 from tests.screen.hands import Hands, Key
 
@@ -92,3 +93,18 @@ def test_a_finger_on_the_row_answers_as_the_key_does(hands: Hands) -> None:
     hands.window.refresh()
     assert rows.rows[0].keys == ()  # there these keys mean other things
     hands.key(Key.Key_F1)
+
+
+@pytest.mark.parametrize("page", [page_table.AUTOMATIC, page_table.JOG, page_table.SPECIAL, page_table.TOOLS])
+def test_a_machine_that_is_not_heard_says_so_on_every_page(hands: Hands, page: str) -> None:
+    hands.frame.go(page)
+    hands.machine.now = replace(hands.machine.now, unknown=ALL_UNKNOWN)
+    hands.window.refresh()
+    (row,) = hands.frame.notices.rows
+    assert (row.text, row.tone) == ("SPINDLE UNKNOWN – SPINDLE MAY TURN: PRESS E-STOP", "alarm")
+    assert row.figures.startswith("NOT KNOWN: POSITIONS, SPINDLE, OUTPUTS, INPUTS")
+    assert "SPINDLE UNKNOWN" in [lamp.word for lamp in hands.frame.strip.lamps]
+    hands.machine.now = replace(hands.machine.now, unknown=frozenset({Unknown.OUTPUTS}))
+    hands.window.refresh()
+    (row,) = hands.frame.notices.rows
+    assert row.text == "OUTPUTS UNKNOWN: THE MACHINE IS NOT HEARD"

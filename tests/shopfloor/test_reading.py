@@ -13,6 +13,7 @@ from core.executor.raised_alarm import AlarmError, alarm_and_reaction, make_alar
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal_state import Modal
 from core.machine.machine_model import InputModel, Machine
+from core.ports import ALL_UNKNOWN
 from tests.interrupted import broken_off
 
 KEYS = frozenset(
@@ -210,3 +211,10 @@ def test_waiting_for_any_input_of_the_machine_is_waiting_for_a_device() -> None:
     for waits in ("TB2-5", "end_of_bar", "16", "PLC-16"):
         assert values_of(replace(AT, state=State.WAIT, waiting_for=waits))["execution"] == "WAIT"
     assert values_of(replace(AT, state=State.WAIT, waiting_for="TB9-9"))["execution"] == "ACTIVE"
+
+
+def test_of_a_machine_that_is_not_heard_the_last_figures_are_not_told() -> None:
+    values = values_of(replace(AT, unknown=ALL_UNKNOWN))
+    unheard = ("Xabs", "Zabs", "Cabs", "Srpm", "Fact", "chuck", "door", "endbar", "part", "chuckil")
+    assert [key for key in unheard if values[key] is not None] == []
+    assert (values["avail"], values["program"], values["line"]) == ("AVAILABLE", "pin.nc", "7")

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import can
 
-from core.ports import MachinePorts
+from core.ports import ALL_UNKNOWN, MachinePorts, Unknown
 from drivers.canopen.canopen_machine import CanopenMachine
 from drivers.feeder.feeder_client import Line, feeder_ports
 from drivers.feeder.feeder_server import Feeder
@@ -21,7 +21,9 @@ from tests.drivers.contract.world import SimWorld
 
 # Three heartbeats of 100 ms, a round of the bus, and v/a from 120 mm/s.
 _SILENT = Fault(told=0.35, rests=0.45, says="check cable and power")
-_DEAF = Fault(told=0.05, rests=0.45, says="", final=True)  # the drives miss our heartbeat
+# The drives miss our heartbeat.
+_DEAF = Fault(told=0.05, rests=0.45, says="", final=True, unknown=ALL_UNKNOWN)
+_SLIDES, _TERMINALS = frozenset({Unknown.SLIDES}), frozenset({Unknown.OUTPUTS, Unknown.INPUTS})
 _ROUNDS = 2  # of the bus in a tick of the executor
 
 
@@ -31,13 +33,13 @@ class Canopen(Rig):
     faults: ClassVar[Mapping[str, Fault]] = {
         "drive fault": Fault(told=0.03, rests=0.1, says="X: "),
         "following error": Fault(told=0.08, rests=0.2, says="X: monitoring (EMCY 8611)"),
-        "cable out": _SILENT,
-        "silence": replace(_SILENT, says="Z: "),
-        "silent terminals": replace(_SILENT, says="io: "),
+        "cable out": replace(_SILENT, unknown=ALL_UNKNOWN),
+        "silence": replace(_SILENT, says="Z: ", unknown=_SLIDES),
+        "silent terminals": replace(_SILENT, says="io: ", unknown=_TERMINALS),
         "garbage": replace(_DEAF, says="frames that make no sense"),
-        "node reboot": Fault(told=0.03, rests=0.4, says="X: the drive has restarted"),
-        "terminals reboot": Fault(told=0.03, rests=0.2, says="io: "),
-        "NMT stop": Fault(told=0.15, rests=0.45, says="Z: "),
+        "node reboot": Fault(told=0.03, rests=0.4, says="X: the drive has restarted", unknown=_SLIDES),
+        "terminals reboot": Fault(told=0.03, rests=0.2, says="io: ", unknown=_TERMINALS),
+        "NMT stop": Fault(told=0.15, rests=0.45, says="Z: ", unknown=_SLIDES),
         "bus-off": replace(_DEAF, says="bus-off"),
         "two masters": replace(_DEAF, says="another master"),
         "dead reader": replace(_DEAF, says="the CAN interface"),

@@ -8,6 +8,7 @@ from typing import ClassVar
 
 from app.compose.grblhal_backend import grblhal_config
 from core.machine.machine_model import Machine
+from core.ports import ALL_UNKNOWN
 from drivers.clocks import StepClock
 from drivers.grblhal.grblhal_machine import GrblMachine
 from drivers.lookalikes.grblhal_firmware import Firmware
@@ -127,8 +128,10 @@ class Grblhal(Rig):
     faults: ClassVar[Mapping[str, Fault]] = {
         "drive fault": Fault(told=0.02, rests=0.02, says="ALARM:17, motor fault"),
         "alarm": Fault(told=0.02, rests=0.02, says="ALARM:14"),
-        "cable out": Fault(0.02, 0.9, "the connection to the controller is lost", True, _ALONE, _ALONE),
-        "silence": Fault(told=1.4, rests=2.2, says="does not answer"),
+        "cable out": Fault(
+            0.02, 0.9, "the connection to the controller is lost", True, _ALONE, _ALONE, unknown=ALL_UNKNOWN
+        ),
+        "silence": Fault(told=1.4, rests=2.2, says="does not answer", unknown=ALL_UNKNOWN),
         "garbage": Fault(told=0.15, rests=0.3, says="disturbed"),
         "node reboot": Fault(told=0.15, rests=0.1, says="reset", homeless=True),
         "two masters": Fault(told=0.15, rests=0.3, says="disturbed"),

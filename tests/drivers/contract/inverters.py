@@ -9,8 +9,9 @@ from functools import partial
 from typing import ClassVar
 
 import resources
-from app.compose.inverter_backend import ClearingAxes, halt_with
+from app.compose.inverter_backend import ClearingAxes, halt_with, unknown_with
 from app.compose.machine_files import parse_machine
+from core.ports import Unknown
 from drivers.inverter.inverter_attendant import Keeper
 from drivers.inverter.inverter_spindle import InverterSpindle, attendant
 from tests.drivers.contract.lockstep import LockstepClock
@@ -22,9 +23,9 @@ from tests.drivers.inverter.inverter_lookalikes import Inverter
 from tests.drivers.inverter.wires import BenchWire
 
 _RTU, _NO_WATCH = 2.2, "it has no time-out of its own: a watchdog relay on its run terminal"
-_LOST = Fault(
-    told=_RTU, rests=_RTU + 0.2, says="PRESS E-STOP"
-)  # a second of silence, and the tries under way
+_SPINDLE = frozenset({Unknown.SPINDLE})
+# A second of silence, and the tries under way.
+_LOST = Fault(told=_RTU, rests=_RTU + 0.2, says="PRESS E-STOP", unknown=_SPINDLE)
 _DISOBEYS = Fault(
     told=1.6, rests=1.8, says="understood 0.00 Hz: PRESS E-STOP"
 )  # a second, and the looks under way
@@ -69,7 +70,9 @@ class OnALine(Simulated):
         "garbage": _LOST,
         "answers too late": dataclasses.replace(_LOST, told=2 * _RTU, rests=2 * _RTU + 0.2),
         "node reboot": _DISOBEYS,
-        "dead reader": Fault(0.1, 0.2, "nobody attends the inverter any more: PRESS E-STOP", final=True),
+        "dead reader": Fault(
+            0.1, 0.2, "nobody attends the inverter any more: PRESS E-STOP", final=True, unknown=_SPINDLE
+        ),
         "two masters": dataclasses.replace(_DISOBEYS, says="PRESS E-STOP"),
     }
     harmless: ClassVar[tuple[str, ...]] = ("late answers", "noise")
@@ -103,6 +106,7 @@ class OnALine(Simulated):
             spindle=spindle,
             gear=None,
             halt=partial(halt_with, ports, spindle),
+            unknown=partial(unknown_with, ports, spindle),
         )
         self.world = InverterWorld(self.hands, ports.io.outputs)
         self.world.inverter = self.inverter

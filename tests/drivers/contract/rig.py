@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from core.machine.machine_model import Machine
-from core.ports import BlockSink, MachinePorts
+from core.ports import BlockSink, MachinePorts, Unknown
 from drivers.clocks import StepClock
 from drivers.lookalikes.plant_hands import PlantHands
 from tests.drivers.contract.moves import hand_over, start
@@ -37,7 +37,8 @@ class Fault:
 
     ``told`` and ``rests``: s until the driver ``says`` so, and until every slide stands. ``final``: the
     control has to be started again. ``spins``, ``flows``: why spindle or coolant stay on, where nothing
-    can be said to them any more. ``homeless``: nobody knows any more where the slides are.
+    can be said to them any more. ``homeless``: nobody knows any more where the slides are. ``unknown``: of
+    what nothing is heard as long as it lasts; what is said of that is the last that was.
     """
 
     told: float
@@ -47,6 +48,7 @@ class Fault:
     spins: str = ""
     flows: str = ""
     homeless: bool = False
+    unknown: frozenset[Unknown] = frozenset()
 
 
 class Rig(ABC):

@@ -10,7 +10,7 @@ from typing import ClassVar
 from app.compose.machine_files import load_machine
 from app.compose.simulated_backend import simulated
 from core.machine.machine_model import Machine
-from core.ports import DriverError, MachinePorts
+from core.ports import ALL_UNKNOWN, DriverError, MachinePorts
 from drivers.clocks import StepClock
 from drivers.feeder.feeder_client import Line, feeder_ports
 from drivers.feeder.feeder_links import LoopLink
@@ -129,7 +129,8 @@ FEEDER_WORDS = {
     "garbage": "the feeder's socket carries something that is no message",
 }
 FEEDER_FAULTS = {
-    fault: Fault(told=0.02, rests=1.5, says=says, final=True) for fault, says in FEEDER_WORDS.items()
+    fault: Fault(told=0.02, rests=1.5, says=says, final=True, unknown=ALL_UNKNOWN)
+    for fault, says in FEEDER_WORDS.items()
 }
 FEEDER_MISSING = {
     "cable out": "the feeder hangs on a socket pair inside one computer",

@@ -66,6 +66,8 @@ def test_a_fault_is_told_in_time_and_only_a_clear_word_brings_power_back(broken:
     rig.acts()[fault]()
     rig.until(lambda: rig.told != "", rig.faults[fault].told)
     assert rig.faults[fault].says in rig.told
+    rig.run(0.1)
+    assert rig.ports.unknown() == rig.faults[fault].unknown
     costs_no_time(rig)
     rig.run(0.8)
     costs_no_time(rig)
@@ -82,6 +84,7 @@ def test_a_fault_is_told_in_time_and_only_a_clear_word_brings_power_back(broken:
     rig.until(lambda: rig.told == "", 2.0)
     rig.run(0.5)
     assert rig.told == ""
+    assert rig.ports.unknown() == frozenset()
     assert axes.sample().enabled is not tripped
     assert rig.stands()
     axes.enable(True)

@@ -52,6 +52,8 @@ def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None
     rig.acts()[fault]()
     control.until(State.FAULT, limit=outcome.told + 0.01)
     control.rest(max(outcome.rests + struck - control.clock.now(), 0.0))
+    control.run(0.1)
+    assert control.shot.unknown == outcome.unknown
     alarm = control.shot.alarms[0]
     assert outcome.says in alarm.detail + alarm.remedy
     all_off(control, outcome)
@@ -74,6 +76,7 @@ def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None
     if outcome.final:
         return
     assert control.shot.alarms == ()
+    assert control.shot.unknown == frozenset()
     parts = control.shot.parts
     control.start(SHORT)
     if outcome.homeless:
