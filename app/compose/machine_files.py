@@ -10,6 +10,7 @@ from core.machine.machine_model import Machine
 from core.table_schema import Driver, Finding, MachineFileError, written
 from drivers.canopen import canopen_table
 from drivers.grblhal import grblhal_table
+from drivers.hal import hal_table
 from drivers.inverter import inverter_table
 from drivers.mtconnect import mtconnect_table
 from drivers.simulated import simulated_table
@@ -22,6 +23,7 @@ _ENTRIES = (
     (canopen_table.DRIVER, "canopen_backend"),
     (inverter_table.DRIVER, ""),
     (grblhal_table.DRIVER, "grblhal_backend"),
+    (hal_table.DRIVER, ""),
     (serial_table.DRIVER, ""),
     (gauge_table.DRIVER, ""),
     (mtconnect_table.DRIVER, ""),

@@ -61,7 +61,15 @@ def test_shipped_bus_in_model_units() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["gt75.toml", "gt75-canopen.toml", "gt75-grblhal.toml", "gt75-vfd.toml", "gt75-bench.toml"]
+    "name",
+    [
+        "gt75.toml",
+        "gt75-canopen.toml",
+        "gt75-grblhal.toml",
+        "gt75-vfd.toml",
+        "gt75-bench.toml",
+        "gt75-hal.toml",
+    ],
 )
 def test_every_shipped_file_is_good(name: str) -> None:
     assert parse_machine(resources.machine_file(name), name).source == name

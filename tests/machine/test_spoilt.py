@@ -15,6 +15,7 @@ SAMPLES = (
     "gt75",
     "gt75-canopen",
     "gt75-grblhal",
+    "gt75-hal",
     "gt75-vfd",
     "ac-table-mill",
     "sinumerik-modulo",

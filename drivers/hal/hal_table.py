@@ -1,0 +1,256 @@
+"""[hal] of the machine file: the HAL file of LinuxCNC, and the pins at which this control begins.
+
+What lies behind these pins (step and direction, ±10 V behind a pid, EtherCAT, a parallel port) is said by the
+HAL file alone. Inputs, outputs and pots have theirs in [io.in], [io.out] and [io.analog]: ``at`` is the pin.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields
+
+from core.table_schema import (
+    Driver,
+    DriverTable,
+    Field,
+    FileReading,
+    Finding,
+    Kind,
+    Unit,
+    expected_table,
+    read_named,
+    read_table,
+    unknown_keys,
+    written,
+)
+
+_AXES, _SPINDLE = "hal.axes", "hal.spindle"
+_PIN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.\-]*")
+_COLUMNS = 20  # that a stream of HAL has room for, one of them our own
+HERE = frozenset((35, 37))  # methods of CiA 402 that take the present place for home
+# What a homing method of CiA 402 needs of an axis' pins, by its number.
+NEEDS: Mapping[int, tuple[str, ...]] = {
+    1: ("limit_low", "index_enable"),
+    2: ("limit_high", "index_enable"),
+    17: ("limit_low",),
+    18: ("limit_high",),
+    3: ("home", "index_enable"),
+    5: ("home", "index_enable"),
+    19: ("home",),
+    21: ("home",),
+    33: ("index_enable",),
+    34: ("index_enable",),
+    **dict.fromkeys(HERE, ()),
+}
+
+_FIELDS = (
+    Field("file", Kind.TEXT),  # beside the machine file
+    Field("thread", Kind.TEXT, default="servo-thread"),
+    Field("period_ms", Kind.NUMBER, Unit.MILLISECONDS, 0.0002, 0.004, default=0.001),
+    Field("ahead_ms", Kind.NUMBER, Unit.MILLISECONDS, 0.01, 0.5, default=0.1),
+    Field("watchdog_ms", Kind.NUMBER, Unit.MILLISECONDS, 0.05, 1.0, default=0.25),
+    Field("machine_on", Kind.TEXT, default=""),  # bit in: the drives have power
+    Field("charge_pump", Kind.TEXT, default=""),  # bit in: changes every period while all is well
+)
+
+
+def _optional(*keys: str) -> tuple[Field, ...]:
+    return tuple(Field(key, Kind.TEXT, default="") for key in keys)
+
+
+_AXIS = (
+    Field("command", Kind.TEXT),
+    Field("feedback", Kind.TEXT),
+    *_optional("enable", "fault", "home", "limit_low", "limit_high", "index_enable"),
+)
+_TURNS = _optional(
+    *("speed", "speed_abs", "on", "forward", "reverse", "position", "velocity", "at_speed", "fault"),
+    *("index_enable", "position_mode", "in_position_mode"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class HalAxisPins:
+    """Pins of one axis; empty: it has none. Positions in mm (X a radius) or degrees.
+
+    ``command`` float in, ``feedback`` float out, ``enable`` bit in; ``fault``, ``home``, ``limit_low``,
+    ``limit_high`` bit out, true when it is so; ``index_enable`` bit I/O of the encoder that ``feedback``
+    counts.
+    """
+
+    command: str
+    feedback: str
+    enable: str = ""
+    fault: str = ""
+    home: str = ""
+    limit_low: str = ""
+    limit_high: str = ""
+    index_enable: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class HalSpindlePins:
+    """Pins of the spindle; empty: it has none.
+
+    ``speed`` (rpm, signed) and ``speed_abs`` float in; ``on``, ``forward``, ``reverse`` bit in. ``position``
+    (turns, rising with M03) and ``velocity`` (turns/s) float out; ``at_speed``, ``fault`` bit out.
+    ``index_enable`` bit I/O of the encoder that ``position`` counts: with it a thread is found again after a
+    restart. ``position_mode`` bit in and ``in_position_mode`` bit out change the drive over to C and tell it.
+    """
+
+    speed: str = ""
+    speed_abs: str = ""
+    on: str = ""
+    forward: str = ""
+    reverse: str = ""
+    position: str = ""
+    velocity: str = ""
+    at_speed: str = ""
+    fault: str = ""
+    index_enable: str = ""
+    position_mode: str = ""
+    in_position_mode: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class HalTable:
+    """A machine behind LinuxCNC's HAL. Times in seconds; ``ahead`` is what of setpoints HAL holds."""
+
+    file: str
+    thread: str
+    period: float
+    ahead: float
+    watchdog: float
+    machine_on: str
+    charge_pump: str
+    axes: Mapping[str, HalAxisPins]
+    spindle: HalSpindlePins
+
+
+def _read(file: FileReading) -> Iterator[Finding]:
+    axes, spindle = file.raw(_AXES), file.raw(_SPINDLE)
+    if isinstance(axes, dict):
+        yield from unknown_keys(axes, list(file.axes), _AXES)
+        axes = {name: entry for name, entry in axes.items() if name in file.axes}
+    yield from read_named({} if axes is None else axes, _AXIS, _AXES, file.values)
+    if spindle is None or isinstance(spindle, dict):
+        yield from read_table(spindle or {}, _TURNS, _SPINDLE, file.values)
+    else:
+        yield expected_table(_SPINDLE, spindle)
+
+
+def _table(file: FileReading) -> HalTable:
+    keys = {"period": "period_ms", "ahead": "ahead_ms", "watchdog": "watchdog_ms"}
+    axes = {name: file.values.model(HalAxisPins, f"{_AXES}.{name}") for name in file.names(_AXES)}
+    spindle = file.values.model(HalSpindlePins, _SPINDLE)
+    return file.values.model(HalTable, "hal", keys, axes=axes, spindle=spindle)
+
+
+def _rules(file: FileReading) -> Iterator[Finding]:
+    if "hal" not in file.tables:
+        return
+    yield from _names(file)
+    if not file.values.says("machine.backend", "hal"):
+        return
+    yield from _all_axes(file)
+    yield from _turns(file)
+    yield from _homes(file)
+    columns = 1 + 2 * len(file.names(_AXES))
+    if columns > _COLUMNS:
+        yield Finding(
+            _AXES, "", f"expected {(_COLUMNS - 1) // 2} axes or fewer: a stream of HAL takes no more"
+        )
+
+
+def _pins(file: FileReading) -> Iterator[tuple[str, str]]:
+    """Every pin that the file names, by its path."""
+    values = file.values
+    places = ["hal.machine_on", "hal.charge_pump"]
+    places += [f"{_AXES}.{axis}.{each.name}" for axis in file.names(_AXES) for each in fields(HalAxisPins)]
+    places += [f"{_SPINDLE}.{each.name}" for each in fields(HalSpindlePins)]
+    yield from ((path, values.text(path)) for path in places if values.has(path) and values.text(path))
+    yield from ((f"{path}.at", terminal) for path, terminal in file.terminals.items())
+    for name in file.names("io.analog"):
+        if values.has(f"io.analog.{name}.at"):
+            yield f"io.analog.{name}.at", values.text(f"io.analog.{name}.at")
+
+
+_DRIVEN = re.compile(
+    r"hal\.axes\.\w+\.(command|enable)|hal\.(machine_on|charge_pump)|io\.out\..*"
+    r"|hal\.spindle\.(speed|speed_abs|on|forward|reverse|position_mode)"
+)
+
+
+def _names(file: FileReading) -> Iterator[Finding]:
+    """Names that can be none of a pin, and pins that two things would drive."""
+    driven: dict[str, str] = {}
+    for path, pin in _pins(file):
+        ours = path.startswith("hal.") or file.values.says("machine.backend", "hal")
+        if ours and not _PIN.fullmatch(pin):
+            yield Finding(path, written(pin), 'expected the name of a HAL pin: "pid.x.command"')
+        elif ours and _DRIVEN.fullmatch(path.removesuffix(".at")):
+            first = driven.setdefault(pin, path)
+            if first != path:
+                yield Finding(path, written(pin), f"expected a pin of its own; {first} drives it")
+
+
+def _all_axes(file: FileReading) -> Iterator[Finding]:
+    values = file.values
+    for axis in file.axes:
+        on = axis != "C" or (values.has("axis.C.enabled") and values.flag("axis.C.enabled"))
+        there = axis in file.names(_AXES) or f"{_AXES}.{axis}" in values.wrong
+        if on and not there and not isinstance(file.raw(_AXES), str):
+            yield Finding(f"{_AXES}.{axis}", "", f"missing; axis {axis} needs {{ command, feedback }}")
+
+
+def _turns(file: FileReading) -> Iterator[Finding]:
+    """A spindle that HAL turns has to be told its speed, and to tell it."""
+    values = file.values
+    paths = {each.name: f"{_SPINDLE}.{each.name}" for each in fields(HalSpindlePins)}
+    if not values.has(*paths.values()):
+        return
+    said = {key: values.text(path) for key, path in paths.items()}
+    if values.says("spindle.driver", "hal") and not (said["speed"] or said["speed_abs"] or said["on"]):
+        yield Finding(f"{_SPINDLE}.speed", "", "missing; expected speed, speed_abs or on: what turns it")
+    if said["speed_abs"] and not (said["forward"] or said["on"]):
+        yield Finding(f"{_SPINDLE}.forward", "", "missing; a speed without a sign needs its direction")
+    told = said["position"] or said["velocity"] or said["at_speed"]
+    if values.says("spindle.driver", "hal") and not told:
+        yield Finding(
+            f"{_SPINDLE}.velocity", "", "missing; expected position, velocity or at_speed: who tells"
+        )
+    if values.has("spindle.encoder_ppr") and values.number("spindle.encoder_ppr") and not said["position"]:
+        yield Finding(
+            f"{_SPINDLE}.position", "", "missing; spindle.encoder_ppr says that there is an encoder"
+        )
+
+
+def _homes(file: FileReading) -> Iterator[Finding]:
+    """The pins that each axis needs to find home."""
+    values = file.values
+    for axis in file.names(_AXES):
+        path, pins = f"axis.{axis}.home.method", f"{_AXES}.{axis}"
+        if not values.has(path):
+            continue
+        method = values.whole(path)
+        if method not in NEEDS:
+            known = ", ".join(str(each) for each in sorted(NEEDS))
+            yield Finding(path, str(method), f"expected a method that this backend has: {known}")
+            continue
+        for key in NEEDS[method]:
+            if values.has(f"{pins}.{key}") and not values.text(f"{pins}.{key}"):
+                yield Finding(f"{pins}.{key}", "", f"missing; {path} = {method} looks for it")
+
+
+def _pin(file: FileReading, text: str) -> object:
+    """A pin's name, written as it is."""
+    return text.strip() if file.values.says("machine.backend", "hal") else None
+
+
+DRIVER = Driver(
+    tables=(DriverTable("hal", _FIELDS, _table, ("axes", "spindle"), _read, _rules),),
+    backend="hal",
+    spindle="hal",
+    terminal=_pin,
+)

@@ -1,0 +1,89 @@
+"""[hal]: the pins of LinuxCNC's HAL at which the control begins, and what is refused in them."""
+
+from __future__ import annotations
+
+import pytest
+
+import resources
+from app.compose.machine_files import parse_machine
+from core.table_schema import Finding, MachineFileError
+from drivers.hal.hal_table import HalTable
+
+HAL = resources.machine_file("gt75-hal.toml")
+
+
+def changed(*pairs: tuple[str, str]) -> str:
+    """The shipped file with texts replaced, which must be there."""
+    text = HAL
+    for old, new in pairs:
+        assert old in text
+        text = text.replace(old, new, 1)
+    return text
+
+
+def only_finding(text: str) -> Finding:
+    with pytest.raises(MachineFileError) as caught:
+        parse_machine(text, "test.toml")
+    (found,) = caught.value.errors
+    return found
+
+
+def test_shipped_table_in_model_units() -> None:
+    machine = parse_machine(HAL, "hal")
+    table = machine.hardware.table(HalTable)
+    assert table is not None
+    assert (table.period, table.ahead, table.watchdog) == (0.001, 0.1, 0.25)
+    assert table.axes["X"].command == "x-servo.in"
+    assert table.axes["Z"].home == ""
+    assert table.spindle.position == "spindle.position-fb"
+    assert machine.hardware.spindle_driver == "hal"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "path", "expected"),
+    [
+        ('command = "x-servo.in"', 'command = "x servo"', "hal.axes.X.command", "name of a HAL pin"),
+        ('at = "in-guard"', 'at = "in guard"', "io.in.guard.at", "name of a HAL pin"),
+        ('command = "z-servo.in"', 'command = "x-servo.in"', "hal.axes.Z.command", "hal.axes.X.command"),
+        ('enable = "z-motor.sel"', 'enable = "out-coolant"', "io.out.coolant.at", "hal.axes.Z.enable"),
+        ("[hal.axes.Z]", "[hal.axes.Y]", "hal.axes.Y", "unknown key"),
+        ('position = "spindle.position-fb"', "", "hal.spindle.position", "encoder_ppr"),
+        ('speed = "spindle-ramp.in" ', "", "hal.spindle.speed", "what turns it"),
+        ('speed = "spindle-ramp.in" ', 'speed_abs = "spindle-ramp.in" ', "hal.spindle.forward", "sign"),
+        ("[hal.spindle]\n", "[hal.spindel]\n", "hal.spindel", "did you mean"),
+        ('file = "gt75-hal.hal"', "", "hal.file", "missing"),
+    ],
+)
+def test_each_refusal_names_its_key(old: str, new: str, path: str, expected: str) -> None:
+    with pytest.raises(MachineFileError) as caught:
+        parse_machine(changed((old, new)), "test.toml")
+    found = [each for each in caught.value.errors if each.path == path]
+    assert found, caught.value.errors
+    assert expected in str(found[0])
+
+
+HOMED = "absolute = false\nhome = {{ method = {}, speed = 60, order = 1 }}"
+
+
+@pytest.mark.parametrize(
+    ("method", "pins", "path", "expected"),
+    [
+        (7, "", "axis.X.home.method", "expected a method that this backend has: 1, 2, 3"),
+        (17, "", "hal.axes.X.limit_low", "axis.X.home.method = 17 looks for it"),
+        (19, 'limit_low = "a"', "hal.axes.X.home", "axis.X.home.method = 19 looks for it"),
+        (3, 'home = "a"', "hal.axes.X.index_enable", "axis.X.home.method = 3 looks for it"),
+    ],
+)
+def test_homing_needs_its_pins(method: int, pins: str, path: str, expected: str) -> None:
+    text = changed(("absolute = true", HOMED.format(method)), ('"x-motor.sel"', f'"x-motor.sel"\n{pins}'))
+    found = only_finding(text)
+    assert (found.path, expected in str(found)) == (path, True), found
+
+
+def test_an_inverter_beside_hal_needs_no_pin_that_turns_the_spindle() -> None:
+    vfd = (
+        'vfd = { family = "delta-vfdb", port = "/dev/ttyUSB1", baud = 9600, parity = "N", stop = 2,'
+        " hz_per_rpm = 0.01667 }"
+    )
+    text = changed(('driver = "hal" ', f'{vfd}\ndriver = "vfd" '), ('speed = "spindle-ramp.in" ', ""))
+    assert parse_machine(text, "test.toml").hardware.spindle_driver == "vfd"
