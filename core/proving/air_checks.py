@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -91,9 +91,11 @@ class AirChecks:
         yield from self._in_air(move, cutter, part)
         self._cut_before = close
 
-    def mill(self, line: int, n: int, tool: int, *, cut: bool) -> None:
-        """A live tool has been fed."""
-        if cut:
+    def mill(self, line: int, n: int, tool: int, cut: Callable[[], bool]) -> None:
+        """A live tool has been fed; ``cut`` is asked of one that has cut nothing yet."""
+        if self._milled.get(tool, (line, n)) is None:
+            return
+        if cut():
             self._milled[tool] = None
         else:
             self._milled.setdefault(tool, (line, n))

@@ -18,6 +18,7 @@ from core.proving.tip_moves import QUICK, LiveStep, TipMove
 _ON_AXIS = 0.05  # mm; a tool that feeds along Z no further off it is a drill
 _SQUARE = 0.02  # mm of Z, in a plunge
 _GROOVE = 2.0  # mm; width of a grooving or parting tool that nobody has given
+_WIDEST = 8.0  # mm, of what a groove is plunged with
 _USUAL, _SMALLEST, _ALLOWANCE = 6.35, 1.0, 0.5  # mm; diameter of a drill that nobody has given
 _BAR = 5.0  # mm; the bar of a grooving or threading tool in a bore
 _SLIM = "VNMG160404"  # reaches into contours that a stouter insert would not: a doubt speaks for the program
@@ -27,6 +28,7 @@ _AT_FACE = 0.1  # mm
 _WIDE = 1.6  # widths; what feeds further along Z than that turns
 
 _OPENS = frozenset({ToolKind.DRILL, ToolKind.REAMER})
+GROOVERS = frozenset({ToolKind.GROOVING, ToolKind.PARTING})
 
 # Words of shop comments, the more telling first; as text, since few programs need one of them compiled.
 _WORDS = (
@@ -119,9 +121,33 @@ class Assumed:
         words = f"{self.words}, its diameter as {diameter / 25.4:.3f} in"
         return Assumed(replace(shape, diameter=diameter), words)
 
+    def widened(self, use: ToolUse, threads: Sequence[TipMove]) -> Assumed:
+        """A grooving or parting tool without a width gets one: see ``groove_width``."""
+        shape = self.shape
+        if shape is None or shape.kind not in GROOVERS or shape.width:
+            return self
+        width = groove_width(shape, use.moves, threads)
+        return Assumed(replace(shape, width=width), f"{self.words}, its width as {width / 25.4:.3f} in")
 
-def assumed_tool(use: ToolUse) -> Assumed:
-    """The shape to be taken for a tool that has none, and a sentence that says so."""
+
+def groove_width(shape: ToolShape, moves: Iterable[TipMove], threads: Iterable[TipMove]) -> float:
+    """mm, of an edge whose width nobody has said: 2, or as much as a thread that begins in its groove needs.
+
+    That is a thread that leads out of the part. Its edge is as wide as its lead at most, half to either side.
+    """
+    forward = shape.direction[0]  # the corner that is set lies there; the edge reaches back from it
+    plunged = {m.points[-1][0] for m in moves if not m.quick and _square(m)}
+    needed = [0.0]
+    for z0, lead in {(m.points[0][0], m.per_rev) for m in threads if m.points[-1][0] > m.points[0][0]}:
+        reaches = [(z - z0) * forward if forward else abs(z0 - z) for z in plunged]
+        needed += [each + lead / 2.0 for each in reaches if 0.0 <= each <= _WIDEST]
+    return max(_GROOVE, max(needed) * (1.0 if forward else 2.0))
+
+
+def assumed_tool(use: ToolUse, said: ToolShape | None = None) -> Assumed:
+    """The shape to be taken for a tool that has none, or for one that lacks a size, and a sentence of it."""
+    if said is not None:
+        return Assumed(said, f"T{use.number} is taken for {_names(said.kind, said)} (by its shape)")
     kind, why = _kind(use)
     if kind is None:
         return Assumed(None, f"T{use.number} is taken for a bar stop")
@@ -208,7 +234,7 @@ def _shape(kind: ToolKind, use: ToolUse) -> ToolShape:
 
 
 def _groover(kind: ToolKind, use: ToolUse, *, rear: bool) -> ToolShape:
-    width = edge_width(" ".join(use.comments)) or _GROOVE
+    width = edge_width(" ".join(use.comments))
     if kind is ToolKind.GROOVING and _plunges_outwards(use.moves):
         return ToolShape(kind, tip=3 if rear else 2, width=width, diameter=_BAR, rear=rear)
     return ToolShape(kind, tip=_edge(use, rear=rear), width=width, rear=rear)
@@ -273,9 +299,13 @@ def _away_from_chuck(moves: Iterable[TipMove]) -> bool:
     return sum(along) > _SQUARE and max(along) > 2.0 * max(-min(along), 0.0)
 
 
+def _square(move: TipMove) -> bool:
+    return abs(move.points[-1][0] - move.points[0][0]) <= _SQUARE
+
+
 def _plunges_outwards(moves: Iterable[TipMove]) -> bool:
     """Whether the cuts square to the axis lead away from it: a groove in a bore."""
-    square = [m for m in moves if not m.quick and abs(m.points[-1][0] - m.points[0][0]) <= _SQUARE]
+    square = [m for m in moves if not m.quick and _square(m)]
     return bool(square) and abs(square[0].points[-1][1]) > abs(square[0].points[0][1])
 
 
@@ -301,6 +331,6 @@ def _diameter(comment: str) -> float:
 def _names(kind: ToolKind, shape: ToolShape) -> str:
     name = {ToolKind.END_MILL: "an end mill"}.get(kind, f"a {kind.replace('-', ' ')}")
     size = f", {shape.diameter / 25.4:.3f} in" if shape.diameter and shape.turns_itself else ""
-    if shape.width and shape.width != _GROOVE:
+    if shape.width:
         size = f", {shape.width / 25.4:.3f} in wide"
     return f"{name}{'' if shape.turns_itself else ' tool'}{size}"

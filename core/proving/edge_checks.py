@@ -13,6 +13,7 @@ from core.part.cutter import Cutter, Side
 from core.part.stock import Stock
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.part.turned_part import Cut, TurnedPart
+from core.proving.assumed_tools import GROOVERS
 from core.proving.thread_checks import Found
 from core.proving.tip_moves import TipMove
 
@@ -28,7 +29,6 @@ _PAST = 12.7  # mm
 _NEAR = 1e-6
 _DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTRE_DRILL, ToolKind.REAMER, ToolKind.TAP})
 _INSERTS = frozenset({ToolKind.TURNING, ToolKind.BORING})
-_GROOVERS = frozenset({ToolKind.GROOVING, ToolKind.PARTING})
 
 
 @dataclass(slots=True)
@@ -65,7 +65,7 @@ class EdgeChecks:
         text = move.modal.length_text
         if shape.kind in _DRILLS and held and feed > _OF_DRILL * shape.diameter > 0.0:
             yield Found("chip-load", f"T{tool} feeds {shown} with a diameter of {text(shape.diameter)}.")
-        elif shape.kind in _GROOVERS and held and feed > _OF_WIDTH * shape.width > 0.0:
+        elif shape.kind in GROOVERS and held and feed > _OF_WIDTH * shape.width > 0.0:
             yield Found("chip-load", f"T{tool} feeds {shown} with an edge {text(shape.width)} wide.")
         elif shape.kind in _INSERTS and feed > _COARSE * shape.nose_radius > 0.0:
             yield Found(

@@ -14,6 +14,7 @@ from core.part.tool_shape import ToolShape
 from core.part.turned_part import Piece, TurnedPart
 from core.proving.mill_moves import MillMove, cone_height
 
+_DEEPER = 0.0254  # mm
 _BESIDE = 0.002  # mm: what a wider column may leave of a slope
 
 
@@ -60,10 +61,18 @@ class Milling:
     def cut(self, move: MillMove, shape: ToolShape) -> Taken:
         """Take off what a live tool sweeps."""
         self._follow()
-        length = shape.length or math.inf
-        radius, point = shape.diameter / 2.0, cone_height(shape)
-        work = self._part.mill_axial if move.axial else self._part.mill_radial
-        return work(move.path, radius, length=length, point=point)
+        part, (radius, length, point) = self._part, _sizes(shape)
+        if move.axial:
+            return part.mill_axial(move.path, radius, length, point)
+        return part.mill_radial(move.path, radius, length, point=point)
+
+    def touches(self, move: MillMove, shape: ToolShape) -> bool:
+        """Whether a live tool would meet metal if its end stood .001 in deeper: it goes along a face."""
+        self._follow()
+        part, (radius, length, point) = self._part, _sizes(shape)
+        if move.axial:
+            return part.meets_axial(move.path - [0.0, 0.0, _DEEPER], radius, length, point)
+        return part.meets_radial(move.path - [_DEEPER, 0.0, 0.0], radius, length, point=point)
 
     def fallen(self, piece: Piece) -> Piece:
         """A piece that has just been parted off, less what live tools had taken out of it before it fell."""
@@ -89,6 +98,11 @@ class Milling:
         everywhere = slice(0, len(field.middles))
         for start, end in _gaps(*in_order(turned.low[:, at], turned.high[:, at])):
             field.take(everywhere, slice(None), start[:, None], end[:, None])
+
+
+def _sizes(shape: ToolShape) -> tuple[float, float, float]:
+    """Radius, length that cuts, and height of the point."""
+    return shape.diameter / 2.0, shape.length or math.inf, cone_height(shape)
 
 
 def _gaps(low: FloatArray, high: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from core.part.polar_field import Taken
     from core.proving.mill_moves import MillMove
 
+Touches = Callable[[], bool]
+
 RAPID = 0.0254
 """mm of metal, in r and in Z, that a rapid may touch."""
 
@@ -152,12 +154,14 @@ class PartFindings:
         """What the moves of a tool, or of a whole program, should have cut."""
         self._tell("unmade-cut", line, n, text)
 
-    def milled(self, move: MillMove, met: Taken, shape: ToolShape, modal: Modal, tool: int) -> None:
-        """A live tool has moved."""
+    def milled(
+        self, move: MillMove, met: Taken, shape: ToolShape, modal: Modal, tool: int, *, touches: Touches
+    ) -> None:
+        """A live tool has moved; ``touches`` tells whether it has gone along metal where it has met none."""
         if not move.axial and self._over_axis(move):
             self._tell("through-part", move.line, move.n, f"T{tool} goes over the axis, through the part.")
         if not move.quick:
-            self._airs.mill(move.line, move.n, tool, cut=met.volume > 0.0)
+            self._airs.mill(move.line, move.n, tool, lambda: bool(met) or touches())
         if move.quick and met.volume > RAPID * math.pi * (shape.diameter / 2.0) ** 2:
             where = f"Z {modal.length_text(met.front)} … {modal.length_text(met.back)}"
             self._tell(

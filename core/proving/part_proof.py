@@ -20,6 +20,7 @@ from core.interpreter.actions import (
     WaitInput,
 )
 from core.interpreter.dialects import ReadProgram
+from core.interpreter.elementary_blocks import Kind
 from core.interpreter.job_setup import Setup
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
@@ -34,7 +35,7 @@ from core.part.tool_outline import outline
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import STEP, Piece, TurnedPart
 from core.proving.assumed_stock import assumed_stock
-from core.proving.assumed_tools import Assumed, ToolUse, assumed_tool, releases
+from core.proving.assumed_tools import GROOVERS, Assumed, ToolUse, assumed_tool, releases
 from core.proving.part_checks import STOCK, TOOL, Check
 from core.proving.part_findings import PartFindings
 from core.proving.program_timeline import MotionSpan, Part, RestSpan
@@ -193,11 +194,11 @@ class Tools:
         self._setting = setting
         self._gather(steps)
         self.assumed: dict[int, Assumed] = {
-            n: assumed_tool(use)
+            n: assumed_tool(use, setting.shapes.get(n))
             for n, use in self.uses.items()
-            if n not in setting.shapes and (use.moves or use.live) and (n or len(self.uses) == 1)
+            if self._lacks_something(n) and (use.moves or use.live) and (n or len(self.uses) == 1)
         }  # T0 is none, but where the program names none at all
-        self._give_drills_a_size()
+        self._give_sizes()
 
     def _gather(self, steps: Sequence[Step]) -> None:
         use, is_open, cut = self._use(0), False, False
@@ -232,17 +233,22 @@ class Tools:
     def _stop_to_come(use: ToolUse) -> bool:
         return use.pushes_bar or any("STOP" in text.upper() for text in use.comments)
 
-    def _give_drills_a_size(self) -> None:
-        """Drills of unknown diameter leave as much as the tools of the bore behind them need to get in."""
-        moves = [m for n, use in self.uses.items() if (s := self.shape(n)) and s.internal for m in use.moves]
+    def _lacks_something(self, number: int) -> bool:
+        said = self._setting.shapes.get(number)
+        return said is None or (said.kind in GROOVERS and not said.width)
+
+    def _give_sizes(self) -> None:
+        """Drills and grooves of unknown size leave as much as the tools behind them need to get in."""
+        bore = [m for n, use in self.uses.items() if (s := self.shape(n)) and s.internal for m in use.moves]
+        threads = [m for use in self.uses.values() for m in use.moves if m.kind is Kind.THREAD]
         for number, each in self.assumed.items():
-            self.assumed[number] = each.sized(moves)
+            self.assumed[number] = each.sized(bore).widened(self.uses[number], threads)
 
     def shape(self, number: int) -> ToolShape | None:
         """The tool's shape; None for a bar stop, and where nothing is known that would cut."""
-        if number in self._setting.shapes:
-            return self._setting.shapes[number]
-        return self.assumed[number].shape if number in self.assumed else None
+        if number in self.assumed:
+            return self.assumed[number].shape
+        return self._setting.shapes.get(number)
 
     def described(self, number: int) -> bool:
         """Whether somebody has said what it looks like."""
@@ -380,8 +386,8 @@ class Making:
     def _not_said(self, check: Check) -> tuple[str, ...]:
         """What a finding of this check rests on and nobody has described, at the tool in work."""
         stock = (STOCK,) if STOCK in check.rests_on and not self._stock_said else ()
-        described = TOOL not in check.rests_on or self._tools.described(self._tool)
-        return stock if described else (*stock, f"T{self._tool}")
+        assumed = TOOL in check.rests_on and self._tool in self._tools.assumed
+        return (*stock, f"T{self._tool}") if assumed else stock
 
     def copy(self) -> Making:
         """The same once more, to be gone on with later; what never changes is shared."""
@@ -436,8 +442,11 @@ class Making:
         if self.milling is None:
             self.milling = Milling(self.part)
         self._milled = True
-        self.met = self.milling.cut(move, shape)
-        self.findings.milled(move, self.met, shape, step.block.modal, self._tool)
+        milling = self.milling
+        self.met = milling.cut(move, shape)
+        self.findings.milled(
+            move, self.met, shape, step.block.modal, self._tool, touches=lambda: milling.touches(move, shape)
+        )
 
     def mill_move(self, step: LiveStep) -> MillMove | None:
         """The way of a live tool in the part's frame; None where nothing is known that would cut."""

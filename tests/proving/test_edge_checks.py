@@ -23,7 +23,8 @@ DRILL = ToolShape(ToolKind.DRILL, diameter=6.0, point=118.0, length=60.0)
 LEFT_DRILL = ToolShape(ToolKind.DRILL, Hand.LEFT, diameter=6.0, point=118.0, length=60.0)
 REAR_TOOL = ToolShape(ToolKind.GROOVING, tip=2, width=2.0, stick_out=30.0, rear=True)
 V = ToolShape(ToolKind.THREADING, tip=8, point=60.0)
-SHAPES = {7: REAR_TOOL, 8: V, 1: RIGHT, 2: BLADE, 3: DRILL, 4: BORER, 5: LEFT, 6: LEFT_DRILL}
+MILL = ToolShape(ToolKind.END_MILL, tip=7, diameter=6.35)
+SHAPES = {9: MILL, 7: REAR_TOOL, 8: V, 1: RIGHT, 2: BLADE, 3: DRILL, 4: BORER, 5: LEFT, 6: LEFT_DRILL}
 ROD = bar(25.4, 0.0, -60.0)
 PIPE = tube(38.1, 20.0, 0.0, -60.0)
 
@@ -56,6 +57,8 @@ SHAFT = "T1\nX[.6]Z[.05]\nX[.2]\nG95F[.004]Z[{z}]\nX[.6]\nG94F[300]Z[.1]\n"
 SHAFT += "T2\nZ[-.9]X[.6]\nG95F[.002]X[{r}]\nG94F[300]X[.6]"
 GROOVE = "T2\nX[.6]Z[{z}]\nG95F[.004]X[.4]\nG94F[300]X[.6]"
 THREAD = "M05\nM03S600\nT8\nX[.3]Z[.2]\nG34Z[{z}]I[.01]K[.05]\nX[.4]"
+FACE_MILL = "T9\nX[-.3]Z[.1]\nM05\nM19S60\nG04F3\nM27\nG94F[20]\nZ[{z}]\n"
+FACE_MILL += "(~PLXC)\n(X[.2]Y0)\n(X[-.2]Y0)\n(END)\nM28\nM05"
 LONG = bar(25.4, 0.0, -80.0)
 
 CASES = {
@@ -95,6 +98,8 @@ CASES = {
         "T1\nX[.6]Z[.05]\nX[.51]\nZ[-.5]\nM00\nX[.6]\nZ[.05]\nX[.4]\nG95F[.004]Z[-.3]\nX[.6]", ROD, 6,
     ),
     "unmade-cut, a thread": (THREAD.format(z=".5"), THREAD.format(z="-.5"), bar(12.7, 0.0, -60.0), 7),
+    # the face itself is where a tool is set to, and may be gone along
+    "unmade-cut of a live tool": (FACE_MILL.format(z=".005"), FACE_MILL.format(z="0"), ROD, 10),
     "unmade-cut, out of the part": (BACKWARDS.format(z=".4"), BACKWARDS.format(z="-.4"), ROD, 10),
     "unmade-cut, never fed": (
         "T2\nX[.6]Z[.05]\nX[.51]Z[-.2]\nX[.6]", "T2\nX[.6]Z[.05]\nX[.51]Z[-.2]\nG95F[.004]X[.45]\nX[.6]",

@@ -3,22 +3,34 @@ writing."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from app.compose.known_part import known_part
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
+from core.interpreter.elementary_blocks import Kind
 from core.interpreter.job_setup import ToolOffset
+from core.interpreter.modal_state import Modal
 from core.language.source import Source
 from core.part.stock import Stock, bar, tube
 from core.part.tool_shape import Hand, ToolKind, ToolShape
-from core.proving.assumed_tools import tap_size
+from core.proving.assumed_tools import groove_width, tap_size
 from core.proving.part_proof import PartSetting, prove_with_part
 from core.proving.thread_checks import Drives
+from core.proving.tip_moves import TipMove
 from tests.proving.test_part_proof import WAYS, text
 
 TAP = ToolShape(ToolKind.TAP, diameter=6.35, pitch=1.27)
 V = ToolShape(ToolKind.THREADING, tip=8, point=60.0, pitch=1.27)
+
+
+def move(start: tuple[float, float], end: tuple[float, float], kind: Kind = Kind.THREAD) -> TipMove:
+    """One of 1 mm a turn."""
+    return TipMove(1, 1, kind, (start, end), 10.0, False, 1.0, 600.0, Modal())
+
+
 SHAPES = {4: TAP, 5: V}
 ROD = bar(12.7, 0.0, -60.0)
 DRILLED = tube(25.4, 5.1, 0.0, -60.0)
@@ -72,6 +84,39 @@ def test_a_check_finds_what_it_looks_for_and_spares_its_twin(name: str, metric: 
     shown = findings(text(double[0], metric=metric, diameter=diameter), stock)
     assert (name.split(maxsplit=1)[0].rstrip(","), line) in shown
     assert findings(text(double[1], metric=metric, diameter=diameter), stock) == []
+
+
+LEFT_HAND = "M05\nM03S600\nT6\nX[.3]Z[-.5]\nG95F[.002]X[.19]\nG94F[300]X[.3]\n"
+LEFT_HAND += "T5\nX[.3]Z[-.43]\nX[.26]\nG33X[.222]Z[.2]I[.02]K[.05]\nG94F[300]X[.3]\nZ[1]"
+
+
+@pytest.mark.parametrize(("metric", "diameter"), WAYS)
+def test_a_left_hand_thread_tells_how_wide_the_groove_is_that_it_begins_in(
+    metric: bool, diameter: bool
+) -> None:
+    """The groove reaches from Z-.5 2 mm back, to Z-.421, the flanks of the thread at Z-.43 to Z-.414."""
+    program = text(
+        LEFT_HAND.replace("I[.02]", "I[.04]") if diameter else LEFT_HAND, metric=metric, diameter=diameter
+    )
+    groover = ToolShape(ToolKind.GROOVING, tip=3, stick_out=30.0)
+    wide = replace(groover, width=2.0)
+    assert ("rapid-into-stock", 12) in findings(program, shapes={**SHAPES, 6: wide})
+    assert findings(program, shapes={**SHAPES, 6: groover}) == []
+    assert findings(program) == []  # nobody has described it at all
+
+
+def test_a_groove_of_unknown_width_is_two_millimetres_or_what_its_thread_needs() -> None:
+    def width(z0: float, z1: float, tip: int = 3) -> float:
+        plunge = move((-10.0, 8.0), (-10.0, 5.0), Kind.FEED)
+        return groove_width(ToolShape(ToolKind.GROOVING, tip=tip), [plunge], [move((z0, 6.0), (z1, 6.0))])
+
+    assert width(-8.0, 5.0) == pytest.approx(2.5)  # and half the lead of 1 mm
+    assert width(-8.0, -9.0) == 2.0  # of a thread towards the chuck its end tells nothing
+    assert width(-11.0, 5.0) == 2.0  # before the corner that is set
+    assert width(-11.0, 5.0, tip=4) == 2.0
+    assert width(-13.0, 5.0, tip=4) == pytest.approx(3.5)
+    assert width(-8.0, 5.0, tip=8) == pytest.approx(5.0)  # set at its middle
+    assert width(-1.0, 5.0) == 2.0  # no groove is as wide as that
 
 
 def test_a_lead_of_several_pitches_is_that_of_several_starts() -> None:
