@@ -36,10 +36,11 @@ class _HtmlPages:
     """One page for a browser."""
 
     def __init__(self, path: Path) -> None:
+        from app.desk.translation import ENGLISH
         from app.report.html_tables import page_head
 
         self._file = path.open("w", encoding="utf-8", errors="backslashreplace")
-        self._file.write(page_head(_TITLE, _now()))
+        self._file.write(page_head(_TITLE, _now(), ENGLISH))
 
     def add(self, _name: str, part: str) -> None:
         self._file.write(part)

@@ -13,15 +13,27 @@ from functools import lru_cache
 Translate = Callable[[str], str]
 
 
+ENGLISH = "en"
+
+
 class _Speaker:
-    """Whoever translates now; English needs nobody."""
+    """Whoever translates now, and into which language; English needs nobody."""
 
     translate: Translate | None = None
+    language = ENGLISH
 
 
-def speak(translate: Translate | None) -> None:
-    """From now on texts go through ``translate``; None: they stay English."""
-    _Speaker.translate = translate
+def speak(translate: Translate | None, language: str = ENGLISH) -> None:
+    """From now on texts go through ``translate``; None: they stay English.
+
+    ``language`` is its code, as ISO 639-1 has it.
+    """
+    _Speaker.translate, _Speaker.language = translate, language
+
+
+def spoken() -> str:
+    """The language that texts are shown in now."""
+    return _Speaker.language
 
 
 def tr(text: str) -> str:

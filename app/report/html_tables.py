@@ -13,10 +13,10 @@ _NOTHING_LOADED = "default-src 'none'; style-src 'unsafe-inline'"
 PAGE_END = "</body></html>\n"
 
 
-def page_head(title: str, made: str) -> str:
-    """What stands before the first section; ``made`` is the date."""
+def page_head(title: str, made: str, language: str) -> str:
+    """What stands before the first section; ``made`` is the date, ``language`` as ISO 639-1 has it."""
     return (
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+        f'<!DOCTYPE html>\n<html lang="{language}"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width">'
         f'<meta http-equiv="Content-Security-Policy" content="{_NOTHING_LOADED}">'
         f"<title>{escape(title)}</title><style>{STYLE}</style></head><body>{headline(title, made)}\n"

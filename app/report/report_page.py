@@ -164,7 +164,7 @@ class ProgramReport:
         time = self._record.times.get(number)
         seconds = (time.cutting, time.rapid, time.rest) if time is not None else (0.0, 0.0, 0.0)
         name = f"T{number}" if number else "no tool"
-        said = "" if number in self._record.setting.shapes or shape is None else " (assumed)"
+        said = "" if shape == self._record.setting.shapes.get(number) else " (assumed)"
         words = escape(self._shape(shape) + said)
         return name, part_drawings.tool_picture(shape), words, *(f"{each:.1f}" for each in seconds)
 

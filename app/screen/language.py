@@ -7,27 +7,14 @@ from importlib.resources import files
 
 from PySide6.QtCore import QTranslator
 
-from app.desk.translation import Catalogue, speak
+from app.desk.translation import ENGLISH, Catalogue, speak
 
 CONTEXT = "turndesk"
-ENGLISH = "en"
-
-
-class _Spoken:
-    """The language that texts are shown in now; one for the process, as ``words.tr`` is."""
-
-    language = ENGLISH
 
 
 def speak_in(language: str) -> None:
     """From now on texts are shown in this language. Raises FileNotFoundError for one without a catalogue."""
-    speak(None if language == ENGLISH else catalogue(language).translate)
-    _Spoken.language = language
-
-
-def spoken() -> str:
-    """The language that texts are shown in now."""
-    return _Spoken.language
+    speak(None if language == ENGLISH else catalogue(language).translate, language)
 
 
 @cache

@@ -18,11 +18,11 @@ from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk.desk import BY_SCREEN, Desk
 from app.desk.prompt_line import MOVING, UNDER_WAY
-from app.desk.translation import tr
+from app.desk.translation import spoken, tr
 from app.screen.event_times import EventTimes
 from app.screen.keyboard import Keyboard, key_of, letter_of
 from app.screen.keys import ANSWER, PALMS, REPEATING, STOPPING, TYPED_AGAIN, name_of, typed_of
-from app.screen.language import speak_in, spoken
+from app.screen.language import speak_in
 from app.screen.look import Look, dress
 from app.screen.page_table import AUTOMATIC
 from app.screen.panel import FingerPanel

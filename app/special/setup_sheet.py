@@ -23,7 +23,7 @@ _MM_PER_INCH = 25.4
 
 @dataclass(frozen=True, slots=True)
 class SheetTool:
-    """One station; ``assumed``: nobody has described its shape. Without ``offset`` it was never set."""
+    """One station; ``assumed``: nobody has described its shape whole. Without ``offset`` it was never set."""
 
     number: int
     shape: ToolShape | None
@@ -132,7 +132,7 @@ def setup_sheet(
             SheetTool(
                 n,
                 shapes.get(n),
-                n not in setting.shapes,
+                setting.shapes.get(n) != shapes.get(n),
                 setup.tools.get(n),
                 record.times.get(n, ToolTime()),
             )

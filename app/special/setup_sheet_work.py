@@ -9,7 +9,7 @@ from pathlib import Path
 
 from app.desk.latest import Request
 from app.desk.sheet import Row
-from app.desk.translation import tr
+from app.desk.translation import spoken, tr
 from app.programs.whole_file import FileError, settle, write_out
 from app.report.html_tables import PAGE_END, clock, headline, page_head, text_hash
 from app.report.pdf_file import Paper, pdf_of
@@ -92,7 +92,7 @@ def write(page: tuple[str, str, str], program: str, folder: Path, paper: Paper) 
         pdf = pdf_of(headline(title, made) + body, title, paper)
     except OSError as error:
         raise FileError(f"{folder} CANNOT BE WRITTEN: {error.strerror}") from error
-    html = page_head(title, made) + body + PAGE_END
+    html = page_head(title, made, spoken()) + body + PAGE_END
     write_out(folder / f"{name}.html", html.encode("utf-8", "backslashreplace"))
     write_out(folder / f"{name}.pdf", pdf)
     settle(folder)

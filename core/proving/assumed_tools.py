@@ -146,12 +146,10 @@ def groove_width(shape: ToolShape, moves: Iterable[TipMove], threads: Iterable[T
 
 def assumed_tool(use: ToolUse, said: ToolShape | None = None) -> Assumed:
     """The shape to be taken for a tool that has none, or for one that lacks a size, and a sentence of it."""
-    if said is not None:
-        return Assumed(said, f"T{use.number} is taken for {_names(said.kind, said)} (by its shape)")
-    kind, why = _kind(use)
+    kind, why = (said.kind, "by its shape") if said is not None else _kind(use)
     if kind is None:
         return Assumed(None, f"T{use.number} is taken for a bar stop")
-    shape = _shape(kind, use)
+    shape = said or _shape(kind, use)
     return Assumed(shape, f"T{use.number} is taken for {_names(kind, shape)} ({why})")
 
 

@@ -11,8 +11,10 @@ from app.compose.journal import Journal
 from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
 from app.desk.desk import Desk
+from app.desk.translation import spoken
 from app.programs.folder_chooser import Stick
 from app.report.pdf_file import Paper
+from app.screen.language import speak_in
 from app.special.setup_sheet_function import MOST_NOTES, SetupSheetFunction
 from app.special.special_view import SpecialPage
 from tests.pdf_text import Pdf
@@ -158,6 +160,24 @@ def test_without_a_program_there_is_no_sheet(hands: Hands) -> None:
         assert hands.prompt().startswith("CHOOSE A PROGRAM FIRST")
     assert function.entry is None
     assert function.places == ()
+
+
+def test_the_page_says_its_language(hands: Hands, tmp_path: Path) -> None:
+    _, function = opened(hands)
+    function.plugged = lambda: (Stick("BLUE", tmp_path, 10**9),)
+    hands.desk.settings.choose("language", "es")
+    try:
+        hands.sees(lambda: spoken() == "es")
+        hands.key(Key.Key_F6)
+        hands.sees(lambda: bool(function.places))
+        hands.key(Key.Key_Return)
+        hands.sees((tmp_path / "bushing.nc-setup.pdf").exists)
+        hands.sees(lambda: not function.busy)
+    finally:
+        speak_in("en")
+    page = (tmp_path / "bushing.nc-setup.html").read_text(encoding="utf-8")
+    assert '<html lang="es">' in page
+    assert "Hoja de preparación" in page
 
 
 def test_there_are_no_more_notes_than_can_be_read(hands: Hands) -> None:
