@@ -418,6 +418,7 @@ class MachinePorts:
     lock: SpindleHold | None = None  # None: C has a drive of its own, or needs no change-over
     blocks: BlockSink | None = None  # a controller that plans by itself: it takes no setpoints
     trips: Tripping | None = None  # None: nothing switches off by itself when the control is silent
+    untraced: str = ""  # why the drives do not follow every setpoint, but only the end of each move
     samples: SampleSource | None = None  # None: the scope has what the axes say at each tick
     # What is not known now. The ports go on to tell the last that was known of it, and nobody may take that
     # for the present: a spindle of which nothing is heard may turn. Known again once its wire tells it anew.

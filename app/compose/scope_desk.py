@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from app.desk.data_folder import RECORDS, data_folder
 from app.desk.desk import Desk
+from app.jog.drive_test_model import DriveTests
 from app.scope.analyses import Analyses
 from app.scope.record_shelf import RecordShelf
 from app.scope.scope_curves import LiveSamples
@@ -52,3 +53,5 @@ def give_scope(desk: Desk, live: LiveSamples | None = None) -> None:
     desk.open_record = scope.open_alarm
     slides = {axis.name: axis for axis in desk.lathe.axes} if desk.lathe is not None else {}
     desk.attach(Analyses(scope, slides))
+    if desk.lathe is not None:
+        desk.attach(DriveTests(desk, scope, desk.lathe))

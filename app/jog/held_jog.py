@@ -60,7 +60,12 @@ class HeldJog:
             self.stop(tr("TWO AT ONCE MOVE NOTHING: LET BOTH GO, THEN PRESS ONE"))
         elif why := self.barred():
             self.say(why)
-        elif self.speeds.step != CONTINUOUS:
+        else:
+            self._go(source, axis, sign, rapid)
+
+    def _go(self, source: str, axis: str, sign: int, rapid: bool) -> None:
+        """What one press alone begins."""
+        if self.speeds.step != CONTINUOUS:
             self._step(axis, sign, rapid)
         else:
             self._begin(source, axis, sign, rapid)
@@ -75,11 +80,14 @@ class HeldJog:
         self.post(JogStep(axis, distance, self.speeds.step_speed(axis)))
 
     def _begin(self, source: str, axis: str, sign: int, rapid: bool) -> None:
+        velocity = sign * self.speeds.velocity(axis, self.mode, rapid=rapid)
+        self._hold(source, axis, velocity, rapid, Jog(axis, velocity, self.lease))
+
+    def _hold(self, source: str, axis: str, velocity: float, rapid: bool, command: Command) -> None:
         self.clear()
         now = self.clock()
-        velocity = sign * self.speeds.velocity(axis, self.mode, rapid=rapid)
         self.held = Held(source, axis, velocity, rapid, now, now, now)
-        self.post(Jog(axis, velocity, self.lease))
+        self.post(command)
 
     def repeated(self, source: str) -> None:
         """A held key repeats by itself: it is still down."""
@@ -145,4 +153,7 @@ class HeldJog:
     def _renew(self, held: Held, now: float) -> None:
         if now - held.posted >= self.lease / RENEWED:
             held.posted = now
-            self.post(Jog(held.axis, held.velocity, self.lease))
+            self.post(self._renewal(held))
+
+    def _renewal(self, held: Held, /) -> Command:
+        return Jog(held.axis, held.velocity, self.lease)

@@ -7,40 +7,19 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QPolygonF, QWheelEvent
+from PySide6.QtCore import QPointF, QRectF
+from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
+from app.jog.jog_cross_view import JogCross, draw_middle
 from app.jog.jog_homing import AxisState
 from app.jog.jog_model import JogModel
-from app.jog.jog_speeds import CONTINUOUS, JogDirection, rapid_word, speed_words, step_words
+from app.jog.jog_speeds import CONTINUOUS, rapid_word, speed_words, step_words
 from app.offsets.offset_values import Mode
-from app.screen.look import CENTRE, Look, Painter, put
-from app.screen.panel import Control, FingerPanel, Shown, pressed
+from app.screen.look import CENTRE, Look, Painter
+from app.screen.panel import Control, Shown, pressed
 from core.executor.snapshot import Snapshot
-
-# --- arrows and the middle ----------------------------------------------------------------------------
-
-
-def draw_arrow(painter: Painter, box: QRectF, to: tuple[int, int], colour: str) -> None:
-    """At the side of its target to which it points."""
-    size = 0.16 * min(box.width(), box.height())
-    centre = box.center() + QPointF(to[0] * 0.30 * box.width(), to[1] * 0.28 * box.height())
-    forward, side = QPointF(to[0] * size, to[1] * size), QPointF(to[1] * size, to[0] * size)
-    painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(painter.look.colour(colour))
-    painter.drawPolygon(QPolygonF([centre + forward, centre - forward + side, centre - forward - side]))
-
-
-def draw_middle(painter: Painter, box: QRectF, words: tuple[str, str, str]) -> None:
-    """What an arrow does now: its kind, the figure, the unit."""
-    kind, figure, unit = words
-    high, edge = 2.2 * painter.look.u, 0.1 * box.height()
-    painter.write(QRectF(box.x(), box.y() + edge, box.width(), high), kind, 1.6, "soft", at=CENTRE)
-    put(painter, QRectF(box.x(), box.bottom() - edge - high, box.width(), high), CENTRE, unit)
-    painter.write(box, figure, 3.2, "text", at=CENTRE, margin=1.0)
-
 
 # --- rows of tiles ------------------------------------------------------------------------------------
 
@@ -159,14 +138,14 @@ class Dial:
 ROW = 5.6  # units: a row of tiles
 
 
-class JogPad(FingerPanel):
+class JogPad(JogCross):
     """Draws the model; every target is as large as the room allows."""
 
     _shown: Shown[object] = Shown(None)
     _known: Shown[Mapping[str, AxisState]] = Shown({})
 
     def __init__(self, look: Look, model: JogModel, parent: QWidget) -> None:
-        super().__init__(look, parent)
+        super().__init__(look, model.hold, model.directions, model.finger, parent)
         self._model = model
         self._dial = Dial(model.turn_wheel)
 
@@ -198,7 +177,8 @@ class JogPad(FingerPanel):
         foot = QRectF(room.x(), room.bottom() - high + 0.6 * u, room.width(), high - 0.6 * u)
         self._homing(painter, foot)
         top = room.y() + rows * high
-        self._cross(painter, QRectF(room.x(), top, room.width(), foot.y() - top - 0.6 * u))
+        middle = self.cross(painter, QRectF(room.x(), top, room.width(), foot.y() - top - 0.6 * u))
+        self._middle(painter, middle)
 
     def _steps(self, painter: Painter, row: QRectF) -> None:
         model = self._model
@@ -254,49 +234,6 @@ class JogPad(FingerPanel):
     def _tiles(self, painter: Painter, row: QRectF, tiles: Tiles) -> None:
         for box, press in draw_tiles(painter, row, tiles):
             self.controls.append(pressed(box, press))
-
-    def _cross(self, painter: Painter, room: QRectF) -> None:
-        u = self.look.u
-        directions = self._model.directions
-        columns = 1 + max(2, *(each.column for each in directions))
-        wide, high = room.width() / columns, room.height() / 3
-        for each in directions:
-            x, y = room.x() + each.column * wide, room.y() + each.row * high
-            self._target(painter, QRectF(x, y, wide - 0.8 * u, high - 0.6 * u), each)
-        middle = QRectF(room.x() + wide, room.y() + high, wide - 0.8 * u, high - 0.6 * u)
-        self._middle(painter, middle)
-
-    def _target(self, painter: Painter, box: QRectF, way: JogDirection) -> None:
-        u, held = self.look.u, self._model.hold.held
-        axis, sign, arrow = way.axis, way.sign, way.arrow
-        moving = held is not None and held.axis == axis and held.velocity * sign > 0
-        painter.box(
-            box.adjusted(0.1 * u, 0.1 * u, -0.1 * u, -0.1 * u),
-            "run" if moving else "accent",
-            0.24,
-            "run" if moving else "key",
-        )
-        if arrow != (0, 0):
-            draw_arrow(painter, box, arrow, "on_state" if moving else "accent")
-        aside = box.translated(-arrow[0] * 0.16 * box.width(), -arrow[1] * 0.16 * box.height())
-        name = f"{axis}{'+' if sign > 0 else '−'}"
-        painter.write(aside, name, 3.4, "on_state" if moving else "text", at=CENTRE)
-        corner = box.adjusted(0.8 * u, 0.3 * u, 0, 2.4 * u - box.height())
-        painter.write(corner, way.label, 1.5, "on_state" if moving else "soft")
-        self.controls.append(self._holder(box, axis, sign))
-
-    def _holder(self, box: QRectF, axis: str, sign: int) -> Control:
-        """Held from the touch until the finger comes up, or leaves the target."""
-        hold = self._model.hold
-        source = f"finger {axis}{sign}"
-
-        def along(at: QPointF) -> None:
-            if not box.contains(at):
-                hold.release(source)
-
-        return Control(
-            box, lambda _at: self._model.finger(source, axis, sign), along, lambda: hold.release(source)
-        )
 
     def _middle(self, painter: Painter, box: QRectF) -> None:
         """What an arrow does now, in figures."""

@@ -6,28 +6,26 @@ from functools import partial
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeyEvent, QResizeEvent
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.translation import tr
+from app.jog.held_keys_view import CHORDS, HeldKeysPage
 from app.jog.jog_model import JogModel
 from app.jog.jog_pad_view import JogPad
 from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z
 from app.jog.tool_setting_view import ToolPanel
 from app.screen import page_table
 from app.screen.entry_panel import EntryPanel, EntryWords, KeyPad
-from app.screen.page_base import Host, KeyActions, ModelPage
+from app.screen.page_base import Host, KeyActions
 from core.executor.snapshot import Snapshot
 
 Key = Qt.Key
-CHORDS = (
-    Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
-)
 WIDE, ASKED = 0.46, 12.0  # share of the pad, height of the question in units
 
 
-class JogPage(ModelPage):
+class JogPage(HeldKeysPage):
     """What is held is renewed from ``refresh``: a screen that stands still moves nothing for longer."""
 
     NAME = page_table.JOG
@@ -47,66 +45,21 @@ class JogPage(ModelPage):
     model: JogModel
 
     def __init__(self, host: Host, parent: QWidget) -> None:
-        super().__init__(host, parent)
         machine = host.desk.lathe
         if machine is None:
             raise RuntimeError("the desk was put together without a machine to move by hand")
-        self.model = JogModel(host.desk, machine)
-        self._arrows = {
-            Key.__members__[f"Key_{each.key}"]: (each.axis, each.sign) for each in self.model.directions
-        }
-        self.pad = JogPad(self.look, self.model, self)
+        super().__init__(host, JogModel(host.desk, machine), parent)
+        self.pad: JogPad = JogPad(self.look, self.model, self)
         self.numbers = KeyPad(self.look, self.touched, own=("L", tr("ALONE")), parent=self)
         self.tool = ToolPanel(self.look, self.model, self)
         self.asked = EntryPanel(self.look, self)
-        self._was_active = False  # the window, before anything was held
 
-    # --- keys ----------------------------------------------------------------------------------------
-
-    def key_down(self, event: QKeyEvent) -> bool:
-        """The arrows are this page's; any other key ends what is held and then means what it means."""
-        key, model = Key(event.key()), self.model
-        if key not in self._arrows:
-            if not event.isAutoRepeat():
-                model.hold.other_key()
-            return self._home(event)
-        if event.isAutoRepeat():
-            model.hold.repeated(key.name)
-        elif event.modifiers() & CHORDS:
-            model.hold.other_key()
-        elif event.modifiers() & Qt.KeyboardModifier.KeypadModifier:
-            model.hold.other_key()
-            self.desk.say(tr("NUM LOCK IS OFF: THE ARROWS OF THE NUMBER PAD MOVE NOTHING"))
-        else:
-            axis, sign = self._arrows[key]
-            rapid = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
-            model.hold.press(key.name, axis, sign, rapid=rapid)
-        return True
-
-    def _home(self, event: QKeyEvent) -> bool:
+    def other_key(self, event: QKeyEvent) -> bool:
+        """Home asks, and again homes."""
         if event.key() != Key.Key_Home or event.isAutoRepeat() or event.modifiers() & CHORDS:
             return False
         self.model.home_key()
         return True
-
-    def key_up(self, event: QKeyEvent) -> None:
-        """An arrow comes up, or the Shift of a rapid. Releases that a repeating key makes are none."""
-        if event.isAutoRepeat():
-            return
-        key = Key(event.key())
-        if key in self._arrows:
-            self.model.hold.release(key.name)
-        elif key == Key.Key_Shift:
-            self.model.hold.shift_released()
-
-    def pressed(self) -> None:
-        """Whoever reaches for something else does not look at the slide."""
-        self.model.hold.other_key()
-
-    def let_go(self) -> None:
-        """The keyboard or the window is gone."""
-        self.pad.let_go()
-        self.model.let_go()
 
     def key_actions(self) -> KeyActions:
         """Steps, speeds, readout, touching off, undo."""
@@ -155,22 +108,6 @@ class JogPage(ModelPage):
             else tr("T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo")
         )
         self.asked.asked = EntryWords("", tool.question(), tool.text, tool.old_to_new(), foot)
-
-    def _has_keyboard(self) -> bool:
-        """Whether keys still come here: no dialog, no menu, no other window in front.
-
-        A screen without a window manager never becomes active; there only the loss of it counts.
-        """
-        active = self.window().isActiveWindow()
-        if not self.model.active:
-            self._was_active = active
-        covered = QApplication.activeModalWidget() or QApplication.activePopupWidget()
-        return covered is None and (active or not self._was_active)
-
-    def let_go_if_held(self) -> None:
-        """Something lies in front that would take the release."""
-        if self.model.active:
-            self.let_go()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Pad at the left; tool over question at the right."""

@@ -21,6 +21,13 @@ from app.desk.sheet import STEPS, Row, Sheet
 from app.desk.translation import tr
 from app.scope.axis_response import AxisResponse, last_move, response_drawing, response_sheet
 from app.scope.drawing import Drawing
+from app.scope.drive_test_figures import (
+    DriveTestFigures,
+    drive_test_figures,
+    figures_sheet,
+    path_in,
+    shown_words,
+)
 from app.scope.scope_model import Scope
 from core.machine.machine_model import Axis
 from core.records.analysis_errors import AnalysisError
@@ -57,6 +64,7 @@ class Found:
     speeds: tuple[FloatArray, ...] = ()  # of the passes, rpm
     ball: BallBar | None = None
     response: AxisResponse | None = None
+    test: DriveTestFigures | None = None  # the record is one of a drive test
     arc: tuple[int, int, int] = (0, 0, 0)  # its number, of how many, its line
     vmax: float = 0.0  # of the slide along a thread, mm/s
     axes: tuple[str, str] = ("Z", "X")
@@ -162,6 +170,8 @@ class Analyses:
             return _thread_drawing(found)
         if found.response is not None:
             return response_drawing(found.response)
+        if found.test is not None:
+            return response_drawing(found.test.move)
         return _ball_drawing(found, self.magnified) if found.ball is not None else Drawing()
 
     def sheet(self) -> Sheet:
@@ -176,9 +186,10 @@ class Analyses:
             return _thread_sheet(title, found.thread, found.vmax, metric, self.marked)
         if found.ball is not None:
             return _ball_sheet(title, found.ball, found, metric)
-        if found.response is not None:
-            return response_sheet(title, found.response, metric)
-        return Sheet(title, ("",), (1.0,), ())
+        if found.test is not None:
+            return figures_sheet(title, found.test, metric)
+        nothing = Sheet(title, ("",), (1.0,), ())
+        return response_sheet(title, found.response, metric) if found.response is not None else nothing
 
     @property
     def words(self) -> str:
@@ -190,6 +201,8 @@ class Analyses:
             return found.why
         if found.thread is not None:
             return tr("passes over each other by the spindle's angle: way beside the thread, and speed")
+        if found.test is not None:
+            return shown_words(found.test.path, self.scope.metric)
         if found.response is not None:
             return tr("asked and done of the last move, and its following error, over seconds")
         return tr("error drawn {times} times as large; Z changes that").format(times=f"{self.magnified:g}")
@@ -217,6 +230,9 @@ def analysed(kind: Kind, record: Record, arc: int, drives: Mapping[str, Axis]) -
 
 def _analysed(kind: Kind, record: Record, arc: int, drives: Mapping[str, Axis]) -> Found:
     if kind is Kind.RESPONSE:
+        played = path_in(record)
+        if played is not None:
+            return Found(kind, test=drive_test_figures(record, played, drives))
         return Found(kind, response=last_move(record, drives))
     columns = record.columns
     letters = [each.name[0] for each in record.channels if each.name[1:] == " demand" and each.unit == "mm"]

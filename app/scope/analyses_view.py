@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _TABLE, _HEAD = 50.0, 3.4  # units
 
 
-def _chart_class() -> type[AnalysisChart]:
+def chart_class() -> type[AnalysisChart]:
     """On a worker: pyqtgraph takes a third of a second."""
     from app.scope.analyses_chart_view import AnalysisChart
 
@@ -62,7 +62,7 @@ class AnalysesPage(ListPage):
         self.table = SheetPanel(self.look, analyses.mark, self)
         self.chart: AnalysisChart | None = None
         self._drawn: object = None
-        analyses.worker.queue(_chart_class, self._chart_there, self.desk.say)
+        analyses.worker.queue(chart_class, self._chart_there, self.desk.say)
 
     def _chart_there(self, chart: type[AnalysisChart]) -> None:
         self.chart = chart(self.look, self.room)
@@ -78,7 +78,11 @@ class AnalysesPage(ListPage):
             "F5": Key("NEXT ARC", self.analyses.next_arc),
             "F6": Key("RESPONSE", partial(choose, Kind.RESPONSE)),
             "F8": Key("SCOPE", self._back),
+            "F9": Key("TEST", self._test),
         }
+
+    def _test(self) -> None:
+        self.host.go(page_table.DRIVE_TEST)
 
     def _back(self) -> None:
         self.host.go(page_table.SCOPE)

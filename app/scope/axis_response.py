@@ -7,7 +7,7 @@ nothing is written to a drive.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +21,15 @@ from core.machine.machine_model import Axis
 from core.records.analysis_errors import AnalysisError
 from core.records.derived_figures import velocity
 from core.records.record import Record
-from core.records.step_response import StepResponse, at_other_speed, step_response, would_trip
+from core.records.step_response import (
+    StepResponse,
+    at_other_speed,
+    lag_of,
+    narrowest_window,
+    speed_of_window,
+    step_response,
+    would_trip,
+)
 
 FloatArray = npt.NDArray[np.float64]
 _BEFORE, _BEHIND = 0.2, 1.0  # s of rest that belong to a move
@@ -31,15 +39,17 @@ FACTORS = (1.5, 2.0)  # of the speed
 WINDOWS = (0.5, 0.25)  # of the window
 
 
+SHARES = (0.5, 0.2, 0.3)  # of the columns: name, verdict, figure
+
+
 @dataclass(frozen=True, slots=True, eq=False)
-class AxisResponse:
-    """One move. Times (n,) s from its beginning; ``speed`` the greatest asked for, mm/s."""
+class Moved:
+    """Motion of one axis. Times (n,) s from its beginning; ``speed`` the greatest asked for, mm/s."""
 
     letter: str
     times: FloatArray
     demand: FloatArray
     actual: FloatArray
-    step: StepResponse
     speed: float
     lag: float  # s, by the part of the error that goes with the speed
     axis: Axis
@@ -54,6 +64,22 @@ class AxisResponse:
         return at_other_speed(np.nan_to_num(velocity(self.times, self.demand)), self.error, factor)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class AxisResponse(Moved):
+    """One move from rest to rest."""
+
+    step: StepResponse
+
+
+def moved(letter: str, axis: Axis, record: Record, cut: slice, zero: float) -> Moved:
+    """What an axis was asked and did in a part of a record; times count from ``zero`` of its clock."""
+    times = record.times[cut] - zero
+    demand, actual = record.columns[f"{letter} demand"][cut], record.columns[f"{letter} actual"][cut]
+    speeds = np.nan_to_num(velocity(times, demand))
+    speed = float(np.abs(speeds).max(initial=0.0))
+    return Moved(letter, times, demand, actual, speed, lag_of(speeds, demand - actual), axis)
+
+
 def last_move(record: Record, drives: Mapping[str, Axis]) -> AxisResponse:
     """The last move from rest to rest of one axis. Raises AnalysisError."""
     found: tuple[int, int, str] | None = None
@@ -61,9 +87,9 @@ def last_move(record: Record, drives: Mapping[str, Axis]) -> AxisResponse:
         demand = record.columns.get(f"{letter} demand")
         if drives[letter].rotary or demand is None or not np.isfinite(demand).all():
             continue
-        span = _last_stretch(record.times, demand)
-        if span is not None and (found is None or span[1] > found[1]):
-            found = (*span, letter)
+        spans = stretches(record.times, demand)
+        if spans and (found is None or spans[-1][1] > found[1]):
+            found = (*spans[-1], letter)
     if found is None:
         raise AnalysisError(tr("no axis moved from rest to rest in this time: make a step on the Jog page"))
     first, last, letter = found
@@ -73,31 +99,28 @@ def last_move(record: Record, drives: Mapping[str, Axis]) -> AxisResponse:
     return _response(letter, drives[letter], record, slice(begin, end), float(times[first]))
 
 
-def _last_stretch(times: FloatArray, demand: FloatArray) -> tuple[int, int] | None:
-    """First and last sample of the last move that has come to rest."""
+def stretches(times: FloatArray, demand: FloatArray) -> list[tuple[int, int]]:
+    """First and last sample of every move that has come to rest, the oldest first."""
     moving = np.flatnonzero(np.abs(np.diff(demand)) > _STILL)
     if not len(moving):
-        return None
+        return []
     breaks = np.flatnonzero(np.diff(times[moving]) > _REST)
     starts = np.concatenate([[0], breaks + 1])
     ends = np.concatenate([breaks, [len(moving) - 1]])
     if times[-1] - times[moving[-1]] < _REST:
         starts, ends = starts[:-1], ends[:-1]  # it still moves
-    return (int(moving[starts[-1]]), int(moving[ends[-1]]) + 1) if len(starts) else None
+    return [(int(moving[a]), int(moving[b]) + 1) for a, b in zip(starts, ends, strict=True)]
 
 
 def _response(letter: str, axis: Axis, record: Record, cut: slice, zero: float) -> AxisResponse:
-    times = record.times[cut] - zero
-    demand, actual = record.columns[f"{letter} demand"][cut], record.columns[f"{letter} actual"][cut]
-    step = step_response(times, demand, actual, axis.in_position)
-    speeds = np.nan_to_num(velocity(times, demand))
-    speed = float(np.abs(speeds).max())
-    square = float((speeds**2).sum())
-    lag = float((speeds * (demand - actual)).sum()) / square if square > 0.0 else math.nan
-    return AxisResponse(letter, times, demand, actual, step, speed, lag, axis)
+    found = moved(letter, axis, record, cut, zero)
+    step = step_response(found.times, found.demand, found.actual, axis.in_position)
+    return AxisResponse(
+        letter, found.times, found.demand, found.actual, found.speed, found.lag, axis, step=step
+    )
 
 
-def response_drawing(found: AxisResponse) -> Drawing:
+def response_drawing(found: Moved) -> Drawing:
     """Asked and done above, the following error below, over seconds."""
     asked = np.column_stack([found.times, found.demand])
     done = np.column_stack([found.times, found.actual])
@@ -105,42 +128,84 @@ def response_drawing(found: AxisResponse) -> Drawing:
     return Drawing(asked, (done,), (error,), equal=False, lengths_below=True)
 
 
-def response_sheet(title: str, found: AxisResponse, metric: bool) -> Sheet:
-    """Its figures, and what other windows and speeds would do."""
-    unit, scale = ("mm", 1.0) if metric else ("in", 1.0 / formats.MM_PER_INCH)
+@dataclass(frozen=True, slots=True)
+class Units:
+    """How lengths and speeds are written."""
 
-    def way(value: float) -> str:
-        return f"{formats.length(value, metric)} {unit}"
+    metric: bool
 
-    def ms(seconds: float) -> str:
+    @property
+    def name(self) -> str:
+        """Of a length."""
+        return "mm" if self.metric else "in"
+
+    def way(self, mm: float) -> str:
+        """A length."""
+        return f"{formats.length(mm, self.metric)} {self.name}"
+
+    def speed(self, mm: float) -> str:
+        """A speed, a second."""
+        return f"{formats.fixed(mm if self.metric else mm / formats.MM_PER_INCH, 3)} {self.name}/s"
+
+    def share(self, part: float) -> str:
+        """A part of a whole."""
+        return f"{formats.fixed(100.0 * part, 2)} %"
+
+    def ms(self, seconds: float) -> str:
+        """A short time."""
         return f"{formats.fixed(1000.0 * seconds, 1)} ms" if math.isfinite(seconds) else formats.NOTHING
 
-    def trips(error: FloatArray, window: float) -> str:
-        at = would_trip(found.times, error, window, found.axis.following_time)
-        return tr("holds") if at is None else tr("trips at {at}").format(at=ms(at))
 
-    limit = found.axis.following_limit(found.speed)
-    step, greatest = found.step, float(np.abs(found.error).max())
+def step_rows(steps: Sequence[StepResponse], units: Units) -> list[tuple[str, ...]]:
+    """A row a figure, a cell a step."""
+    return [
+        (tr("RISE, 10 TO 90 %"), *(units.ms(each.rise) for each in steps)),
+        (tr("OVERSHOOT"), *(units.share(each.overshoot) for each in steps)),
+        (tr("IN POSITION AFTER"), *(units.ms(each.settling) for each in steps)),
+    ]
+
+
+def window_rows(found: Moved, units: Units) -> list[tuple[str, str, str]]:
+    """What the window is to this move, and what another window or speed would do: name, verdict, figure."""
+    axis, times, error = found.axis, found.times, found.error
+
+    def trips(error: FloatArray, window: float) -> str:
+        at = would_trip(times, error, window, axis.following_time)
+        return tr("holds") if at is None else tr("trips at {at}").format(at=units.ms(at))
+
+    limit, greatest = axis.following_limit(found.speed), float(np.abs(error).max())
+    least = narrowest_window(times, error, axis.following_time)
+    reached = speed_of_window(abs(found.lag), axis.still_window, axis.following_window, axis.vmax)
     rows = [
-        Row((tr("WAY"), way(step.way))),
-        Row((tr("GREATEST SPEED"), f"{formats.fixed(found.speed * scale, 3)} {unit}/s")),
-        Row((tr("RISE, 10 TO 90 %"), ms(step.rise))),
-        Row((tr("OVERSHOOT"), f"{formats.fixed(100.0 * step.overshoot, 2)} %")),
-        Row((tr("IN POSITION AFTER"), ms(step.settling))),
-        Row((tr("LAG BEHIND THE SPEED"), ms(found.lag))),
-        Row((tr("GREATEST FOLLOWING ERROR"), way(greatest))),
-        Row((tr("WINDOW AT THIS SPEED"), way(limit))),
+        (tr("LAG BEHIND THE SPEED"), "", units.ms(found.lag)),
+        (tr("GREATEST ERROR"), "", units.way(greatest)),
+        (tr("WINDOW AT THIS SPEED"), trips(error, limit), units.way(limit)),
+        (tr("NARROWEST THAT HOLDS"), "", units.way(least)),
     ]
     for share in WINDOWS:
         name = tr("WITH {share} OF THE WINDOW").format(share=formats.percent(share))
-        rows.append(Row((name, trips(found.error, share * limit))))
+        rows.append((name, trips(error, share * limit), units.way(share * limit)))
     for factor in FACTORS:
-        error = found.faster(factor)
+        faster = found.faster(factor)
         name = tr("AT {share} OF THE SPEED").format(share=formats.percent(factor))
-        words = trips(error, found.axis.following_limit(factor * found.speed))
-        rows.append(Row((name, f"{way(float(np.abs(error).max()))}, {words}")))
+        verdict = trips(faster, axis.following_limit(factor * found.speed))
+        rows.append((name, verdict, units.way(float(np.abs(faster).max()))))
+    at = units.speed(reached) if reached is not None else tr("no speed it has")
+    rows.append((tr("LAG MEETS WINDOW AT"), "", at))
+    return rows
+
+
+def response_sheet(title: str, found: AxisResponse, metric: bool) -> Sheet:
+    """Its figures, and what other windows and speeds would do."""
+    units = Units(metric)
+    rows = [
+        Row((tr("WAY"), "", units.way(found.step.way))),
+        Row((tr("GREATEST SPEED"), "", units.speed(found.speed))),
+        *(Row((name, "", figure)) for name, figure in step_rows([found.step], units)),
+        *map(Row, window_rows(found, units)),
+    ]
     notes = (
         tr("Of the last move of {axis}; worked out, nothing was changed.").format(axis=found.letter),
-        tr("A step of the Jog page is a good one."),
+        tr("A step of the Jog page is a good one; F9 has drive tests."),
     )
-    return Sheet(title, ("", ""), (0.56, 0.44), tuple(rows), notes=notes, figures=frozenset({1}))
+    return Sheet(title, ("", "", ""), SHARES, tuple(rows), notes=notes, figures=frozenset({1, 2}))

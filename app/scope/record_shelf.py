@@ -76,9 +76,9 @@ class RecordShelf:
                         found.append(Kept(Path(entry.path), told.st_mtime, told.st_size))
         return tuple(sorted(found, key=lambda each: -each.written)[:MOST])
 
-    def keep(self, record: Record) -> Path:
+    def keep(self, record: Record, stem: str = "scope") -> Path:
         """Save a record under the time of day. Raises ShelfError."""
-        path = self._new("scope", ENDING)
+        path = self._new(stem, ENDING)
         self._guarded(path, lambda: self.save(record, path))
         return path
 

@@ -14,7 +14,7 @@ MENU, AUTOMATIC, EDITOR, MDI, JOG = "MAIN MENU", "AUTOMATIC", "EDITOR", "MDI", "
 SEARCHTO = "SEARCHTO"
 TOOLS, SECCMP, SPECIAL = "TOOL OFFSETS", "SECONDARY OFFSETS", "SPECIAL FUNCTIONS"
 PROGRAMS, ZERO, SHAPE, PART = "PROGRAMS", "ZERO OFFSETS", "TOOL SHAPE", "PART"
-SCOPE, ANALYSES = "SCOPE", "ANALYSES"
+SCOPE, ANALYSES, DRIVE_TEST = "SCOPE", "ANALYSES", "DRIVE TEST"
 MEASURED = "MEASURED PARTS"
 
 
@@ -113,6 +113,7 @@ PAGES = (
         "readings, charts, wear, tool life, trends",
     ),
     PageEntry(ANALYSES, "app.scope.analyses_view.AnalysesPage", "app.scope.analyses.Analyses"),
+    PageEntry(DRIVE_TEST, "app.jog.drive_test_view.DriveTestPage", "app.jog.drive_test_model.DriveTests"),
     PageEntry(SHAPE, "app.offsets.tool_shapes_view.ToolShapePage"),
     PageEntry(MENU, "app.screen.main_menu.MenuPage"),
     PageEntry(

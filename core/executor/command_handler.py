@@ -43,6 +43,8 @@ class CommandHandler:
             commands.Jog: self._jog,
             commands.JogStep: self._step,
             commands.JogStop: lambda _: control.jogger.stop(),
+            commands.DriveTest: self._test,
+            commands.DriveTestOn: lambda command: control.drive_test.renew(command.lease),
             commands.Wheel: lambda command: control.wheel.select(command, control.state),
             commands.WheelOff: lambda _: control.wheel.off(control.state),
             commands.Home: self._home,
@@ -190,6 +192,21 @@ class CommandHandler:
         if not jogger.stepping:
             jogger.stop()  # a held jog and a step at once: nobody can mean both
         self._refuse(f"jog: {why}")
+
+    def _test(self, command: commands.DriveTest) -> None:
+        control, jogger = self._control, self._control.jogger
+        if self._may_not_jog():
+            return
+        why = control.wheel.bars(control.state)
+        why = why or control.drive_test.refusal(command.path, command.lease)
+        if why:
+            jogger.stop()  # whatever moves: nobody can mean both
+            self._refuse(f"drive test: {why}")
+            return
+        if control.drive_test.begin(command.path, command.lease):
+            control.enter(State.JOG)
+        else:
+            self._refuse("drive test: its lease is over before anything could move")
 
     def _may_not_jog(self) -> bool:
         control = self._control

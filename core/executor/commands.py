@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from core.executor.drive_test_path import DriveTestPath
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Starts
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
@@ -105,6 +106,24 @@ class JogStep(Command):
 @dataclass(frozen=True, slots=True)
 class JogStop(Command):
     """Give the jog lease back at once; a step that is under way ends short."""
+
+
+@dataclass(frozen=True, slots=True)
+class DriveTest(Command):
+    """Play a drive test from rest while the lease lasts; ``JogStop`` ends it.
+
+    Refused while anything moves or the spindle turns, and where the whole of it would leave the travel.
+    """
+
+    path: DriveTestPath
+    lease: float
+
+
+@dataclass(frozen=True, slots=True)
+class DriveTestOn(Command):
+    """Renew the lease of the drive test that is under way; it never begins one."""
+
+    lease: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -131,6 +131,8 @@ class Jogger:
         self._short = False  # the step was stopped before its end
         self.goal: float | None = None  # where the handwheel sends the axis; None: it does not
         self.ending = False  # told to stop, and still on its way to rest
+        self.testing = False  # a drive test is played
+        self.tested = 0  # drive tests that came to their end
 
     @property
     def axis(self) -> str:
@@ -143,6 +145,8 @@ class Jogger:
             return self.missing(name)
         if not (math.isfinite(velocity) and math.isfinite(lease)) or lease <= 0.0:
             return "a jog needs a velocity and a lease above 0"
+        if self.testing:
+            return f"{self.axis} is still in its drive test"
         if self.stepping:
             return f"{self.axis} is still on its step"
         return self._barred(name)
@@ -225,6 +229,18 @@ class Jogger:
             self._axis, self.ending = index, False
         return moves
 
+    def play(self, name: str, ramps: Callable[[float, float, float], list[Ramp]]) -> bool:
+        """A drive test begins, or goes on; False where there is nothing left of it. Raises DriverError."""
+        index = self._context.ports.axes.axes.index(name)
+        plays = self._splice(index, ramps)
+        if plays:
+            self._axis, self.testing = index, True
+        return plays
+
+    def whole(self, queued: bool) -> None:
+        """Whether all of a drive test is queued: one that ends sooner is said to have been stopped."""
+        self._short = not queued
+
     def chase(self, name: str, ramps: Callable[[float, float, float], list[Ramp]], goal: float) -> None:
         """Go where the handwheel sends the axis, from whatever it does now. Raises DriverError."""
         index = self._context.ports.axes.axes.index(name)
@@ -235,7 +251,7 @@ class Jogger:
         """The lease is given back, or taken away; a step ends short, and that is said when it rests."""
         if self._axis < 0:
             return
-        self._short = self._short or self.stepping
+        self._short = self._short or self.stepping or self.testing
         amax = self._context.machine.axes[self._axis].amax
         self._splice(self._axis, lambda _start, _p, v: jog_ramps(v, 0.0, amax, 0.0, math.inf))
         self.stepping, self.goal, self.ending = False, None, True
@@ -251,13 +267,18 @@ class Jogger:
 
     def ended(self) -> None:
         """It rests; a step that was cut short is said to be so."""
-        if self._short:
+        if self._short and self.testing:
+            self._context.log("refused", f"{self.axis} was stopped before the end of its drive test")
+        elif self._short:
             self._context.log("refused", f"{self.axis} was stopped before the end of its step")
+        elif self.testing:
+            self.tested += 1
+            self._context.log("test", f"{self.axis} drive test")
         self.forget()
 
     def forget(self) -> None:
         """Nothing is jogged any more: it has come to rest, or something else has stopped it."""
-        self._axis, self.stepping, self._short = -1, False, False
+        self._axis, self.stepping, self._short, self.testing = -1, False, False, False
         self.goal, self.ending = None, False
 
     def _splice(self, index: int, ramps: Callable[[float, float, float], list[Ramp]]) -> bool:

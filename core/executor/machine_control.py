@@ -10,6 +10,7 @@ from core.executor import start_conditions
 from core.executor.attempt import Attempt
 from core.executor.control_status import modal_at_power_up
 from core.executor.cycle import Cycle
+from core.executor.drive_test import DriveTester
 from core.executor.handwheel import Handwheel
 from core.executor.homing_order import Homing
 from core.executor.interrupted_job import CLOSED, ESTOP, InterruptedJob
@@ -52,6 +53,7 @@ class MachineControl:
         self.safe = SafeStop(context)
         self.jogger = jogger_of(context)
         self.wheel = Handwheel(context, self.jogger)
+        self.drive_test = DriveTester(context, self.jogger)
         self.homing = Homing(context)
         self.announcement = Announcement()
         self.disturbance = OutputsWatch(context, self.program_run)
@@ -224,9 +226,11 @@ class MachineControl:
             if self.state in ACTIVE:
                 self._mind_the_queue(self.cycle)
             self.cycle.step()
-        elif (self.state is State.JOG and self.jogger.over()) or (
-            self.state is State.HOME and self.homing.step()
-        ):
+        elif self.state is State.JOG:
+            self.drive_test.look()
+            if self.jogger.over():
+                self.enter(State.IDLE)
+        elif self.state is State.HOME and self.homing.step():
             self.enter(State.IDLE)
 
     def _mind_the_queue(self, cycle: Cycle) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import NamedTuple
 
 from core.alarms import Code
 from core.executor.interrupted_job import InterruptedJob
@@ -59,6 +60,24 @@ class Alarm:
     time: float = 0.0
     causes: tuple[str, ...] = ()
     detail: str = ""
+
+
+class DriveTestState(NamedTuple):
+    """How it stands with drive tests. ``barred``: why this machine has none.
+
+    ``axis`` is under test, empty for none; ``number`` counts those that were begun, the last one at ``began``
+    of the samples' clock; ``whole`` counts those that came to their end. ``rate`` is the samples a second.
+    """
+
+    barred: str = ""
+    axis: str = ""
+    number: int = 0
+    began: float = 0.0
+    whole: int = 0
+    rate: float = 100.0
+
+
+NO_DRIVE_TEST = DriveTestState()
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,6 +148,7 @@ class Snapshot:
     wheel_ended: str = ""  # why the control has taken the handwheel away
     # Nothing is heard of these: what is said of them in here is the last that was known, not what is so.
     unknown: frozenset[Unknown] = frozenset()
+    drive_test: DriveTestState = NO_DRIVE_TEST
 
     @property
     def interrupted_line(self) -> int:
@@ -148,7 +168,7 @@ class Event:
 
     t: float
     # state, alarm, disturbed, estop, start, repeat, restart, mdi, end, part, uncounted, stop,
-    # interrupted, cleared, refused, override, switch, force, load, offsets
+    # interrupted, cleared, refused, override, switch, force, load, offsets, test
     kind: str
     text: str
     line: int = 0

@@ -100,6 +100,7 @@ class Publisher:
             wheel=control.wheel.axis,
             wheel_ended=control.wheel.ended,
             unknown=context.unknown,
+            drive_test=control.drive_test.state,
         )
 
     def _system(self, block: Block | None, *, under_way: bool) -> Swivel | None:

@@ -7,6 +7,7 @@ grows with its speed.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -147,6 +148,30 @@ def _crossing(times: FloatArray, share: FloatArray, level: float) -> float:
     return float(times[i - 1] + part * (times[i] - times[i - 1]))
 
 
+@dataclass(frozen=True, slots=True)
+class Bandwidth:
+    """Hz at which the response is down by 3 dB, and at which it is 90 degrees late; None: not seen."""
+
+    down: float | None
+    quarter: float | None
+
+
+def bandwidth(sines: Sequence[SineResponse]) -> Bandwidth:
+    """Between two frequencies by a straight line over the logarithm of the frequency."""
+
+    def reached(values: list[float]) -> float | None:
+        for i in range(1, len(values)):
+            if values[i - 1] < 0.0 <= values[i]:
+                part = -values[i - 1] / (values[i] - values[i - 1])
+                return float(sines[i - 1].frequency * (sines[i].frequency / sines[i - 1].frequency) ** part)
+        return None
+
+    return Bandwidth(
+        reached([-20.0 * math.log10(each.gain) + 20.0 * math.log10(math.sqrt(0.5)) for each in sines]),
+        reached([each.lag - 90.0 for each in sines]),
+    )
+
+
 # --- what another window or another speed would do ------------------------------------------------------
 
 
@@ -160,12 +185,40 @@ def would_trip(times: FloatArray, error: FloatArray, window: float, lasts: float
     return None
 
 
+def narrowest_window(times: FloatArray, error: FloatArray, lasts: float) -> float:
+    """The window (mm) that this error just does not trip: its greatest that held for longer than ``lasts`` s.
+
+    By halving between no window and the greatest error, to a thousandth of it.
+    """
+    low, high = 0.0, float(np.abs(error).max(initial=0.0))
+    for _ in range(10):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if would_trip(times, error, middle, lasts) is not None else (low, middle)
+    return high
+
+
+def speed_of_window(lag: float, still: float, window: float, vmax: float) -> float | None:
+    """The speed at which an axis that trails by ``lag`` s reaches a window that grows with its speed.
+
+    ``still`` mm at rest, ``window`` at ``vmax``: lag · v = still + (window - still) · v / vmax. None: at no
+    speed of the axis.
+    """
+    steeper = lag - (window - still) / vmax
+    speed = still / steeper if steeper > 0.0 else math.inf
+    return speed if speed <= vmax else None
+
+
+def lag_of(velocity: FloatArray, error: FloatArray) -> float:
+    """Seconds by which an axis trails: the best line error = lag · velocity; nan for one that stands."""
+    known = np.isfinite(velocity) & np.isfinite(error)
+    square = float((velocity[known] ** 2).sum())
+    return float((velocity[known] * error[known]).sum()) / square if square > 0.0 else math.nan
+
+
 def at_other_speed(velocity: FloatArray, error: FloatArray, factor: float) -> FloatArray:
     """The following error (n,), mm, at ``factor`` times the speed: its part that goes with speed grows so.
 
     That part is the best line error = k · velocity; the rest (friction, weight, cut) stays as it is.
     """
-    known = np.isfinite(velocity) & np.isfinite(error)
-    square = float((velocity[known] ** 2).sum())
-    lag = float((velocity[known] * error[known]).sum()) / square if square > 0.0 else 0.0
+    lag = np.nan_to_num(lag_of(velocity, error))
     return np.asarray(error + (factor - 1.0) * lag * np.where(np.isfinite(velocity), velocity, 0.0))

@@ -17,6 +17,9 @@ from drivers.canopen.spindle_as_c import SpindleC
 from drivers.sample_log import KEPT, SampleLog
 
 _NAN = float("nan")
+_UNTRACED = (
+    'the drives plan single moves by themselves ([canopen] mode = "pp"): no test can be played to them'
+)
 _FIRST = 0.5  # s in which everything must have answered a first SYNC
 
 
@@ -100,6 +103,7 @@ class CanopenMachine:
             lock=self.c,
             samples=self.samples,
             unknown=self.unknown,
+            untraced=_UNTRACED if self.config.mode == "pp" else "",
             warnings=tuple(each for axis in self.axes.drives.axes for each in axis.drive.setup.warnings),
         )
 

@@ -336,6 +336,7 @@ def feeder_ports(line: Line) -> MachinePorts:
         lock=FeederLock(line) if hello.get("lock") is True else None,
         trips=FeederTrips(line),
         halt=line.hang_up,
+        untraced=str(hello.get("untraced") or ""),
         samples=FeederSamples(line, hello) if hello.get("samples") else None,
         unknown=line.unknown,
     )

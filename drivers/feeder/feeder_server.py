@@ -289,6 +289,7 @@ class Feeder:
             "gear": self._ports.gear is not None,
             "lock": self._ports.lock is not None,
             "samples": self._ports.samples.rate if self._ports.samples is not None else 0.0,
+            "untraced": self._ports.untraced,
             "warnings": [*self._warnings, *self._ports.warnings],
         }
         return Message(head, NOTHING)

@@ -62,3 +62,12 @@ def test_csp_follows_where_the_machine_file_dares() -> None:
     assert axes.sample().fault == ""
     assert axes.sample().actual[0] == pytest.approx(60.0 * 0.32, abs=0.003)
     bench.close()
+
+
+def test_drives_that_see_only_the_end_of_a_move_play_no_drive_test() -> None:
+    bench = profiled()
+    assert 'mode = "pp"' in bench.machine.ports.untraced
+    bench.close()
+    other = CanBench(can_machine())
+    assert other.machine.ports.untraced == ""
+    other.close()

@@ -1,0 +1,413 @@
+"""Drive test: what is chosen, the travel it asks for, the key that is held for it, and its figures.
+
+The first press of an arrow asks and shows the travel; the next one of the same arrow moves the slide, for as
+long as it is held. Nothing is written to a drive.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+from app.desk import formats
+from app.desk.desk import Desk
+from app.desk.formats import MM_PER_INCH
+from app.desk.prompt_line import STOP_HELD
+from app.desk.sheet import Row, Sheet, following
+from app.desk.translation import tr
+from app.jog.held_jog import Held, HeldJog
+from app.jog.jog_model import LEASE, why_no_jog
+from app.jog.jog_speeds import JogDirection, JogSpeeds, directions_of
+from app.scope.axis_response import Units, response_drawing
+from app.scope.drawing import Drawing
+from app.scope.drive_test_figures import (
+    BEFORE,
+    TESTED,
+    DriveTestFigures,
+    Part,
+    drive_test_figures,
+    figures_sheet,
+    shown_words,
+    words_of,
+)
+from app.scope.record_shelf import INSTANT
+from app.scope.scope_model import Scope
+from core.executor import drive_test_path
+from core.executor.commands import Command, DriveTest, DriveTestOn, JogStop
+from core.executor.drive_test_path import DriveTestPath, Limits, Shape
+from core.executor.jogging import room_to_limit
+from core.executor.snapshot import BY_HAND, Snapshot, State
+from core.machine.machine_model import Axis, Machine
+from core.records.analysis_errors import AnalysisError
+from core.records.record import Record
+
+SHAPES = {Shape.STEP: "STEP", Shape.RAMP: "RAMP", Shape.SINE: "SINE"}
+INCH_SIZES, MM_SIZES = (0.002, 0.005, 0.01, 0.02, 0.05, 0.1), (0.05, 0.1, 0.2, 0.5, 1.0, 2.5)
+INCH_RAMPS, MM_RAMPS = (0.1, 0.2, 0.5, 1.0), (2.5, 5.0, 10.0, 25.0)
+INCH_SPEEDS, MM_SPEEDS = (5.0, 20.0, 50.0, 100.0), (125.0, 500.0, 1250.0, 2500.0)  # a minute
+SERIES = (1.0, 2.0, 5.0, 10.0, 20.0, 40.0)  # Hz
+_SETTLED = 0.3  # s behind a test until its last samples are there
+
+Asked = tuple[str, int]  # axis and sign
+
+
+@dataclass(slots=True)
+class HeldTest(HeldJog):
+    """As a held jog; ``path`` is what a direction asks for now, ``asked`` the one whose travel is shown."""
+
+    path: Callable[[str, int], DriveTestPath] = field(kw_only=True)
+    asked: Asked | None = None
+
+    def _go(self, source: str, axis: str, sign: int, rapid: bool) -> None:
+        if rapid:
+            self.asked = None
+            self.say(tr("A DRIVE TEST HAS NO RAPID: PRESS WITHOUT SHIFT"))
+        elif self.asked != (axis, sign):
+            self.clear()
+            self.asked = axis, sign
+        else:
+            self.asked = None
+            self._hold(source, axis, float(sign), False, DriveTest(self.path(axis, sign), self.lease))
+
+    def _renewal(self, _held: Held, /) -> Command:
+        return DriveTestOn(self.lease)
+
+
+@dataclass(slots=True)
+class DriveTests:
+    """``drives`` are the slides by letter. ``part`` of the last test's figures is shown; None: the choice."""
+
+    desk: Desk
+    scope: Scope
+    machine: Machine
+    shape: Shape = Shape.STEP
+    size: int = 2
+    way: int = 1
+    speed: int = 1
+    hertz: int = 0  # 0: the series, else one of its sines
+    part: Part | None = None
+    found: DriveTestFigures | None = None
+    kept: str = ""  # the file of the last test
+    hold: HeldTest = field(init=False)
+    directions: tuple[JogDirection, ...] = ()
+    drives: Mapping[str, Axis] = field(default_factory=dict)
+    _begun: tuple[DriveTestPath, int] | None = None  # under way, and its number
+    _whole: int = -1  # tests that had come to their end
+
+    def __post_init__(self) -> None:
+        desk, machine = self.desk, self.machine
+        self.drives = {axis.name: axis for axis in machine.axes if not axis.rotary}
+        self.directions = tuple(each for each in directions_of(machine) if each.axis in self.drives)
+        self.hold = HeldTest(
+            JogSpeeds(machine),
+            min(machine.timing.lease, LEASE),
+            desk.post,
+            desk.say,
+            desk.clear,
+            self._now,
+            self.barred,
+            path=self.path,
+        )
+
+    def _now(self) -> float:
+        return self.desk.hands.clock()
+
+    # --- what is chosen ------------------------------------------------------------------------------
+
+    @property
+    def metric(self) -> bool:
+        """Whether lengths are chosen and shown in mm."""
+        return self.scope.metric
+
+    def _of(self, inches: tuple[float, ...], mm: tuple[float, ...], at: int) -> float:
+        """One of a row of lengths, mm."""
+        return mm[at] if self.metric else inches[at] * MM_PER_INCH
+
+    def path(self, axis: str, sign: int) -> DriveTestPath:
+        """What is played in this direction."""
+        if self.shape is Shape.RAMP:
+            size = self._of(INCH_RAMPS, MM_RAMPS, self.way)
+            return DriveTestPath(
+                axis, self.shape, sign * size, self._of(INCH_SPEEDS, MM_SPEEDS, self.speed) / 60
+            )
+        size = sign * self._of(INCH_SIZES, MM_SIZES, self.size)
+        if self.shape is Shape.STEP:
+            return DriveTestPath(axis, self.shape, size)
+        fastest = self._limits(axis).fastest_sine
+        series = tuple(each for each in SERIES if each <= fastest)
+        one = (SERIES[self.hertz - 1],)
+        return DriveTestPath(axis, self.shape, size, frequencies=one if self.hertz else series)
+
+    def _limits(self, axis: str) -> Limits:
+        machine, model = self.machine, self.machine.axis(axis)
+        rate = self.desk.snapshot().drive_test.rate
+        return Limits(min(model.vmax, machine.manual_rapid), model.amax, rate)
+
+    def next_shape(self) -> None:
+        """F2: step, ramp, sine."""
+        self._choose()
+        self.shape = following(Shape, self.shape)
+
+    def next_size(self) -> None:
+        """F3: larger, and from the largest to the smallest."""
+        self._choose()
+        if self.shape is Shape.RAMP:
+            self.way = (self.way + 1) % len(INCH_RAMPS)
+        else:
+            self.size = (self.size + 1) % len(INCH_SIZES)
+
+    def next_speed(self) -> None:
+        """F4: of a ramp its speed, of a sine its frequency."""
+        self._choose()
+        if self.shape is Shape.RAMP:
+            self.speed = (self.speed + 1) % len(INCH_SPEEDS)
+        elif self.shape is Shape.SINE:
+            self.hertz = (self.hertz + 1) % (len(SERIES) + 1)
+
+    def toggle_figures(self) -> None:
+        """F5: the figures of the last test, its window, what is chosen for the next."""
+        self.desk.clear()
+        self.part = following((None, Part.RESPONSE, Part.WINDOW), self.part) if self.found else None
+
+    def choose(self, row: int) -> None:
+        """A finger on one of the rows."""
+        if self.part is None:
+            actions = (self.next_shape, self.next_size, self.next_speed)
+            if row < len(actions):
+                actions[row]()
+
+    def _choose(self) -> None:
+        self.desk.clear()
+        self.hold.let_go(tr("ANOTHER TEST WAS CHOSEN: THE ONE UNDER WAY HAS ENDED"))
+        self.hold.asked, self.part = None, None
+
+    # --- may it, and where does it go ------------------------------------------------------------------
+
+    def barred(self) -> str:
+        """Why nothing is tested now; empty when it may be."""
+        snapshot = self.desk.snapshot()
+        if self.desk.stop_held():
+            return tr(STOP_HELD)
+        if snapshot.drive_test.barred:
+            return tr("NO DRIVE TEST: {why}").format(why=snapshot.drive_test.barred)
+        if abs(snapshot.rpm_actual) >= 1.0 or snapshot.spindle_asked:
+            return tr("THE SPINDLE TURNS: STOP IT FIRST")
+        return why_no_jog(snapshot.state)
+
+    def refusal(self, asked: Asked) -> str:
+        """Why this direction is not tested; empty when it may be. The control looks at it again."""
+        axis, sign = asked
+        snapshot, model = self.desk.snapshot(), self.machine.axis(axis)
+        index = snapshot.axes.index(axis)
+        if not snapshot.homed[index]:
+            return tr("{axis} IS NOT HOMED: NOBODY KNOWS WHETHER THE TEST HAS ROOM").format(axis=axis)
+        path, limits = self.path(axis, sign), self._limits(axis)
+        if why := path.refusal(limits):
+            return why
+        low, high = drive_test_path.reach(path.ramps(limits))
+        here = snapshot.demand[index]
+        if max(high, 1e-9) > room_to_limit(model, here, 1.0) or max(-low, 1e-9) > room_to_limit(
+            model, here, -1.0
+        ):
+            return tr("{axis} HAS NO ROOM FOR IT: JOG AWAY FROM THE END OF ITS TRAVEL").format(axis=axis)
+        return ""
+
+    def travel(self, asked: Asked) -> str:
+        """From where to where it goes, on the machine's scale, and how long."""
+        axis, sign = asked
+        units, snapshot = Units(self.metric), self.desk.snapshot()
+        path, limits = self.path(axis, sign), self._limits(axis)
+        ramps, here = path.ramps(limits), snapshot.demand[snapshot.axes.index(axis)]
+        low, high = drive_test_path.reach(ramps)
+        return tr("{axis} FROM {here} TO {there} AND BACK, {seconds} S").format(
+            axis=axis,
+            here=units.way(here),
+            there=units.way(here + (high if sign > 0 else low)),
+            seconds=formats.fixed(drive_test_path.seconds(ramps), 1),
+        )
+
+    def asks(self) -> str:
+        """The question that stands: the travel that the next press would make."""
+        asked = self.hold.asked
+        if asked is None or self.hold.held is not None:
+            return ""
+        if why := self.barred() or self.refusal(asked):
+            return why
+        key = next(each.label for each in self.directions if (each.axis, each.sign) == asked)
+        return tr("{travel}: HOLD {key} TO PLAY IT, LET GO TO STOP").format(
+            travel=self.travel(asked), key=key
+        )
+
+    # --- every frame ---------------------------------------------------------------------------------
+
+    def look(self, snapshot: Snapshot) -> None:
+        """Renew what is held, and follow the test that is under way."""
+        self.hold.look(snapshot)
+        if snapshot.state not in BY_HAND:
+            self.hold.asked = None  # an alarm or the E-stop has the prompt line
+        self.scope.filing.poll()
+        told = snapshot.drive_test
+        if self.hold.held is not None and (self._begun is None or told.axis == ""):
+            held = self.hold.held
+            self._begun = self.path(held.axis, 1 if held.velocity > 0.0 else -1), told.number
+            self._whole = told.whole
+        elif self._begun is not None and snapshot.state is not State.JOG and self.hold.held is None:
+            self._ended(snapshot)
+
+    def _ended(self, snapshot: Snapshot) -> None:
+        """It is over: a whole one is analysed once its last samples are there."""
+        assert self._begun is not None
+        told, live = snapshot.drive_test, self.scope.live
+        if told.whole == self._whole or live is None:
+            self._begun = None
+            return
+        path, began = self._begun[0], told.began
+        ends = began + drive_test_path.seconds(path.ramps(self._limits(path.axis)))
+        if snapshot.t < ends + _SETTLED or live.last < ends - _SETTLED:
+            return
+        self._begun = None
+        self._work_out(path, began)
+
+    def _work_out(self, path: DriveTestPath, began: float) -> None:
+        live, shelf, drives = self.scope.live, self.scope.shelf, self.drives
+        assert live is not None
+
+        def work() -> tuple[DriveTestFigures | str, str]:
+            record = live.between(began - 2.0 * BEFORE, live.last)
+            instant = began - float(record.times[0]) if len(record.times) else 0.0
+            told = {**record.about, TESTED: words_of(path), INSTANT: f"{instant:.6f}"}
+            return _figures(replace(record, about=told), path, drives), shelf.keep(
+                replace(record, about=told), f"drive test {path.axis} {path.shape.value}"
+            ).name
+
+        self.scope.filing.queue(work, self._take, self.desk.refuse)
+
+    def _take(self, answer: tuple[DriveTestFigures | str, str]) -> None:
+        found, self.kept = answer
+        if isinstance(found, str):
+            self.desk.say(found)
+            return
+        self.found, self.part = found, Part.RESPONSE
+        self.desk.say(tr("WRITTEN: {path}").format(path=self.kept))
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def finger(self, source: str, axis: str, sign: int) -> None:
+        """A finger or the mouse goes down on a direction."""
+        self.hold.press(source, axis, sign, rapid=False)
+
+    def typed(self, _key: str) -> bool:
+        """Nothing is typed here."""
+        return False
+
+    def takes(self, _key: str) -> bool:
+        """No character is text here."""
+        return False
+
+    def opened(self) -> None:
+        """The page comes up: nothing is asked."""
+        self.hold.asked = None
+
+    def escape(self) -> bool:
+        """Ends what is held, takes the question back; False when the page may be left."""
+        if self.hold.held is not None:
+            self.hold.let_go()
+            return True
+        asked, self.hold.asked = self.hold.asked, None
+        return asked is not None
+
+    @property
+    def active(self) -> bool:
+        """Whether something is held."""
+        return self.hold.held is not None
+
+    def let_go(self) -> None:
+        """Hands off: the keyboard, the window or the page is gone."""
+        self.hold.let_go(tr("THE TEST HAS ENDED: THE KEYBOARD WENT ELSEWHERE"))
+        self.hold.asked = None
+
+    def leave(self) -> None:
+        """The page goes: nothing stays held or asked."""
+        self.hold.let_go()
+        if self.desk.snapshot().state is State.JOG:
+            self.desk.post(JogStop())
+        self.hold.asked = None
+        self.desk.clear()
+
+    def close(self) -> None:
+        """The desk shuts; its worker is the scope's."""
+
+    # --- what is shown -------------------------------------------------------------------------------
+
+    def prompt(self) -> str:
+        """What may be done now."""
+        why = self.barred()
+        if why:
+            return why
+        if self.hold.held is not None:
+            return tr("KEEP IT HELD UNTIL IT HAS COME BACK")
+        return tr("AN ARROW ASKS FOR THE TRAVEL; THE SAME ARROW, HELD, PLAYS THE TEST; F5 SHOWS ITS FIGURES")
+
+    def drawing(self) -> Drawing:
+        """Asked and done of the last test."""
+        return response_drawing(self.found.move) if self.found is not None else Drawing()
+
+    def words(self) -> str:
+        """What the drawing shows."""
+        if self.found is None:
+            return tr("no test has been played yet")
+        return shown_words(self.found.path, self.metric) + "  ·  " + self.kept
+
+    def sheet(self) -> Sheet:
+        """What is chosen, or the figures of the last test."""
+        if self.part is not None and self.found is not None:
+            return figures_sheet(tr("DRIVE TEST"), self.found, self.metric, self.part)
+        units = Units(self.metric)
+        path = self.path(next(iter(self.drives)), 1)
+        speed = ""
+        if self.shape is Shape.RAMP:
+            speed = units.speed(path.speed)
+        elif self.shape is Shape.SINE:
+            speed = f"{', '.join(f'{each:g}' for each in path.frequencies)} Hz"
+        rows = [
+            Row((tr("SHAPE"), "F2", tr(SHAPES[self.shape]))),
+            Row((tr("SIZE"), "F3", units.way(abs(path.size)))),
+            Row(
+                (
+                    tr("HERTZ") if self.shape is Shape.SINE else tr("SPEED"),
+                    "F4",
+                    speed or tr("as fast as it can"),
+                )
+            ),
+            *self._axis_rows(units),
+        ]
+        why = self.barred()
+        notes = (
+            *((why,) if why else ()),
+            tr("Of the slide: a size of X is half of a diameter."),
+            tr("Nothing is written to a drive."),
+        )
+        heads, shares = ("", tr("KEY"), tr("CHOSEN")), (0.34, 0.16, 0.5)
+        return Sheet(tr("DRIVE TEST"), heads, shares, tuple(rows), notes=notes, figures=frozenset({2}))
+
+    def _axis_rows(self, units: Units) -> list[Row]:
+        """Of each slide what the watch allows it, and what it has been off at most since the start."""
+        return [
+            Row(
+                (
+                    tr("WINDOW {axis}").format(axis=name),
+                    "",
+                    f"{units.way(axis.still_window)} … {units.way(axis.following_window)}",
+                )
+            )
+            for name, axis in self.drives.items()
+            if math.isfinite(axis.following_window)
+        ]
+
+
+def _figures(record: Record, path: DriveTestPath, drives: Mapping[str, Axis]) -> DriveTestFigures | str:
+    try:
+        return drive_test_figures(record, path, drives)
+    except AnalysisError as error:
+        return str(error)

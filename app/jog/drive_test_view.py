@@ -1,0 +1,137 @@
+"""The page of the drive tests: asked and done drawn, the cross to hold, the choice and the figures."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk.formats import MM_PER_INCH
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
+from app.desk.translation import tr
+from app.jog.drive_test_model import DriveTests
+from app.jog.held_keys_view import HeldKeysPage
+from app.jog.jog_cross_view import JogCross
+from app.scope.analyses import scaled
+from app.scope.analyses_view import Above, chart_class
+from app.screen import page_table
+from app.screen.look import CENTRE, Look, Painter
+from app.screen.page_base import Host, KeyActions
+from app.screen.panel import Shown
+from app.screen.sheet_panel import SheetPanel
+from core.executor.snapshot import Snapshot
+
+if TYPE_CHECKING:
+    from app.scope.analyses_chart_view import AnalysisChart
+
+_TABLE, _HEAD, _PAD = 50.0, 3.4, 0.42  # units, units, share of the height
+
+
+class DriveTestPad(JogCross):
+    """The cross: a press asks, the next one is held."""
+
+    shown: Shown[object] = Shown(None)
+
+    def __init__(self, look: Look, model: DriveTests, parent: QWidget) -> None:
+        super().__init__(look, model.hold, model.directions, model.finger, parent)
+        self._model = model
+
+    def draw(self, painter: Painter) -> None:
+        self.controls.clear()
+        self.frame(painter, tr("DRIVE TEST  ·  ASK, THEN HOLD"))
+        asked = self._model.hold.asked
+        middle = self.cross(painter, QRectF(self.inside()))
+        if asked is not None:
+            axis, sign = asked
+            words = tr("HOLD {way}").format(way=f"{axis}{'+' if sign > 0 else '−'}")
+            painter.write(middle, words, 3.0, "pause", at=CENTRE, margin=0.6)
+
+
+class DriveTestPage(HeldKeysPage):
+    """What is held is renewed from ``refresh``: a screen that stands still moves nothing for longer."""
+
+    NAME = page_table.DRIVE_TEST
+    LABELS = ("MENU", "SHAPE", "SIZE", "SPEED", "FIGURES", "", "ALARMS", "ANALYSE", "JOG", "")
+
+    model: DriveTests
+
+    def __init__(self, host: Host, model: DriveTests, parent: QWidget) -> None:
+        super().__init__(host, model, parent)
+        self.above = Above(self.look, self)
+        self.room = QWidget(self)
+        self.pad: DriveTestPad = DriveTestPad(self.look, model, self)
+        self.table = SheetPanel(self.look, model.choose, self)
+        self.chart: AnalysisChart | None = None
+        self._drawn: object = None
+        model.scope.filing.queue(chart_class, self._chart_there, self.desk.say)
+
+    def _chart_there(self, chart: type[AnalysisChart]) -> None:
+        self.chart = chart(self.look, self.room)
+        self.chart.setGeometry(self.room.rect())
+        self.chart.show()
+
+    def key_actions(self) -> KeyActions:
+        """The choice, figures, and the pages beside it."""
+        model = self.model
+        return {
+            "F2": model.next_shape,
+            "F3": model.next_size,
+            "F4": model.next_speed,
+            "F5": model.toggle_figures,
+            "F8": partial(self.host.go, page_table.ANALYSES),
+            "F9": partial(self.host.go, page_table.JOG),
+        }
+
+    def asks(self) -> str:
+        """The travel that the next press would make."""
+        return self.model.asks()
+
+    def prompt(self) -> str:
+        """What may be done now."""
+        return self.model.prompt()
+
+    def lively(self) -> bool:
+        """Something is held."""
+        return self.model.active
+
+    def leave(self) -> bool:
+        """Nothing stays held or asked."""
+        self.pad.let_go()
+        self.model.leave()
+        return True
+
+    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
+        """Renew what is held, show what is so."""
+        if not self._has_keyboard():
+            self.let_go_if_held()
+        model = self.model
+        model.look(snapshot)
+        self.above.words = model.words()
+        self.table.show_sheet(model.sheet())
+        self.pad.shown = (model.hold.asked, model.hold.held and model.hold.held.source, snapshot.state)
+        shown = (model.found, model.metric)
+        if self.chart is not None and shown != self._drawn:
+            self._drawn = shown
+            self.chart.show_drawing(scaled(model.drawing(), 1.0 if model.metric else 1.0 / MM_PER_INCH))
+
+    def dress(self) -> None:
+        """Other colours are in force."""
+        if self.chart is not None:
+            self.chart.dress()
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """Drawing over the cross at the left, choice and figures at the right."""
+        u = self.look.u
+        gap, side, high = max(4, round(0.7 * u)), round(_TABLE * u), round(_HEAD * u)
+        left, pad = self.width() - side - gap, round(_PAD * self.height())
+        self.above.setGeometry(0, 0, left, high)
+        self.room.setGeometry(0, high, left, self.height() - high - pad - gap)
+        self.pad.setGeometry(0, self.height() - pad, left, pad)
+        self.table.setGeometry(left + gap, 0, side, self.height())
+        if self.chart is not None:
+            self.chart.setGeometry(self.room.rect())
+            self.chart.dress()

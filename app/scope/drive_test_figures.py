@@ -1,0 +1,188 @@
+"""Figures of a drive test: step, ramp and sine responses, bandwidth, and what another window would do.
+
+A record of a test carries in its words what was played, so that one that is opened again tells the same.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+import numpy.typing as npt
+
+from app.desk import formats
+from app.desk.sheet import Row, Sheet
+from app.desk.translation import tr
+from app.scope.axis_response import SHARES, Moved, Units, moved, step_rows, stretches, window_rows
+from core.executor.drive_test_path import PAUSE, DriveTestPath, Shape
+from core.machine.machine_model import Axis
+from core.records.analysis_errors import AnalysisError
+from core.records.record import Record
+from core.records.step_response import (
+    RampResponse,
+    SineResponse,
+    StepResponse,
+    bandwidth,
+    ramp_response,
+    sine_response,
+    step_response,
+)
+
+FloatArray = npt.NDArray[np.float64]
+TESTED = "drive test"  # of a record's words
+BEFORE = 0.1  # s of rest before a test that belong to it
+_SETTLES = 0.9 * PAUSE  # s of the rest behind a way that belong to it
+_NAMES = {Shape.STEP: "STEP", Shape.RAMP: "RAMP", Shape.SINE: "SINE"}
+
+
+def words_of(path: DriveTestPath) -> str:
+    """What was played, as a record keeps it."""
+    told = (path.axis, path.shape.value, path.size, path.speed, path.frequencies)
+    return json.dumps(told)
+
+
+def path_in(record: Record) -> DriveTestPath | None:
+    """What was played in this record; None: it is none of a test."""
+    try:
+        axis, shape, size, speed, frequencies = json.loads(record.about.get(TESTED, ""))
+        return DriveTestPath(
+            str(axis), Shape(shape), float(size), float(speed), tuple(float(each) for each in frequencies)
+        )
+    except (ValueError, TypeError):
+        return None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DriveTestFigures:
+    """One test: of each way, out and back, its response; or of each frequency."""
+
+    path: DriveTestPath
+    move: Moved
+    steps: tuple[StepResponse, ...] = ()
+    ramps: tuple[RampResponse, ...] = ()
+    sines: tuple[SineResponse, ...] = ()
+
+
+def drive_test_figures(record: Record, path: DriveTestPath, drives: Mapping[str, Axis]) -> DriveTestFigures:
+    """Worked out of the record of a whole test. Raises AnalysisError."""
+    name, axis = f"{path.axis} demand", drives.get(path.axis)
+    if axis is None or name not in record.columns:
+        raise AnalysisError(tr("this machine has no axis {axis}").format(axis=path.axis))
+    found = stretches(record.times, record.columns[name])
+    ways = len(path.frequencies) if path.shape is Shape.SINE else 2
+    if len(found) < ways:
+        raise AnalysisError(tr("the test was let go before its end: hold the key until it has come back"))
+    found = found[-ways:]
+    times, zero = record.times, float(record.times[found[0][0]])
+    whole = _about(times, zero - BEFORE, float(times[found[-1][1]]) + _SETTLES)
+    move = moved(path.axis, axis, record, whole, zero)
+    if path.shape is Shape.SINE:
+        sines = tuple(
+            _sine(record, path, first, last, frequency)
+            for (first, last), frequency in zip(found, path.frequencies, strict=True)
+        )
+        return DriveTestFigures(path, move, sines=sines)
+    parts = [
+        moved(path.axis, axis, record, _about(times, times[first] - BEFORE, times[last] + _SETTLES), zero)
+        for first, last in found
+    ]
+    steps = tuple(step_response(each.times, each.demand, each.actual, axis.in_position) for each in parts)
+    if path.shape is Shape.STEP:
+        return DriveTestFigures(path, move, steps)
+    ramps = tuple(ramp_response(each.times, each.demand, each.actual) for each in parts)
+    return DriveTestFigures(path, move, steps, ramps)
+
+
+def _about(times: FloatArray, begin: float, end: float) -> slice:
+    first, last = np.searchsorted(times, (begin, end))
+    return slice(int(first), int(last))
+
+
+def _sine(record: Record, path: DriveTestPath, first: int, last: int, frequency: float) -> SineResponse:
+    """Without its first wave, in which the axis swings in."""
+    times = record.times
+    cut = _about(times, float(times[first]) + 1.0 / frequency, float(times[last]))
+    asked, done = (record.columns[f"{path.axis} {what}"][cut] for what in ("demand", "actual"))
+    return sine_response(times[cut], asked, done, frequency)
+
+
+# --- shown ----------------------------------------------------------------------------------------------
+
+
+def shown_words(path: DriveTestPath, metric: bool) -> str:
+    """What is played, in words."""
+    units = Units(metric)
+    words = (
+        f"{path.axis}{'+' if path.size > 0.0 else '−'}  {tr(_NAMES[path.shape])}  {units.way(abs(path.size))}"
+    )
+    if path.shape is Shape.RAMP:
+        return f"{words}, {units.speed(path.speed)}"
+    if path.shape is Shape.SINE:
+        return f"{words}, {', '.join(f'{each:g}' for each in path.frequencies)} Hz"
+    return words
+
+
+class Part(Enum):
+    """Which of its figures are shown; they do not fit on one small screen."""
+
+    RESPONSE = "response"
+    WINDOW = "window"
+    ALL = "all"
+
+
+def figures_sheet(title: str, found: DriveTestFigures, metric: bool, part: Part = Part.ALL) -> Sheet:
+    """Responses first, then what the window is to them."""
+    units = Units(metric)
+    rows = [Row(cells) for cells in _responses(found, units)] if part is not Part.WINDOW else []
+    rows += map(Row, window_rows(found.move, units)) if part is not Part.RESPONSE else ()
+    heads = ("", tr("GAIN"), tr("LATE")) if found.sines else ("", tr("OUT"), tr("BACK"))
+    if part is Part.WINDOW:
+        heads = ("", "", "")
+    notes = (shown_words(found.path, metric), tr("Nothing was written to the drive."))
+    return Sheet(title, heads, SHARES, tuple(rows), notes=notes, figures=frozenset({1, 2}))
+
+
+def _responses(found: DriveTestFigures, units: Units) -> list[tuple[str, ...]]:
+    if found.sines:
+        return _sine_rows(found)
+    rows: list[tuple[str, ...]] = [*step_rows(found.steps, units)]
+    if found.ramps:
+        rows += [
+            (tr("LAG OF THE EVEN PART"), *(units.way(abs(each.error)) for each in found.ramps)),
+            (tr("SPEED OVER LAG"), *(_gain(each) for each in found.ramps)),
+        ]
+    return rows
+
+
+def _gain(ramp: RampResponse) -> str:
+    """The gain of the position loop as its lag tells it, Kv = v/e; none where feed-forward takes the lag."""
+    return f"{formats.fixed(1.0 / abs(ramp.lag), 0)} /s" if abs(ramp.lag) > 1e-5 else formats.NOTHING
+
+
+def _sine_rows(found: DriveTestFigures) -> list[tuple[str, ...]]:
+    rows: list[tuple[str, ...]] = [
+        (
+            f"{each.frequency:g} Hz",
+            f"{formats.fixed(100.0 * each.gain, 1)} %",
+            f"{formats.fixed(each.lag, 1)}°",
+        )
+        for each in found.sines
+    ]
+    seen, most = bandwidth(found.sines), found.sines[-1].frequency
+
+    def at(hertz: float | None) -> str:
+        return (
+            f"{formats.fixed(hertz, 1)} Hz"
+            if hertz is not None
+            else tr("not up to {most} Hz").format(most=f"{most:g}")
+        )
+
+    if len(found.sines) > 1:
+        rows += [(tr("BANDWIDTH, −3 dB"), "", at(seen.down)), (tr("90° LATE"), "", at(seen.quarter))]
+    late = found.sines[0].late
+    rows.append((tr("LATE BY"), "", f"{formats.fixed(1000.0 * late, 2)} ms" if math.isfinite(late) else ""))
+    return rows

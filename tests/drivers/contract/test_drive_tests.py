@@ -1,0 +1,69 @@
+"""Drive tests on every driver that plays setpoints; a controller that plans by itself refuses them."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.executor.commands import DriveTest, DriveTestOn
+from core.executor.drive_test import PLANS
+from core.executor.drive_test_path import DriveTestPath, Shape
+from core.executor.snapshot import State
+from tests.drivers.contract.control import Control
+from tests.drivers.contract.rig import STILL
+
+LEASE = 0.3
+PATHS = (
+    DriveTestPath("X", Shape.STEP, 0.5),
+    DriveTestPath("Z", Shape.RAMP, -2.0, speed=10.0),
+    DriveTestPath("X", Shape.SINE, 0.4, frequencies=(5.0,)),
+)
+
+
+def hold(control: Control, path: DriveTestPath) -> list[float]:
+    """Renewed until it is over: where the slide really was."""
+    control.post(DriveTest(path, LEASE))
+    index, seen = "XZ".index(path.axis), []
+    while control.state is State.JOG:
+        control.post(DriveTestOn(LEASE))
+        seen.append(control.world.place()[index])
+    return seen
+
+
+@pytest.mark.parametrize("path", PATHS, ids=lambda path: path.shape.value)
+def test_a_test_is_played_and_comes_back_or_is_refused_with_the_reason(
+    control: Control, path: DriveTestPath
+) -> None:
+    control.ready()
+    control.run(0.5)
+    began = control.world.place()
+    seen = hold(control, path)
+    barred = control.shot.drive_test.barred
+    assert barred == (PLANS if control.rig.blocks is not None else "")
+    if barred:
+        assert control.said("refused") == [f"drive test: {PLANS}"]
+        assert seen == []
+        assert control.world.place() == began
+        return
+    assert control.said("refused") == []
+    assert control.shot.drive_test.whole == 1
+    assert control.shot.alarms == ()
+    far = max(seen, key=lambda place: abs(place - seen[0])) - seen[0]
+    assert far * path.size > 0.0
+    assert abs(far) == pytest.approx(abs(path.size), rel=0.15)
+    control.run(0.5)
+    assert control.world.place() == pytest.approx(began, abs=2.0 * STILL)
+
+
+def test_a_test_that_nobody_renews_ends_with_its_lease(control: Control) -> None:
+    control.ready()
+    control.run(0.5)
+    if control.shot.drive_test.barred:
+        pytest.skip(control.shot.drive_test.barred)
+    control.post(DriveTest(DriveTestPath("Z", Shape.RAMP, 20.0, speed=10.0), LEASE))
+    at = control.world.place()[1]
+    control.run(LEASE + 0.2)
+    control.rest(0.2)
+    assert 0.5 < control.world.place()[1] - at <= 10.0 * (LEASE + 0.1)
+    control.until(State.IDLE, limit=0.5)
+    assert control.said("refused") == ["Z was stopped before the end of its drive test"]
+    assert control.shot.drive_test.whole == 0

@@ -1,0 +1,239 @@
+"""The page of the drive tests, by key events on the real executor: asked first, then held, as a jog is."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QDialog
+from pytestqt.qtbot import QtBot
+
+from app.jog.drive_test_view import DriveTestPage
+from app.screen import page_table
+from core.executor.snapshot import State
+from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
+from tests.screen.yes import twist_out
+
+SIZE = 0.01 * INCH
+
+
+@pytest.fixture
+def page(jog: JogBench) -> DriveTestPage:
+    return on_page(jog)
+
+
+def on_page(jog: JogBench) -> DriveTestPage:
+    assert jog.frame.go(page_table.DRIVE_TEST)
+    jog.run(0.1)
+    page = jog.frame.page
+    assert isinstance(page, DriveTestPage)
+    return page
+
+
+def asked_and_held(jog: JogBench, key: Key = Key.Key_Right) -> None:
+    """The first press asks, the second one is kept down."""
+    jog.key(key)
+    jog.run(0.1)
+    jog.down(key)
+    jog.run(0.2)
+
+
+def stands(jog: JogBench) -> None:
+    """It comes to rest and nothing moves it again."""
+    jog.run(0.4)
+    assert jog.shot.state is not State.JOG
+    rest = jog.shot.demand
+    jog.run(1.5)
+    assert jog.shot.demand == rest
+    assert jog.shot.drive_test.whole == 0
+
+
+def ramp(jog: JogBench) -> None:
+    jog.key(Key.Key_F2)
+    jog.run(0.05)
+
+
+def test_the_first_press_asks_and_moves_nothing(jog: JogBench, page: DriveTestPage) -> None:
+    jog.down(Key.Key_Right)
+    jog.run(1.0)
+    assert jog.shot.state is State.IDLE
+    assert jog.shot.demand == (0.0, 0.0, 0.0)
+    assert jog.prompt == "Z FROM 0.00000 in TO 0.01000 in AND BACK, 1.0 S: HOLD → TO PLAY IT, LET GO TO STOP"
+    jog.up(Key.Key_Right)
+    jog.key(Key.Key_Left)  # another arrow asks anew
+    assert jog.shot.demand == (0.0, 0.0, 0.0)
+    assert "TO −0.01000 in" in jog.prompt
+    jog.key(Key.Key_Escape)
+    assert page.model.hold.asked is None
+
+
+def test_held_to_its_end_it_is_kept_and_told_in_figures(jog: JogBench, page: DriveTestPage) -> None:
+    asked_and_held(jog)
+    assert jog.shot.state is State.JOG
+    assert jog.shot.drive_test.axis == "Z"
+    jog.run(1.5)
+    assert jog.shot.state is State.IDLE
+    jog.up(Key.Key_Right)
+    assert jog.shot.drive_test.whole == 1
+    assert jog.shot.demand[1] == pytest.approx(0.0, abs=1e-9)
+    assert jog.desk.recorder is not None
+    jog.desk.recorder.drain()
+    jog.until(lambda: page.model.found is not None)
+    found = page.model.found
+    assert found is not None
+    assert [each.way for each in found.steps] == pytest.approx([SIZE, -SIZE])
+    assert page.model.kept.startswith("drive test Z step")
+    assert (page.model.scope.shelf.folder / page.model.kept).exists()
+    kept = page.model.scope.shelf.open(page.model.scope.shelf.folder / page.model.kept)
+    assert "drive test" in kept.about
+    titles = [page.model.sheet().rows[0].cells[0]]
+    for _ in range(3):
+        jog.key(Key.Key_F5)
+        titles.append(page.model.sheet().rows[0].cells[0])
+    assert titles == ["RISE, 10 TO 90 %", "LAG BEHIND THE SPEED", "SHAPE", "RISE, 10 TO 90 %"]
+    assert not page.model.drawing().equal
+
+
+def test_kept_down_after_its_end_it_plays_no_second_one(jog: JogBench, page: DriveTestPage) -> None:
+    asked_and_held(jog)
+    jog.run(4.0)
+    assert jog.shot.drive_test.number == 1
+    jog.up(Key.Key_Right)
+    jog.key(Key.Key_Right)  # asks again, and no more
+    jog.run(0.5)
+    assert jog.shot.drive_test.number == 1
+    assert "HOLD" in page.asks()
+
+
+def test_the_release_ends_it(jog: JogBench, page: DriveTestPage) -> None:
+    ramp(jog)
+    asked_and_held(jog)
+    assert jog.shot.state is State.JOG
+    jog.up(Key.Key_Right)
+    stands(jog)
+    assert page.model.found is None
+
+
+def test_the_pairs_of_a_repeating_key_do_not_end_it_and_its_silence_does(
+    jog: JogBench, page: DriveTestPage
+) -> None:
+    jog.key(Key.Key_F2)
+    jog.key(Key.Key_F2)
+    asked_and_held(jog)  # the series of sines takes 12 s
+    for _ in range(40):
+        jog.repeats(Key.Key_Right)
+        jog.run(0.03)
+    assert jog.shot.state is State.JOG
+    jog.run(0.6)
+    stands(jog)
+    assert page.model.hold.held is None
+
+
+@pytest.mark.parametrize("key", [Key.Key_F2, Key.Key_F3, Key.Key_H, Key.Key_Escape, Key.Key_Up, Key.Key_R])
+def test_any_other_key_ends_it(jog: JogBench, page: DriveTestPage, key: Key) -> None:
+    ramp(jog)
+    asked_and_held(jog)
+    jog.key(key)
+    stands(jog)
+    assert page.model.hold.held is None
+
+
+def test_the_window_that_loses_the_keyboard_ends_it(jog: JogBench, page: DriveTestPage, qtbot: QtBot) -> None:
+    ramp(jog)
+    asked_and_held(jog)
+    other = QDialog()
+    with qtbot.waitActive(other):
+        other.show()
+        other.activateWindow()
+    stands(jog)
+    other.close()
+    other.deleteLater()
+    assert page.model.hold.held is None
+
+
+def test_a_screen_that_stands_still_ends_it(jog: JogBench, page: DriveTestPage) -> None:
+    ramp(jog)
+    asked_and_held(jog)
+    jog.run(0.6, screen=False)
+    assert jog.shot.state is State.IDLE
+    stands(jog)
+    assert page.model.found is None
+
+
+def test_another_page_ends_it(jog: JogBench, page: DriveTestPage) -> None:
+    ramp(jog)
+    asked_and_held(jog)
+    jog.frame.go(page_table.SCOPE)
+    stands(jog)
+    assert page.model.hold.asked is None
+
+
+def test_a_finger_asks_and_then_holds(jog: JogBench, page: DriveTestPage) -> None:
+    ramp(jog)
+    jog.run(0.1)
+    box = next(each.box for each in page.pad.controls if each.box.center().x() > page.pad.width() * 0.7)
+    spot = QPoint(round(box.center().x()), round(box.center().y()))
+    QTest.mouseClick(page.pad, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, spot)
+    jog.run(0.3)
+    assert jog.shot.state is State.IDLE
+    QTest.mousePress(page.pad, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, spot)
+    jog.run(0.2)
+    assert jog.shot.state is State.JOG
+    QTest.mouseRelease(page.pad, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, spot)
+    stands(jog)
+
+
+# --- refusals -----------------------------------------------------------------------------------------------
+
+
+def test_it_has_no_rapid(jog: JogBench, page: DriveTestPage) -> None:
+    jog.key(Key.Key_Right)
+    jog.down(Key.Key_Right, SHIFT)
+    jog.run(0.3)
+    assert "NO RAPID" in jog.prompt
+    assert page.model.hold.held is None
+    assert jog.shot.demand == (0.0, 0.0, 0.0)
+
+
+def test_with_the_estop_in_it_says_so(jog: JogBench, page: DriveTestPage) -> None:
+    jog.key(Key.Key_E)
+    jog.run(0.3)
+    jog.key(Key.Key_Right)
+    jog.down(Key.Key_Right)
+    jog.run(0.3)
+    assert jog.shot.state is State.ESTOP
+    assert jog.shot.drive_test.number == 0
+    assert "E-STOP" in page.prompt()
+    jog.up(Key.Key_Right)
+    twist_out(jog.window)
+
+
+def test_an_axis_that_is_not_homed_is_not_tested(lost: JogBench) -> None:
+    page = on_page(lost)
+    lost.key(Key.Key_Right)
+    assert "Z IS NOT HOMED" in page.asks()
+    lost.down(Key.Key_Right)
+    lost.run(0.5)
+    assert lost.shot.demand[1] == 0.0
+    assert lost.shot.drive_test.number == 0
+
+
+def test_no_room_is_told_before(jog: JogBench, page: DriveTestPage) -> None:
+    assert jog.desk.lathe is not None
+    travel = jog.desk.lathe.axis("Z").travel
+    assert travel is not None
+    jog.frame.go(page_table.JOG)
+    jog.down(Key.Key_Right, SHIFT)
+    jog.run(0.1)
+    jog.until(lambda: jog.shot.state is not State.JOG or jog.shot.demand[1] > travel[1] - 0.05)
+    jog.up(Key.Key_Right)
+    jog.rests()
+    on_page(jog)
+    here = jog.shot.demand
+    jog.key(Key.Key_Right)
+    assert "Z HAS NO ROOM FOR IT" in jog.prompt
+    jog.down(Key.Key_Right)
+    jog.run(0.5)
+    assert jog.shot.demand == here
+    assert jog.shot.drive_test.number == 0
+    assert page.model.hold.held is None
