@@ -12,6 +12,7 @@ from app.cli.figures import MM_PER_INCH
 from app.cli.program_options import circumstances, read_source
 from app.desk.command_errors import CommandError
 from app.desk.kept_part import lasting
+from core.part.stock_forms import FORMS
 
 if TYPE_CHECKING:
     from app.cli.program_options import Circumstances
@@ -25,6 +26,16 @@ if TYPE_CHECKING:
 
 
 _LONGEST = 1016.0  # mm
+
+
+def add_part_options(parser: argparse.ArgumentParser) -> None:
+    """What the part is made of, by which tools, and how it is held."""
+    parser.add_argument("--tools", metavar="FILE", help="shapes of the tools, instead of the stored ones")
+    parser.add_argument(
+        "--stick-out", type=float, metavar="IN", help="from the front of chuck or collet to Z0, inches"
+    )
+    parser.add_argument("--stock", metavar="SPEC", help=f"what the part is made of: {FORMS}")
+    parser.add_argument("--keep-stock", action="store_true", help="the store remembers it with the program")
 
 
 def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting:

@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli.part_options import add_part_options
 from app.cli.program_options import (
     add_ideal_option,
     add_program_options,
@@ -18,7 +19,6 @@ from app.cli.program_options import (
 )
 from app.cli.progress_bar import Progress
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
-from core.part.stock_forms import FORMS
 
 MOST_JOBS = 256
 
@@ -41,11 +41,7 @@ def add_parser(subparsers: SubParsers) -> None:
     )
     add_program_options(parser)
     add_ideal_option(parser)
-    parser.add_argument("--tools", metavar="FILE", help="shapes of the tools, instead of the stored ones")
-    parser.add_argument(
-        "--stick-out", type=float, metavar="IN", help="from the front of chuck or collet to Z0, inches"
-    )
-    parser.add_argument("--stock", metavar="SPEC", help=f"what the part is made of: {FORMS}")
+    add_part_options(parser)
     parser.add_argument(
         "--compare", metavar="OFFSETS", help="what another offsets file makes of part, times and findings"
     )
@@ -55,7 +51,6 @@ def add_parser(subparsers: SubParsers) -> None:
     parser.add_argument(
         "--paper", choices=("a4", "letter"), help="of a PDF report (default: as the computer's settings say)"
     )
-    parser.add_argument("--keep-stock", action="store_true", help="the store remembers it with the program")
     add_folder_options(parser)
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli.part_options import add_part_options
 from app.cli.program_options import (
     Circumstances,
     add_program_options,
@@ -42,19 +44,19 @@ def add_parser(subparsers: SubParsers) -> None:
         "--anew", action="store_true", help="begin at the first line although a job was interrupted"
     )
     add_program_options(parser)
+    add_part_options(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     """Prove, then run one cycle; 1 when the program or the run has errors."""
     from core.executor.job import make_job
-    from core.proving.prove_program import prove
 
     path = Path(args.file)
     if not args.headless:
         raise CommandError(f"add --headless, or open the screen with: turndesk --program {path}")
     around = circumstances(args)
     job = make_job(read_source(path, args), around.setup)
-    report = prove(job.reading, around.setup, around.machine)
+    report = _proved(args, around, job)
     sys.stderr.write("".join(f"{d.shown(str(path))}\n" for d in report.diagnostics))
     if report.errors:
         return _refused(args, f"{path} has {len(report.errors)} errors and will not run", report)
@@ -63,6 +65,17 @@ def run(args: argparse.Namespace) -> int:
         why = f"{path}: no offset was ever set for {names}; set it with: turndesk offsets set, or --offsets"
         return _refused(args, why, report)
     return _run(args, around, job, report)
+
+
+def _proved(args: argparse.Namespace, around: Circumstances, job: Job) -> Report:
+    """The proof with that of the part, each finding with the weight that it has on a desk (decision 0045)."""
+    from app.cli.part_options import part_setting, with_kept_stock
+    from app.compose.desk_part import as_known
+    from core.proving.part_proof import prove_with_part
+
+    setting = with_kept_stock(part_setting(args, around), job.source.name, args)
+    report, _part = prove_with_part(job.reading, around.setup, around.machine, setting)
+    return replace(report, diagnostics=tuple(map(as_known, report.diagnostics)))
 
 
 def _run(args: argparse.Namespace, around: Circumstances, job: Job, report: Report) -> int:

@@ -76,6 +76,8 @@ COVERED = {
     ("expand", "--ideal"): "test_the_options_of_a_program_act",
     ("trace", "--dt"): "tests/cli/test_trace.py",
     ("trace", "--out"): "tests/cli/test_trace.py",
+    **{("run", option): "tests/cli/test_run_part.py"
+       for option in ("--stock", "--tools", "--stick-out", "--keep-stock")},
     ("run", "--anew"): "tests/cli/test_run.py",
     ("run", "--headless"): "tests/cli/test_run.py",
     ("run", "--realtime"): "tests/cli/test_run.py",

@@ -1,0 +1,90 @@
+"""``turndesk run``: what the part refuses before anything moves, and what it only announces."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from app.desk.kept_part import KeptPart
+from core.store.store import Store
+from tests.cli.conftest import Told, Turndesk
+from tests.cli.test_prove import written
+from tests.cli.test_stock_option import PART, chuck
+
+SLIP = PART.replace("G95F.004Z-.5", "G00Z-.5")  # the diameter of .8 is turned at a rapid
+TOOL = '[tool.1]\nkind = "turning"\ntip = 3\nnose_radius = 0.0156\ninsert = "DCMT11T304"\n'
+
+
+@pytest.fixture
+def tools(tmp_path: Path) -> Path:
+    return written(tmp_path, TOOL, "tools.toml")
+
+
+def state(told: Told) -> tuple[int, str]:
+    return told.status, str(told.lines[-1]["state"])
+
+
+def test_a_slip_refuses_the_run_where_stock_and_tool_are_said(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path, tools: Path
+) -> None:
+    given = ("--headless", "--json", "--offsets", offsets, "--stock", "bar:1:2+.02", "--tools", tools)
+    told = turndesk("run", written(tmp_path, SLIP), *given)
+    assert state(told) == (1, "refused")
+    assert told.lines[-1]["events"] == ""  # nothing was connected
+    assert "9:1: error: A rapid goes into metal" in told.err
+    assert state(turndesk("run", written(tmp_path, PART), *given)) == (0, "complete")
+
+
+@pytest.mark.parametrize(("options", "assumed"), [((), "stock, T1"), (("--stock", "bar:1:2+.02"), "T1")])
+def test_what_rests_on_something_assumed_is_told_and_runs(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path, options: tuple[str, ...], assumed: str
+) -> None:
+    told = turndesk("run", written(tmp_path, SLIP), "--headless", "--json", "--offsets", offsets, *options)
+    assert state(told) == (0, "complete")
+    (line,) = [each for each in told.err.splitlines() if "A rapid goes into metal" in each]
+    assert ":9:1: warning:" in line
+    assert f"Assumed: {assumed}." in line
+
+
+def test_the_stock_that_is_kept_with_the_program_counts(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path, tools: Path
+) -> None:
+    path = written(tmp_path, SLIP)
+    given = ("run", path, "--headless", "--json", "--offsets", offsets, "--tools", tools)
+    assert state(turndesk(*given)) == (0, "complete")
+    assert state(turndesk(*given, "--stock", "bar:1:2+.02", "--keep-stock")) == (1, "refused")
+    assert state(turndesk(*given)) == (1, "refused")
+
+
+def test_a_check_that_is_silenced_for_the_program_refuses_nothing(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path, tools: Path, home: Path
+) -> None:
+    path = written(tmp_path, SLIP)
+    kept = KeptPart("bar:1:2+.02", silenced={"rapid-into-stock": "soft wax"})
+    with Store.open(home) as store:
+        for key, value in kept.settings(path.name).items():
+            store.set_setting(key, value).result()
+    told = turndesk("run", path, "--headless", "--json", "--offsets", offsets, "--tools", tools)
+    assert state(told) == (0, "complete")
+    assert "Silenced: soft wax" in told.err
+
+
+def test_a_tool_that_runs_into_the_chuck_is_refused_without_a_stock(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path, tools: Path
+) -> None:
+    machine = chuck(tmp_path, "diameter = 4.0")
+    given = ("run", written(tmp_path, PART), "--headless", "--json", "--offsets", offsets)
+    given += ("--machine", machine, "--tools", tools)
+    assert state(turndesk(*given, "--stick-out", ".7")) == (0, "complete")
+    told = turndesk(*given, "--stick-out", ".4")
+    assert state(told) == (1, "refused")
+    assert "into-chuck" in told.err
+
+
+def test_a_stock_that_cannot_be_used_ends_it_before_anything_moves(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
+    told = turndesk("run", written(tmp_path, PART), "--headless", "--offsets", offsets, "--stock", "rod:1")
+    assert told.status == 2
+    assert "no stock" in told.err
