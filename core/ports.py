@@ -354,12 +354,42 @@ class StationState:
     feed_pot: float = 1.0  # 0…1.5 where the machine has one
     handwheel: int = 0  # counts since power-up, where the machine has one
     age: float = 0.0  # seconds since the station last spoke
+    trouble: str = ""  # what of it is gone and holds the cycle, in a sentence: a pendant pulled out
+    wheel_trouble: str = ""  # why its handwheel and jog buttons are not to be believed now
+    spindle_load: float | None = None  # per cent, where the machine has such an input
 
 
 class Station(Protocol):
     """Buttons, pots and switches of the operator station."""
 
     def snapshot(self) -> StationState: ...
+
+
+PROBE = "probe"  # the input of a touch probe or tool setter, on while it is touched
+
+
+class Latch(NamedTuple):
+    """Where the slides were when the input ``probe`` came on.
+
+    ``place`` by the encoders, in the sink's order of axes; ``late``: s by which it may have been taken late,
+    so that a slide at v has been up to v · late further back.
+    """
+
+    t: float
+    place: tuple[float, ...]
+    late: float
+
+
+class TouchInput(Protocol):
+    """A driver that keeps the place of a touch at its own rate. Without one a tick of the executor counts."""
+
+    def arm(self) -> None:
+        """Forget what was kept; the next time that the input comes on is kept."""
+        ...
+
+    def latched(self) -> Latch | None:
+        """The first touch since it was armed; None as long as there was none."""
+        ...
 
 
 class Trip(NamedTuple):
@@ -423,6 +453,7 @@ class MachinePorts:
     # What is not known now. The ports go on to tell the last that was known of it, and nobody may take that
     # for the present: a spindle of which nothing is heard may turn. Known again once its wire tells it anew.
     unknown: Callable[[], frozenset[Unknown]] = frozenset
+    touch: TouchInput | None = None  # None: where a touch was is known to a tick of the executor
     # Stops slides and spindle, outputs safe, by a way of its own: for the watchdog, from any thread and again
     # and again, when the executor is dead or stuck. It never waits for what the executor may hold.
     halt: Callable[[], None] | None = None

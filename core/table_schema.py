@@ -333,6 +333,9 @@ def raw_at(data: object, path: str) -> object:
 # --- tables that drivers add ------------------------------------------------------------------------------
 
 
+AT_PENDANT = "pendant."  # begins the address of a button or wheel of a pendant, which no backend knows
+
+
 @dataclass(frozen=True, slots=True)
 class FileReading:
     """A machine file of which the tables are read: what a driver may look at for its own rules and values."""
@@ -342,10 +345,17 @@ class FileReading:
     axes: tuple[str, ...]  # of the machine
     terminals: Mapping[str, str]  # of its inputs and outputs, by path: io.in.start → where it is wired
     tables: tuple[str, ...]  # paths of the tables of drivers that are there
+    at_pendant: Mapping[str, str]  # what of them is not wired, but at a pendant
 
     def raw(self, path: str) -> object:
         """What stands in the file at a path, read or not; None: nothing."""
         return raw_at(self.data, path)
+
+    def pots(self) -> dict[str, str]:
+        """The terminals of its pots and wheels that are wired, by path."""
+        paths = (f"io.analog.{name}.at" for name in self.names("io.analog"))
+        said = {path: self.values.text(path) for path in paths if self.values.has(path)}
+        return {path.removesuffix(".at"): at for path, at in said.items() if not at.startswith(AT_PENDANT)}
 
     def names(self, path: str) -> list[str]:
         """The keys of a table whose names are of the owner's choice."""

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from app.compose.backend_entry import Connected, backend_of, has_station, played
 from app.compose.feeder_process import driven
 from app.compose.inverter_backend import has_inverter
+from app.compose.pendant_wire import wired, with_pendant
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError
 from drivers.clocks import RealClock
@@ -17,6 +18,10 @@ from drivers.feeder.feeder_server import Feeder
 
 def connect(machine: Machine, clock: Clock) -> Connected:
     """Everything the executor needs. Raises DriverError for what does not answer."""
+    return with_pendant(machine, _connected(wired(machine), clock))
+
+
+def _connected(machine: Machine, clock: Clock) -> Connected:
     backend = backend_of(machine)
     if backend.connect is not None and not (backend.driven is not None and machine.hardware.feeder):
         return backend.connect(machine, clock)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import resources
-from core.machine import gauge_table, machine_file, serial_table
+from core.machine import gauge_table, machine_file, serial_table, setter_table
 from core.machine.machine_model import Machine
 from core.table_schema import Driver, Finding, MachineFileError, written
 from drivers.canopen import canopen_table
@@ -13,6 +13,7 @@ from drivers.grblhal import grblhal_table
 from drivers.hal import hal_table
 from drivers.inverter import inverter_table
 from drivers.mtconnect import mtconnect_table
+from drivers.pendant import pendant_table
 from drivers.simulated import simulated_table
 
 SHIPPED = "gt75.toml"
@@ -26,6 +27,8 @@ _ENTRIES = (
     (hal_table.DRIVER, ""),
     (serial_table.DRIVER, ""),
     (gauge_table.DRIVER, ""),
+    (setter_table.DRIVER, ""),
+    (pendant_table.DRIVER, ""),
     (mtconnect_table.DRIVER, ""),
 )
 DRIVERS: tuple[Driver, ...] = tuple(driver for driver, _ in _ENTRIES)

@@ -5,9 +5,17 @@ from __future__ import annotations
 from app.compose.backend_entry import Backend, Connected, axis_figures
 from app.compose.inverter_backend import has_inverter, with_inverter
 from core.machine.machine_model import Axis, Machine
+from core.machine.setter_table import SetterModel
 from core.ports import Clock
 from drivers.feeder.feeder_server import Driven
-from drivers.lookalikes.plant_config import SimAxis, SimCollet, SimConfig, SimOutput, SimSpindle
+from drivers.lookalikes.plant_config import (
+    SimAxis,
+    SimCollet,
+    SimConfig,
+    SimOutput,
+    SimSetter,
+    SimSpindle,
+)
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.simulated.simulated_table import SimulatedTable
 
@@ -34,7 +42,14 @@ def sim_config(machine: Machine) -> SimConfig:
         commit=machine.timing.commit,
         faults=sim.faults,
         seed=sim.seed,
+        setter=_setter(machine, sim.tips),
     )
+
+
+def _setter(machine: Machine, tips: tuple[tuple[float, float], ...]) -> SimSetter | None:
+    """The tool setter of the machine file, for the tips that its simulation has."""
+    model = machine.hardware.table(SetterModel)
+    return SimSetter(model.x, model.z, model.width, tips) if model is not None and tips else None
 
 
 def _axis(axis: Axis, machine: Machine) -> SimAxis:

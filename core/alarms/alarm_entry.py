@@ -38,6 +38,7 @@ OwnCode = Literal[
     # holds that nobody pressed
     "station-silent",
     "pot-jumps",
+    "pendant",
     "guard-open",
     "low-queue",
     "spindle-slow",

@@ -30,6 +30,14 @@ STATION: Entries = {
         ("the guard was opened in the cycle", "the guard's switch or cable"),
         "close the guard; Cycle Start says what it starts again",
     ),
+    "pendant": hold(
+        605,
+        "pendant lost",
+        ("the pendant was unplugged", "its cable or its hub"),
+        "plug it in again, then Cycle Start. Who works without it takes [pendant] and what is at it out of"
+        " the machine file",
+        tells=True,
+    ),
     "controller-holds": hold(
         603,
         "the controller holds",

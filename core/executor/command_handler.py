@@ -42,9 +42,10 @@ class CommandHandler:
             commands.BarNextPart: self._bar,
             commands.Jog: self._jog,
             commands.JogStep: self._step,
-            commands.JogStop: lambda _: control.jogger.stop(),
             commands.DriveTest: self._test,
             commands.DriveTestOn: lambda command: control.drive_test.renew(command.lease),
+            commands.Touch: self._touch,
+            commands.JogStop: lambda _: control.stop_jog("it was let go"),
             commands.Wheel: lambda command: control.wheel.select(command, control.state),
             commands.WheelOff: lambda _: control.wheel.off(control.state),
             commands.Home: self._home,
@@ -169,12 +170,13 @@ class CommandHandler:
         control, jogger = self._control, self._control.jogger
         if self._may_not_jog():
             return
-        why = control.wheel.bars(control.state)
+        why = control.wheel.bars(control.state) or self._button_up(command.while_on)
         why = why or jogger.refusal(command.axis, command.velocity, command.lease)
         if why:
             jogger.stop()
             self._refuse(f"jog: {why}")
         elif jogger.move(command.axis, command.velocity, command.lease):
+            jogger.while_on = command.while_on
             control.enter(State.JOG)
         elif control.state is State.IDLE:
             self._refuse(f"jog: {at_the_end(command.axis, command.velocity)}")
@@ -215,7 +217,19 @@ class CommandHandler:
         elif control.state is not State.JOG:
             self._refuse(f"no jog in state {control.state.value}")
             return True
+        elif control.touch.phase is not None:
+            control.stop_jog("something else was asked for")
+            return True
         return False
+
+    def _button_up(self, name: str) -> str:
+        """Why a jog that a button holds does not begin; empty when the button is down."""
+        return "" if not name or self._context.inputs.get(name, False) else f"its button {name} is up"
+
+    def _touch(self, command: commands.Touch) -> None:
+        control = self._control
+        if control.touch.asked(command, control.state, control.wheel.axis):
+            control.enter(State.JOG)
 
     def _home(self, command: commands.Home) -> None:
         control = self._control

@@ -89,6 +89,21 @@ class Jog(Command):
     axis: str
     velocity: float
     lease: float
+    while_on: str = ""  # an input that has to stay on: a button beside the slides
+
+
+@dataclass(frozen=True, slots=True)
+class Touch(Command):
+    """Touch the tool setter off along ``axis``, towards + or − as ``sign``, while the lease lasts. Renewed.
+
+    ``press`` numbers the press of the key that is held: what has ended is not begun again by that one.
+    """
+
+    axis: str
+    sign: int
+    lease: float
+    press: int
+    while_on: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -102,6 +102,8 @@ class Executor:
         self._handler = CommandHandler(self._context, self._control, self._station)
         self._publisher = Publisher()
         self._logged_override = 1.0
+        self._lost = ""  # what of the station was gone a tick ago
+        self._told_lost = ""
         self.ticks = 0  # so many have ended: what the watchdog looks at
         self.patient = False  # it waits for drives, which may take seconds
         self._silent = ""  # why the watchdog has halted the machine
@@ -232,11 +234,19 @@ class Executor:
         context.signals = self._station.read(self._ports.station.snapshot(), context.now)
         context.spindle.override, context.spindle.auto = context.signals.spindle, context.signals.auto
         self._log_override()
+        self._log_lost()
         if self._control.state in ACTIVE:
             self._control.counters.cycle += context.now - before
             self._control.program_run.cut(context.now - before)
             if context.now - before > _STALL:
                 context.log("starved", f"the control was away for {context.now - before:.2f} s")
+
+    def _log_lost(self) -> None:
+        """A pendant that is unplugged, and that is there again."""
+        lost = self._context.signals.lost or self._context.signals.wheel_trouble
+        if lost != self._told_lost:
+            self._told_lost = lost
+            self._context.log("warning", lost or "the pendant is there again")
 
     def _log_override(self) -> None:
         """A turned pot goes to the log in steps worth reading."""
@@ -258,6 +268,8 @@ class Executor:
             control.feed_hold("", "the button at the station")
         elif signals.trouble:
             control.feed_hold(signals.trouble)
+        elif signals.lost and (control.state in ACTIVE or signals.lost != self._lost):
+            control.feed_hold(signals.lost, code="pendant")
         elif self._context.spindle.guard_open and control.state in ACTIVE:
             control.feed_hold("GUARD OPEN")  # a jog in setting is the builder's to limit
         if signals.start:
@@ -265,6 +277,7 @@ class Executor:
         if signals.turned_on:
             control.spindle_switch()
         control.follow_wheel()
+        self._lost = signals.lost
 
     def _posted(self) -> Iterator[Command]:
         for _ in range(_COMMANDS):

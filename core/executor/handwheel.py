@@ -156,6 +156,7 @@ class Handwheel:
         reasons = (
             (state not in {State.IDLE, State.JOG}, f"it moves nothing in state {state.value}"),
             (signals.trouble != "", signals.trouble.lower()),
+            (signals.wheel_trouble != "", signals.wheel_trouble),
             (signals.hold, "feed hold"),
             (self._clicks.leapt, "its counts leap: check its cable"),
             (self.axis != "" and context.now > self._until, "the page that asked for it was silent"),

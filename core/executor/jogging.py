@@ -133,6 +133,7 @@ class Jogger:
         self.ending = False  # told to stop, and still on its way to rest
         self.testing = False  # a drive test is played
         self.tested = 0  # drive tests that came to their end
+        self.while_on = ""  # the input of the button that holds it
 
     @property
     def axis(self) -> str:
@@ -241,6 +242,27 @@ class Jogger:
         """Whether all of a drive test is queued: one that ends sooner is said to have been stopped."""
         self._short = not queued
 
+    def toward(self, name: str, target: float, speed: float, lease: float) -> bool:
+        """As ``move``, and no further than ``target``, where it rests. Raises DriverError."""
+        context = self._context
+        index = context.ports.axes.axes.index(name)
+        axis, until = context.machine.axes[index], context.now + min(lease, LONGEST_LEASE)
+        top = min(speed, self.top(axis, context.sample.homed[index]))
+
+        def go(start: float, p: float, v: float) -> list[Ramp]:
+            way = target - p
+            if abs(way) <= _SAME:
+                return []
+            room = room_to_limit(axis, p, way)
+            return jog_ramps(
+                v, math.copysign(top, way), axis.amax, max(until - start, 0.0), min(abs(way), room)
+            )
+
+        moves = self._splice(index, go)
+        if moves:
+            self._axis, self.ending = index, False
+        return moves
+
     def chase(self, name: str, ramps: Callable[[float, float, float], list[Ramp]], goal: float) -> None:
         """Go where the handwheel sends the axis, from whatever it does now. Raises DriverError."""
         index = self._context.ports.axes.axes.index(name)
@@ -255,6 +277,12 @@ class Jogger:
         amax = self._context.machine.axes[self._axis].amax
         self._splice(self._axis, lambda _start, _p, v: jog_ramps(v, 0.0, amax, 0.0, math.inf))
         self.stepping, self.goal, self.ending = False, None, True
+
+    def mind_button(self) -> None:
+        """A jog that a button holds ends when that comes up, or is no longer known. Raises DriverError."""
+        if self.while_on and not self._context.inputs.get(self.while_on, False):
+            self.while_on = ""
+            self.stop()
 
     def over(self) -> bool:
         """Whether it has come to rest."""
@@ -279,7 +307,7 @@ class Jogger:
     def forget(self) -> None:
         """Nothing is jogged any more: it has come to rest, or something else has stopped it."""
         self._axis, self.stepping, self._short, self.testing = -1, False, False, False
-        self.goal, self.ending = None, False
+        self.goal, self.ending, self.while_on = None, False, ""
 
     def _splice(self, index: int, ramps: Callable[[float, float, float], list[Ramp]]) -> bool:
         """Queue what ``ramps`` makes of (start, position, velocity); later when the clock was faster.
@@ -351,6 +379,16 @@ class BlockJogger(Jogger):
         if limits is not None:
             limits = limits[0] + LIMIT_MARGIN, limits[1] - LIMIT_MARGIN
         moves = self._sink.jog(name, math.copysign(top, velocity), min(lease, LONGEST_LEASE), limits)
+        if moves:
+            self._axis = index
+        return moves
+
+    def toward(self, name: str, target: float, speed: float, lease: float) -> bool:
+        """As ``move``, and no further than ``target``, where it rests. Raises DriverError."""
+        index, top = self._speed(name, speed)
+        here = self._context.sample.demand[index]
+        limits = (min(here, target), max(here, target))
+        moves = self._sink.jog(name, math.copysign(top, target - here), min(lease, LONGEST_LEASE), limits)
         if moves:
             self._axis = index
         return moves

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from core.alarms import Reaction
+from core.alarms import Code, Reaction
 from core.alarms.bus_alarms import CUT_OFF
 from core.executor import start_conditions
 from core.executor.attempt import Attempt
@@ -25,6 +25,7 @@ from core.executor.safe_stop import SafeStop
 from core.executor.snapshot import ACTIVE, BY_HAND, CYCLE, STOPPED, Event, Starts, State, demand_allowed
 from core.executor.start_conditions import SPINDLE, Announcement, Starting
 from core.executor.supervision import OutputsWatch, Supervisor
+from core.executor.touch_off import TouchOff
 from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal
 
@@ -54,6 +55,7 @@ class MachineControl:
         self.jogger = jogger_of(context)
         self.wheel = Handwheel(context, self.jogger)
         self.drive_test = DriveTester(context, self.jogger)
+        self.touch = TouchOff(context, self.jogger)
         self.homing = Homing(context)
         self.announcement = Announcement()
         self.disturbance = OutputsWatch(context, self.program_run)
@@ -165,20 +167,21 @@ class MachineControl:
             said = f"{proof.warned[0]}{more}"
             yield Starting("warned" + job.digest, f"WARNING: {said}", lambda: None)
 
-    def feed_hold(self, reason: str, by: str = "") -> None:
+    def feed_hold(self, reason: str, by: str = "", code: Code | None = None) -> None:
         """Hold the cycle, end a jog, brake a homing, take the handwheel away.
 
-        ``reason`` in the words of the catalogue, empty where somebody pressed it: ``by`` whom.
+        ``reason`` in the words of the catalogue or with its ``code``, empty where somebody pressed it: ``by``
+        whom.
         """
         if self.wheel.axis:
             self.wheel.end(reason.lower() or "feed hold", self.state)
         if self.state is State.JOG:
-            self.jogger.stop()
+            self.stop_jog(reason.lower() or "feed hold")
         elif self.state is State.HOME:
             self._stop_homing()
         elif self.cycle is not None and self.state in ACTIVE:
             self._context.spindle.break_off()
-            self.cycle.hold(reason, by)
+            self.cycle.hold(reason, by, code)
 
     def reset(self) -> None:
         """Give the program up, stop the spindle, acknowledge alarms."""
@@ -196,6 +199,11 @@ class MachineControl:
             self.feed_hold("reset")
         elif self.state is State.HOME:
             self._stop_homing()
+
+    def stop_jog(self, why: str) -> None:
+        """What is moved by hand stops, and with it a touch-off. Raises DriverError."""
+        self.touch.end(why)
+        self.jogger.stop()
 
     def follow_wheel(self) -> None:
         """Where the handwheel is turned, its axis goes. Raises DriverError."""
@@ -219,6 +227,7 @@ class MachineControl:
         self._finish_stopping()
         self._forget_refusal()
         self.program_run.look()
+        self.touch.mind(self.state)
         if self.cycle is not None and self.state in CYCLE:
             if self._giving_up:
                 self._leave()
@@ -227,10 +236,18 @@ class MachineControl:
                 self._mind_the_queue(self.cycle)
             self.cycle.step()
         elif self.state is State.JOG:
-            self.drive_test.look()
-            if self.jogger.over():
-                self.enter(State.IDLE)
+            self._go_on_by_hand()
         elif self.state is State.HOME and self.homing.step():
+            self.enter(State.IDLE)
+
+    def _go_on_by_hand(self) -> None:
+        """A touch-off goes on through its standstills; a jog is over at rest, and ends with its button."""
+        if self.touch.phase is not None:
+            self.touch.step()
+            return
+        self.drive_test.look()
+        self.jogger.mind_button()
+        if self.jogger.over():
             self.enter(State.IDLE)
 
     def _mind_the_queue(self, cycle: Cycle) -> None:

@@ -80,6 +80,30 @@ class DriveTestState(NamedTuple):
 NO_DRIVE_TEST = DriveTestState()
 
 
+class TouchPhase(StrEnum):
+    """What a touch-off at the tool setter does."""
+
+    SEARCH = "search"
+    BACK_OFF = "back off"
+    SLOW = "slow"
+    RETREAT = "retreat"
+    RETURN = "return"  # nothing was touched: back to where it began
+
+
+@dataclass(frozen=True, slots=True)
+class Touched:
+    """How a touch-off has ended. ``place`` is where the axis was when it touched, machine mm by its encoder,
+    and ``error`` by how much that may be off; None: ``why`` there is none.
+    """
+
+    number: int  # of the touch-offs that have ended
+    axis: str
+    sign: int
+    place: float | None = None
+    error: float = 0.0
+    why: str = ""
+
+
 @dataclass(frozen=True, slots=True)
 class Snapshot:
     """Machine and program at one instant. Lengths mm, X a radius, machine frame unless said otherwise."""
@@ -149,6 +173,9 @@ class Snapshot:
     # Nothing is heard of these: what is said of them in here is the last that was known, not what is so.
     unknown: frozenset[Unknown] = frozenset()
     drive_test: DriveTestState = NO_DRIVE_TEST
+    touching: TouchPhase | None = None  # a tool is being touched off at the tool setter
+    touched: Touched | None = None  # how the last such touch-off has ended
+    spindle_load: float | None = None  # per cent, where the machine has such an input
 
     @property
     def interrupted_line(self) -> int:

@@ -101,6 +101,9 @@ class Publisher:
             wheel_ended=control.wheel.ended,
             unknown=context.unknown,
             drive_test=control.drive_test.state,
+            touching=control.touch.phase,
+            touched=control.touch.touched,
+            spindle_load=context.signals.spindle_load,
         )
 
     def _system(self, block: Block | None, *, under_way: bool) -> Swivel | None:

@@ -18,6 +18,7 @@ from core.interpreter.checkpoint import Begin
 from core.interpreter.machine_requirements import THREAD
 from core.interpreter.modal_state import Modal
 
+INHIBIT = "start_inhibit"  # the input that keeps every cycle from being started or going on
 _BUSY = {
     State.ESTOP: "E-stop is pressed: release it",
     State.FAULT: "an alarm stands: clear its cause and press Reset",
@@ -38,7 +39,9 @@ def station_stop(context: MachineContext) -> str:
         return "feed hold is pressed"
     if guard_open(context):
         return "the guard is open: close it"
-    return context.signals.trouble.lower()
+    if context.inputs.get(INHIBIT, False):
+        return "the start inhibit switch is on"
+    return context.signals.trouble.lower() or context.signals.lost
 
 
 def unclamped(context: MachineContext) -> str:

@@ -28,6 +28,9 @@ class StationSignals(NamedTuple):
     trouble: str  # why the cycle must be held, empty when all is well
     wheel: int = 0  # what the handwheel has counted
     turned_on: bool = False  # the spindle switch was turned from OFF to AUTO, this moment
+    lost: str = ""  # what of the station is gone, so that the cycle must be held: a sentence
+    wheel_trouble: str = ""  # why handwheel and jog buttons are not believed
+    spindle_load: float | None = None  # per cent
 
 
 class OverridePot:
@@ -104,6 +107,9 @@ class StationWatch:
             trouble=trouble,
             wheel=state.handwheel,
             turned_on=turned,
+            lost=state.trouble,
+            wheel_trouble=state.wheel_trouble,
+            spindle_load=state.spindle_load,
         )
 
     def may_start(self, now: float) -> bool:

@@ -21,7 +21,7 @@ from core.table_schema import (
     written,
 )
 
-ANALOG_NAMES = ("feed_pot", "spindle_pot", "handwheel")
+ANALOG_NAMES = ("feed_pot", "spindle_pot", "handwheel", "spindle_load")
 _ANALOG = (
     Field("at", Kind.TEXT),
     Field("range", Kind.PAIR, Unit.PLAIN, -1000.0, 1000.0, default=(0.0, 1.0)),

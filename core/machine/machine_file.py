@@ -29,8 +29,8 @@ from core.machine.machine_model import (
 )
 from core.machine.machine_reading import Reading
 from core.machine.mill_kinematics import KinematicsReading
-from core.machine.station_rules import wrong_palms, wrong_wheel
-from core.table_schema import Driver, FileReading, Finding, MachineFileError
+from core.machine.station_rules import wrong_jog, wrong_palms, wrong_wheel
+from core.table_schema import AT_PENDANT, Driver, FileReading, Finding, MachineFileError
 
 _NONE = (-math.inf, math.inf)
 _ONE_TURN = (-360.0, 360.0)  # of a C that does not wrap, degrees
@@ -77,8 +77,10 @@ def parse_machine(text: str, source: str, drivers: Sequence[Driver]) -> Machine:
         raise MachineFileError([Finding("TOML", "", str(error))], source) from error
     reading = Reading(data, drivers)
     untold = [*machine_defaults.fill(reading)]
-    axes, terminals = _axis_names(reading), signal_rules.terminals(reading)
-    file = FileReading(data, reading.values, axes, terminals, tables_there(data, drivers))
+    axes, said = _axis_names(reading), signal_rules.terminals(reading)
+    buttons = {path: at for path, at in said.items() if at.startswith(AT_PENDANT)}
+    wired = {path: at for path, at in said.items() if path not in buttons}
+    file = FileReading(data, reading.values, axes, wired, tables_there(data, drivers), buttons)
     added = DriverReading(file, drivers)
     rotary = [name for name in axes if name not in machine_tables.SLIDES[reading.kind]]
     kinematics = KinematicsReading(data, reading.values, reading.kind, rotary)
@@ -92,6 +94,7 @@ def parse_machine(text: str, source: str, drivers: Sequence[Driver]) -> Machine:
         *terminal_wiring.shared(file, drivers),
         *terminal_wiring.pots(file, drivers),
         *wrong_wheel(file),
+        *wrong_jog(file),
         *wrong_palms(file),
         *driver_tables.broken(file, drivers),
     ]

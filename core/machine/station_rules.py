@@ -10,11 +10,26 @@ from core.table_schema import FileReading, Finding, written
 WHEEL = "handwheel"
 ENABLE = "wheel_enable"  # held down while the wheel may move anything
 FACTORS = {"wheel_x1": 1, "wheel_x10": 10, "wheel_x100": 100}  # times the smallest step
+AXIS_BUTTON, STEP_BUTTON = "wheel_axis", "wheel_step"  # each press selects the next axis, the next step
+JOG_RAPID = "jog_rapid"  # held beside a jog button
 
 
 def selector(axis: str) -> str:
     """The input that is on while the station's switch selects an axis."""
     return f"wheel_{axis.lower()}"
+
+
+def jog_button(axis: str, sign: int) -> str:
+    """The input that is on while a button beside the slides is held, which jogs an axis this way."""
+    return f"jog_{axis.lower()}_{'plus' if sign > 0 else 'minus'}"
+
+
+def wrong_jog(file: FileReading) -> Iterator[Finding]:
+    """A finding for every jog button of an axis that is not there."""
+    known = [JOG_RAPID, *(jog_button(axis, sign) for axis in file.axes for sign in (1, -1))]
+    for name in file.names("io.in"):
+        if name.startswith("jog_") and name not in known:
+            yield Finding(f"io.in.{name}", "", f"no jog button: one of {', '.join(known)}")
 
 
 def wrong_wheel(file: FileReading) -> Iterator[Finding]:
@@ -26,8 +41,14 @@ def wrong_wheel(file: FileReading) -> Iterator[Finding]:
             yield Finding(path, "0", "expected counts, negative where the wheel turns the other way round")
         if values.has(path) and name != WHEEL and values.number(path) != 1:
             yield Finding(path, f"{values.number(path):g}", "a pot has no clicks; take it out")
-    known = [ENABLE, *FACTORS, *(selector(axis) for axis in file.axes)]
-    for name in file.names("io.in"):
+    selectors = [selector(axis) for axis in file.axes]
+    known = [ENABLE, *FACTORS, *selectors, AXIS_BUTTON, STEP_BUTTON]
+    there = file.names("io.in")
+    for button, switches in ((AXIS_BUTTON, selectors), (STEP_BUTTON, list(FACTORS))):
+        if button in there and (also := [name for name in switches if name in there]):
+            why = f"{also[0]} says that already: a button or switches, not both"
+            yield Finding(f"io.in.{button}", "", why)
+    for name in there:
         if name.startswith("wheel_") and name not in known:
             yield Finding(f"io.in.{name}", "", f"no switch of a handwheel: one of {', '.join(known)}")
         elif name.startswith("wheel_") and WHEEL not in analog:

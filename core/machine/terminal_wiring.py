@@ -13,11 +13,9 @@ _TOPS = {"feed_pot": 1.5, "spindle_pot": 1.0}
 
 def shared(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
     """A finding for every signal or pot on a terminal that is taken, however it is written."""
-    values, taken = file.values, dict[object, str]()
+    taken: dict[object, str] = {}
     places = {f"{path}.at": terminal for path, terminal in file.terminals.items()}
-    for name in file.names("io.analog"):
-        if values.has(f"io.analog.{name}.at"):
-            places[f"io.analog.{name}.at"] = values.text(f"io.analog.{name}.at")
+    places |= {f"{path}.at": terminal for path, terminal in file.pots().items()}
     for place, terminal in places.items():
         owner = place.removesuffix(".at")
         first = taken.setdefault(_same(file, drivers, terminal), owner)

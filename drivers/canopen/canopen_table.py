@@ -371,16 +371,14 @@ def _outside(file: FileReading) -> Iterator[Finding]:
 
 def _wired(file: FileReading) -> Iterator[Finding]:
     """A finding for every signal and pot whose terminal is no address on the bus."""
-    values = file.values
-    if any(path.endswith(".profile") for path in values.wrong):
+    if any(path.endswith(".profile") for path in file.values.wrong):
         return  # which of the nodes are modules is not known
     for path, terminal in file.terminals.items():
         if why := _wrong_terminal(file, terminal, output=path.startswith("io.out."), analog=False):
             yield Finding(f"{path}.at", written(terminal), why)
-    for name in file.names("io.analog"):
-        path = f"io.analog.{name}.at"
-        if values.has(path) and (why := _wrong_terminal(file, values.text(path), output=False, analog=True)):
-            yield Finding(path, written(values.text(path)), why)
+    for path, terminal in file.pots().items():
+        if why := _wrong_terminal(file, terminal, output=False, analog=True):
+            yield Finding(f"{path}.at", written(terminal), why)
 
 
 def _wrong_terminal(file: FileReading, text: str, *, output: bool, analog: bool) -> str:

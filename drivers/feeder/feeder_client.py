@@ -19,6 +19,7 @@ from core.ports import (
     Fault,
     FloatArray,
     Geared,
+    Latch,
     MachinePorts,
     Segments,
     StationState,
@@ -299,6 +300,23 @@ class FeederStation(_OnLine):
         return StationState(**shown)
 
 
+class FeederTouch(_OnLine):
+    """``core.ports.TouchInput``."""
+
+    def arm(self) -> None:
+        """Forget what was kept."""
+        self._line.order("arm")
+
+    def latched(self) -> Latch | None:
+        """The first touch since."""
+        shown = self._line.look().get("latch")
+        if shown is None or self._line.lost:
+            return None
+        t, place, late = items(shown)
+        (t_s, late_s) = floats([t, late])
+        return Latch(t_s, floats(place), late_s)
+
+
 class FeederTrips(_OnLine):
     """``core.ports.Tripping``."""
 
@@ -339,6 +357,7 @@ def feeder_ports(line: Line) -> MachinePorts:
         untraced=str(hello.get("untraced") or ""),
         samples=FeederSamples(line, hello) if hello.get("samples") else None,
         unknown=line.unknown,
+        touch=FeederTouch(line) if hello.get("touch") is True else None,
     )
 
 

@@ -36,6 +36,7 @@ def act(ports: MachinePorts, head: Mapping[str, object]) -> None:
         "hold": lambda: _hold(ports, on=on, orient=head.get("orient") is True),
         "write": lambda: ports.io.write(text(head, "name"), on),
         "safe": ports.io.safe,
+        "arm": lambda: _arm(ports),
     }
     order = acts.get(text(head, "what"))
     if order is None:
@@ -59,6 +60,12 @@ def _hold(ports: MachinePorts, *, on: bool, orient: bool) -> None:
     if ports.lock is None:
         raise DriverError("the spindle's drive of this machine is not C")
     ports.lock.hold(on, orient)
+
+
+def _arm(ports: MachinePorts) -> None:
+    if ports.touch is None:
+        raise DriverError("this driver keeps no touch")
+    ports.touch.arm()
 
 
 def _how(word: str) -> Stop:
@@ -288,6 +295,7 @@ class Feeder:
             "commit": axes.commit,
             "gear": self._ports.gear is not None,
             "lock": self._ports.lock is not None,
+            "touch": self._ports.touch is not None,
             "samples": self._ports.samples.rate if self._ports.samples is not None else 0.0,
             "untraced": self._ports.untraced,
             "warnings": [*self._warnings, *self._ports.warnings],
@@ -308,6 +316,7 @@ class Feeder:
             "geared": geared,
             "held": ports.lock is not None and ports.lock.held(),
             "trip": self._guard.tripped,
+            "latch": ports.touch.latched() if ports.touch is not None else None,
             "notes": self._notes,
             "unknown": sorted(ports.unknown()),
         }

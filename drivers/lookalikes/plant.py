@@ -13,6 +13,7 @@ from drivers.lookalikes.plant_config import SimConfig
 from drivers.lookalikes.plant_terminals import Terminals
 from drivers.lookalikes.servo_axis import Servo
 from drivers.lookalikes.spindle_motor import SpindleMotor
+from drivers.lookalikes.tool_setter import ToolSetter
 from drivers.operator_station import Panel
 from drivers.sample_log import SampleLog
 from drivers.setpoint_queue import Tolerance, straight
@@ -80,6 +81,7 @@ class Plant:
         self.names = tuple(axis.name for axis in config.axes)
         self.spindle = SpindleMotor(config.spindle)
         self.terminals = Terminals(config.outputs, config.inputs, config.collet, config.seed)
+        self.terminals.setter = ToolSetter(config.setter) if config.setter is not None else None
         self.panel = Panel(config.palms, config.start_pulse, config.seed)
         slides = Slides(
             self.names,
@@ -280,6 +282,9 @@ class Plant:
                     self.fault = Fault(f"{servo.axis.name}: following error", "following")
             if self.fault and self._off_at == _NEVER:
                 self._off_at = self.queue.brake(self.t, [axis.amax for axis in self.config.axes])
+        if self.terminals.setter is not None:
+            x, z = (self.servos[self.names.index(name)].where for name in "XZ")
+            self.terminals.setter.look(self.t, x, z, self._readings())
         if self.spindle.faults.belt:
             self.spindle.cut_load(self.t, cutting=self.cuts())
         self._turn()

@@ -51,6 +51,19 @@ class SimCollet:
 
 
 @dataclass(frozen=True, slots=True)
+class SimSetter:
+    """A tool setter: the middle of its stylus from part zero, its size across, mm.
+
+    ``tips``: X and Z at which the slides stand when a tip is on part zero, of each tool on the plate.
+    """
+
+    x: float
+    z: float
+    width: float
+    tips: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
 class PlannedFault:
     """``what`` happens ``at`` so many seconds, for ``seconds``, or for good where that is 0."""
 
@@ -76,5 +89,6 @@ class SimConfig:
     step: float = 0.001  # of the servo model
     seed: int = 1
     faults: tuple[PlannedFault, ...] = ()
+    setter: SimSetter | None = None
     palms: float = 0.5  # seconds within which both palms must go down
     start_pulse: float = 0.1  # how long the two-hand relay holds its output at least

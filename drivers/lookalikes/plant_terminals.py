@@ -5,8 +5,9 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping
 
-from core.ports import DriverError
+from core.ports import PROBE, DriverError
 from drivers.lookalikes.plant_config import SimCollet, SimOutput
+from drivers.lookalikes.tool_setter import ToolSetter
 
 
 class Terminals:
@@ -19,6 +20,7 @@ class Terminals:
         self.outputs = {name: model.initial for name, model in outputs.items()}
         self.inputs = dict.fromkeys(inputs, False)
         self.sensor_stuck = False
+        self.setter: ToolSetter | None = None
         self._collet = collet
         self._random = random.Random(seed)
         self._closed_at = 0.0 if self.outputs.get(collet.output, False) else float("inf")
@@ -49,6 +51,8 @@ class Terminals:
         name = self._collet.closed_input
         if name in self.inputs and not self.sensor_stuck:
             self.inputs[name] = self.closed(now)
+        if self.setter is not None and self.setter.made and PROBE in self.inputs:
+            return {**self.inputs, PROBE: True}
         return dict(self.inputs)
 
     def closed(self, now: float) -> bool:

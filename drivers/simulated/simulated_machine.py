@@ -12,6 +12,7 @@ from core.ports import (
     DriverError,
     FloatArray,
     Geared,
+    Latch,
     MachinePorts,
     Segments,
     StationState,
@@ -191,6 +192,25 @@ class SimIO(_OnPlant):
             self._plant.terminals.safe(self._plant.advance())
 
 
+class SimTouch(_OnPlant):
+    """``core.ports.TouchInput`` on the plant: on its model's grid."""
+
+    def arm(self) -> None:
+        """Forget what was kept."""
+        with self._plant.lock:
+            self._plant.advance()
+            if self._plant.terminals.setter is not None:
+                self._plant.terminals.setter.kept = None
+
+    def latched(self) -> Latch | None:
+        """The first touch since."""
+        with self._plant.lock:
+            self._plant.advance()
+            setter = self._plant.terminals.setter
+            kept = setter.kept if setter is not None else None
+            return Latch(*kept, self._plant.config.step) if kept is not None else None
+
+
 class SimStation(_OnPlant):
     """``core.ports.Station`` on the plant."""
 
@@ -219,6 +239,7 @@ def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
         gear=SimGear(plant),
         halt=plant.halt,
         samples=SimSamples(plant),
+        touch=SimTouch(plant) if config.setter is not None else None,
     )
     machine = PlantHands(plant)
     if config.faults:

@@ -64,21 +64,29 @@ class SimulatedTable:
     seed: int = 1
     realtime: bool = False  # a run without a screen keeps the machine's pace too
     faults: tuple[PlannedFault, ...] = ()
+    tips: tuple[tuple[float, float], ...] = ()  # where the slides stand when a tip is on part zero, mm
+
+
+_TIP = (
+    Field("x", Kind.NUMBER, Unit.LENGTH, -5000.0, 5000.0),
+    Field("z", Kind.NUMBER, Unit.LENGTH, -5000.0, 5000.0),
+)
 
 
 def _read(file: FileReading) -> Iterator[Finding]:
-    entries = file.raw("sim.faults")
-    if entries is not None and not isinstance(entries, list):
-        yield Finding("sim.faults", written(entries), "expected a list of tables, [{...}]")
-        return
-    for path, entry in zip(_paths(file), entries or (), strict=True):
-        yield from read_table(entry, _FAULT, path, file.values)
+    for name, fields in (("sim.faults", _FAULT), ("sim.tips", _TIP)):
+        entries = file.raw(name)
+        if entries is not None and not isinstance(entries, list):
+            yield Finding(name, written(entries), "expected a list of tables, [{...}]")
+            continue
+        for path, entry in zip(_paths(file, name), entries or (), strict=True):
+            yield from read_table(entry, fields, path, file.values)
 
 
-def _paths(file: FileReading) -> list[str]:
-    """Of the faults, counted from 1."""
-    entries = file.raw("sim.faults")
-    return [f"sim.faults.{n}" for n in range(1, len(entries) + 1)] if isinstance(entries, list) else []
+def _paths(file: FileReading, name: str = "sim.faults") -> list[str]:
+    """Of the entries of a list, counted from 1."""
+    entries = file.raw(name)
+    return [f"{name}.{n}" for n in range(1, len(entries) + 1)] if isinstance(entries, list) else []
 
 
 def _rules(file: FileReading) -> Iterator[Finding]:
@@ -95,7 +103,9 @@ def _rules(file: FileReading) -> Iterator[Finding]:
 
 
 def _table(file: FileReading) -> SimulatedTable:
-    return file.values.model(SimulatedTable, "sim", faults=tuple(_faults(file)))
+    number = file.values.number
+    tips = tuple((number(f"{path}.x"), number(f"{path}.z")) for path in _paths(file, "sim.tips"))
+    return file.values.model(SimulatedTable, "sim", faults=tuple(_faults(file)), tips=tips)
 
 
 def _faults(file: FileReading) -> Iterator[PlannedFault]:
@@ -106,7 +116,7 @@ def _faults(file: FileReading) -> Iterator[PlannedFault]:
 
 
 DRIVER = Driver(
-    tables=(DriverTable("sim", _FIELDS, _table, ("faults",), _read, _rules, always=True),),
+    tables=(DriverTable("sim", _FIELDS, _table, ("faults", "tips"), _read, _rules, always=True),),
     backend="sim",
     spindle="sim",
     count_rate=1e6,

@@ -1,0 +1,244 @@
+"""Touch-off: a tool goes against a tool setter or probe, back, and slowly again, while a key is held.
+
+Whatever ends the holding stops the slide, as in a jog. The place of the second touch is what is told, with
+how much it may be off; nothing is changed by it here.
+"""
+
+from __future__ import annotations
+
+from core.executor.commands import Touch
+from core.executor.jogging import LONGEST_LEASE, Jogger
+from core.executor.machine_context import MachineContext
+from core.executor.snapshot import State, Touched, TouchPhase
+from core.executor.start_conditions import guard_open
+from core.machine.setter_table import SetterModel
+from core.ports import PROBE, Latch
+
+_SETTLED = 0.1  # s at rest until the input is believed to be off
+_RENEWED = 0.03  # s between two renewals of the way
+_THERE = 0.003  # mm or two counts: nearer than that it is where it was sent
+_NONE = -1
+
+
+class TouchOff:
+    """``phase`` is what is done now, None for nothing; ``touched`` how the last one ended."""
+
+    def __init__(self, context: MachineContext, jogger: Jogger) -> None:
+        self._context = context
+        self._jogger = jogger
+        self._model = context.machine.hardware.table(SetterModel)
+        self.phase: TouchPhase | None = None
+        self.touched: Touched | None = None
+        self._ended = _NONE  # the press whose touch-off is over
+        self._command = Touch("", 0, 0.0, _NONE)
+        self._until = 0.0  # end of the lease
+        self._start = self._first = 0.0  # where the axis stood at the beginning, and at the first touch
+        self._target = 0.0
+        self._braking = False  # it has touched, and comes to rest
+        self._renewed = self._rested = 0.0
+        self._seen = (0.0, 0.0)  # time and place of the last look
+        self._latch: Latch | None = None
+        self._failed = ""  # what was found wrong, to be told when it is back
+
+    def asked(self, command: Touch, state: State, wheel: str) -> bool:
+        """Begin or renew; True when it begins. Raises DriverError."""
+        if command.press == self._ended:
+            return False  # the key is still held, and it is over
+        if self.phase is None:
+            return self._begin(command, state, wheel)
+        if (command.axis, command.sign, command.press) != (
+            self._command.axis,
+            self._command.sign,
+            self._command.press,
+        ):
+            self.end("another direction was asked for")
+            self._ended = command.press
+            return False
+        self._until = self._context.now + min(command.lease, LONGEST_LEASE)
+        return False
+
+    def end(self, why: str) -> None:
+        """It is over, and why; what moves stops. Raises DriverError."""
+        if self.phase is None:
+            return
+        self._jogger.stop()
+        self._over(why)
+
+    def mind(self, state: State) -> None:
+        """Whatever has stopped the machine has ended it too."""
+        if self.phase is not None and state is not State.JOG:
+            self._over(f"the machine is in state {state.value}")
+
+    def step(self) -> None:
+        """Once a tick. Raises DriverError."""
+        assert self.phase is not None
+        if why := self._broken():
+            self.end(why)
+            return
+        here = self._here
+        if self._braking:
+            if self._jogger.over():
+                self._braking = False
+                self._at_rest(here)
+        elif self._made and self.phase in {TouchPhase.SEARCH, TouchPhase.SLOW}:
+            self._touch(here)
+        elif self._made and self.phase is TouchPhase.RETURN:
+            self.end("something was touched on the way back: look at the setter")
+        elif self._arrives(here):
+            self._arrived()
+        self._seen = (self._context.sample.t, here)
+
+    # --- whether it may -------------------------------------------------------------------------------------
+
+    def _begin(self, command: Touch, state: State, wheel: str) -> bool:
+        if why := self._refusal(command, state, wheel):
+            self._ended = command.press
+            self._context.log("refused", f"touch-off: {why}")
+            return False
+        self._command, self._failed, self._latch = command, "", None
+        self._until = self._context.now + min(command.lease, LONGEST_LEASE)
+        self._start = self._here
+        self._seen = (self._context.sample.t, self._start)
+        self._jogger.forget()
+        assert self._model is not None
+        self._go(TouchPhase.SEARCH, self._start + command.sign * self._model.search)
+        return True
+
+    def _refusal(self, command: Touch, state: State, wheel: str) -> str:
+        """Why nothing is touched off now; empty when it may be."""
+        axis, inputs = command.axis, self._context.inputs
+        if self._model is None or PROBE not in self._context.machine.inputs:
+            return "this machine has no tool setter: [setter] and the input probe in its file"
+        if axis not in {"X", "Z"} or command.sign not in {-1, 1}:
+            return f"a tool is not touched off along {axis or 'no axis'}"
+        reasons = (
+            (state is not State.IDLE, f"not in state {state.value}"),
+            (
+                not self._context.sample.homed[self._index(axis)],
+                f"{axis} is not homed: its position means nothing",
+            ),
+            (
+                inputs.get(PROBE, False),
+                "the input is on already: is the setter touched, or its cable damaged?",
+            ),
+            (wheel != "", "the handwheel is selected: let it go first"),
+        )
+        found = next((why for so, why in reasons if so), "")
+        return found or self._broken(command) or self._too_far(command)
+
+    def _broken(self, command: Touch | None = None) -> str:
+        """What ends it in any tick; ``command``: what is to begin."""
+        context = self._context
+        button = (command or self._command).while_on
+        reasons = (
+            (command is None and context.now > self._until, "it was let go"),
+            (bool(button) and not context.inputs.get(button, False), f"its button {button} is up"),
+            (context.signals.hold, "feed hold is pressed"),
+            (guard_open(context), "the guard is open: close it"),
+            (context.spindle.asked or not context.spindle.stopped, "the spindle turns: stop it first"),
+            (PROBE not in context.inputs, "the input probe is not read: check its terminal"),
+        )
+        return next((why for so, why in reasons if so), "")
+
+    def _too_far(self, command: Touch) -> str:
+        """The whole of it has to lie inside the travel: half a search says nothing."""
+        assert self._model is not None
+        axis = self._context.machine.axis(command.axis)
+        low, high = axis.reach
+        here = self._context.sample.actual[self._index(command.axis)]
+        end = here + command.sign * (self._model.search + self._model.overtravel)
+        if low <= end <= high:
+            return ""
+        far = end - (high if command.sign > 0 else low)
+        return f"its search would leave the travel of {command.axis} by {abs(far):.2f} mm: jog back"
+
+    # --- from phase to phase --------------------------------------------------------------------------------
+
+    @property
+    def _made(self) -> bool:
+        return self._context.inputs.get(PROBE, False)
+
+    @property
+    def _here(self) -> float:
+        return self._context.sample.actual[self._index(self._command.axis)]
+
+    def _index(self, axis: str) -> int:
+        return self._context.ports.axes.axes.index(axis)
+
+    def _go(self, phase: TouchPhase, target: float) -> None:
+        self.phase, self._target, self._rested = phase, target, 0.0
+        self._renewed = -1.0
+        self._arrives(self._here)
+
+    def _arrives(self, here: float) -> bool:
+        """Move on under the lease; True once it has rested at the target for a while."""
+        context, model, command = self._context, self._model, self._command
+        assert model is not None
+        axis = context.machine.axis(command.axis)
+        if abs(here - self._target) <= max(_THERE, 2 * axis.count, axis.in_position) and self._jogger.over():
+            self._rested = self._rested or context.now
+            return context.now - self._rested >= _SETTLED
+        if context.now - self._renewed >= _RENEWED:
+            self._renewed = context.now
+            speed = model.slow if self.phase is TouchPhase.SLOW else model.speed
+            self._jogger.toward(command.axis, self._target, speed, self._until - context.now)
+        return False
+
+    def _touch(self, here: float) -> None:
+        """The input has come on: the slide brakes, and where that was is kept."""
+        context, port = self._context, self._context.ports.touch
+        if self.phase is TouchPhase.SLOW:
+            kept = port.latched() if port is not None else None
+            late = context.sample.t - self._seen[0]
+            self._latch = kept or Latch(context.sample.t, context.sample.actual, late)
+        else:
+            self._first = here
+        self._jogger.stop()
+        self._braking = True
+
+    def _at_rest(self, here: float) -> None:
+        assert self._model is not None
+        model, sign = self._model, self._command.sign
+        place = self._first if self._latch is None else self._latch.place[self._index(self._command.axis)]
+        over = (here - place) * sign
+        if over > model.overtravel:
+            self.end(f"it ran {over:.3f} mm past the touch, more than overtravel: look at the setter")
+        elif self.phase is TouchPhase.SEARCH:
+            self._go(TouchPhase.BACK_OFF, self._first - sign * model.back_off)
+        else:
+            self._go(TouchPhase.RETREAT, place - sign * model.back_off)
+
+    def _arrived(self) -> None:
+        assert self._model is not None
+        model, sign, port = self._model, self._command.sign, self._context.ports.touch
+        if self.phase is TouchPhase.SEARCH:
+            self._failed = f"nothing was touched within {model.search:.1f} mm"
+            self._go(TouchPhase.RETURN, self._start)
+        elif self.phase is TouchPhase.RETURN:
+            self._over(self._failed)
+        elif self.phase is TouchPhase.SLOW:
+            self._failed = "the second touch did not come: is the tool or the setter loose?"
+            self._go(TouchPhase.RETURN, self._first - sign * model.back_off)
+        elif self._made:
+            self._over(f"the input stays on {model.back_off:.2f} mm off the touch: look at stylus and cable")
+        elif self.phase is TouchPhase.BACK_OFF:
+            if port is not None:
+                port.arm()
+            self._go(TouchPhase.SLOW, self._first + sign * model.overtravel)
+        else:
+            self._found()
+
+    def _found(self) -> None:
+        """Half of what it may have been seen late is taken off; the other half is how far it may be off."""
+        assert self._latch is not None
+        command, place = self._command, self._latch.place[self._index(self._command.axis)]
+        assert self._model is not None
+        half = self._model.slow * self._latch.late / 2.0
+        self._over("", place - command.sign * half, half)
+
+    def _over(self, why: str, place: float | None = None, error: float = 0.0) -> None:
+        command, count = self._command, self.touched.number if self.touched is not None else 0
+        self.phase, self._ended, self._braking = None, command.press, False
+        self.touched = Touched(count + 1, command.axis, command.sign, place, error, why)
+        if why:
+            self._context.log("refused", f"touch-off: {why}")

@@ -1,0 +1,81 @@
+"""[setter] of the machine file: a tool setter, or a probe that stands still, where tools are touched off."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from core.table_schema import Driver, DriverTable, Field, FileReading, Finding, Kind, Unit, shown
+
+PROBE_INPUT = "io.in.probe"
+SEES = 0.1  # s that may go by from the touch to the command to brake
+_FIELDS = (
+    Field("x", Kind.NUMBER, Unit.LENGTH, -1000.0, 1000.0),
+    Field("z", Kind.NUMBER, Unit.LENGTH, -3000.0, 3000.0),
+    Field("width", Kind.NUMBER, Unit.LENGTH, 0.2, 100.0),
+    Field("overtravel", Kind.NUMBER, Unit.LENGTH, 0.1, 50.0),
+    Field("speed", Kind.NUMBER, Unit.FEED, 0.05, 50.0),
+    Field("slow", Kind.NUMBER, Unit.FEED, 0.002, 5.0),
+    Field("search", Kind.NUMBER, Unit.LENGTH, 0.5, 200.0, default=12.7),
+    Field("back_off", Kind.NUMBER, Unit.LENGTH, 0.05, 20.0, default=1.27),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SetterModel:
+    """Where its stylus stands and how it is touched; mm and mm/s, X a radius.
+
+    ``x z`` is the middle of the stylus from part zero on the spindle's axis, ``width`` its size across, so
+    that its faces lie half of that beside. ``overtravel`` is how far it may be pushed. A tool looks for it at
+    ``speed`` within ``search``, goes ``back_off`` from it and touches it at ``slow``.
+    """
+
+    x: float
+    z: float
+    width: float
+    overtravel: float
+    speed: float
+    slow: float
+    search: float
+    back_off: float
+
+    def face(self, axis: str, sign: int) -> float:
+        """Where a tip is that touches it going this way, mm from part zero."""
+        middle = self.x if axis == "X" else self.z
+        return middle - sign * self.width / 2.0
+
+
+def _rules(file: FileReading) -> Iterator[Finding]:
+    values, here = file.values, "setter" in file.tables
+    there = PROBE_INPUT in file.terminals
+    if here and not there and f"{PROBE_INPUT}.at" not in values.wrong:
+        yield Finding(PROBE_INPUT, "", "missing; [setter] needs its input, on while it is touched")
+    if not here:
+        return
+    if values.text("machine.kind") != "lathe":
+        yield Finding("[setter]", "", "only a lathe has this; take it out")
+    inch = bool(values.inch)
+    both = values.has("setter.slow", "setter.speed")
+    if both and values.number("setter.slow") > values.number("setter.speed"):
+        yield Finding("setter.slow", "", "is faster than setter.speed; the second touch is the slow one")
+    keys = ("setter.speed", "setter.overtravel", "axis.X.amax", "axis.Z.amax", "machine.commit_ms")
+    if values.has(*keys):
+        speed, over = values.number("setter.speed"), values.number("setter.overtravel")
+        accel = min(values.number("axis.X.amax"), values.number("axis.Z.amax"))
+        needed = runs_on(speed, accel, values.number("machine.commit_ms"))
+        if needed > over * (1 + 1e-9):
+            far = shown(needed, Unit.LENGTH, inch)
+            why = f"runs on {far} behind the touch, over setter.overtravel; go slower"
+            yield Finding("setter.speed", "", why)
+
+
+def runs_on(speed: float, accel: float, commit: float) -> float:
+    """How far a slide goes at most from touch to rest: until it is seen, what is committed, the braking."""
+    return speed * (SEES + commit) + speed * speed / (2.0 * accel)
+
+
+DRIVER = Driver(
+    tables=(
+        DriverTable("setter", _FIELDS, lambda file: file.values.model(SetterModel, "setter"), rules=_rules),
+    )
+)

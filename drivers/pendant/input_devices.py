@@ -1,0 +1,218 @@
+"""Input devices of Linux (evdev): found by name or USB number, opened for us alone, asked what is pressed.
+
+What a device is called stands in /sys, which everybody may read; that it may be read itself is for udev to
+say. So "not there" and "not allowed" are told apart.
+"""
+
+from __future__ import annotations
+
+import array
+import contextlib
+import fcntl
+import os
+import struct
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from core.ports import DriverError
+from drivers.pendant.input_codes import ABS, AXES, KEY, KEYS, REL, Control
+from drivers.pendant.pendant_buttons import AxisRange
+
+NODES, SYSFS = Path("/dev/input"), Path("/sys/class/input")
+_BLUETOOTH = "0005"
+_CAPABILITIES = {KEY: "key", REL: "rel", ABS: "abs"}
+RULES = "/etc/udev/rules.d/70-turndesk-pendant.rules"
+
+
+class EventSource(Protocol):
+    """One open device: bytes of ``struct input_event``, and what is pressed now."""
+
+    def read(self) -> bytes:
+        """What has come since, nothing where nothing has. Raises OSError once the device is gone."""
+        ...
+
+    def fileno(self) -> int: ...
+
+    def keys(self) -> frozenset[int]:
+        """Every key that is down. Raises OSError."""
+        ...
+
+    def ranges(self) -> Mapping[int, AxisRange]:
+        """Its axes and where they stand. Raises OSError."""
+        ...
+
+    def close(self) -> None: ...
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceEntry:
+    """A device as /sys tells it. ``stem``: nodes of one device have the same."""
+
+    node: str
+    name: str
+    numbers: str  # vendor:product
+    serial: str
+    stem: str
+    bluetooth: bool
+    able: frozenset[tuple[int, int]]  # kind and code of whatever it can tell
+
+
+def entries(sysfs: Path = SYSFS) -> list[DeviceEntry]:
+    """Every input device that is plugged in."""
+    found = []
+    for path in sorted(sysfs.glob("event*")):
+        with contextlib.suppress(OSError):  # pulled out while we look
+            found.append(_entry(path))
+    return found
+
+
+def _entry(path: Path) -> DeviceEntry:
+    device = path / "device"
+
+    def text(name: str) -> str:
+        try:
+            return (device / name).read_text(encoding="utf-8", errors="replace").strip()
+        except FileNotFoundError:
+            return ""
+
+    name = text("name")
+    if not name:
+        raise FileNotFoundError(device)
+    able = {
+        (kind, code) for kind, word in _CAPABILITIES.items() for code in _bits(text(f"capabilities/{word}"))
+    }
+    return DeviceEntry(
+        path.name,
+        name,
+        f"{text('id/vendor')}:{text('id/product')}".lower(),
+        text("uniq"),
+        text("phys").rpartition("/")[0] or path.name,
+        text("id/bustype") == _BLUETOOTH,
+        frozenset(able),
+    )
+
+
+def _bits(words: str) -> Iterable[int]:
+    """The kernel writes long words in hexadecimal, the highest first."""
+    size = 8 * struct.calcsize("@l")
+    for place, word in enumerate(reversed(words.split())):
+        value = int(word, 16)
+        yield from (place * size + bit for bit in range(size) if value >> bit & 1)
+
+
+def chosen(
+    device: str, serial: str, wanted: Mapping[str, Control], found: Sequence[DeviceEntry]
+) -> tuple[DeviceEntry, ...]:
+    """The nodes of the one device that is meant and that has all that is wanted of it. Raises DriverError."""
+    meant = [each for each in found if device.lower() in {each.name.lower(), each.numbers}]
+    meant = [each for each in meant if not serial or each.serial == serial]
+    if not meant:
+        of = f" with serial {serial}" if serial else ""
+        raise DriverError(f"the pendant {device}{of} is not plugged in")
+    groups: dict[str, list[DeviceEntry]] = {}
+    for each in meant:
+        groups.setdefault(each.stem, []).append(each)
+    if len(groups) > 1:
+        raise DriverError(f"{len(groups)} devices are called {device}: unplug the other one, {_apart(meant)}")
+    able = frozenset().union(*(each.able for each in meant))
+    lacking = [name for name, control in wanted.items() if control[:2] not in able]
+    if lacking:
+        names = ", ".join(lacking)
+        raise DriverError(f"the pendant {device} has not the button or wheel of {names} in the machine file")
+    if any(each.bluetooth for each in meant):
+        raise DriverError(
+            f"the pendant {device} is on Bluetooth: a link that is lost cannot be told from a button that is"
+            " held; take one with a cable"
+        )
+    needed = {control[:2] for control in wanted.values()}
+    return tuple(each for each in meant if each.able & needed)
+
+
+def _apart(meant: Sequence[DeviceEntry]) -> str:
+    serials = sorted({each.serial for each in meant} - {""})
+    if not serials:
+        return "for they have no serial that tells them apart"
+    return f"or say serial = one of {', '.join(serials)}"
+
+
+# --- the kernel's own calls -------------------------------------------------------------------------------
+
+
+def _request(direction: int, number: int, size: int) -> int:
+    """An ioctl of input devices, as the kernel's macro _IOC puts it together."""
+    return direction << 30 | size << 16 | ord("E") << 8 | number
+
+
+_ABSINFO = struct.Struct("@iiiiii")  # value, minimum, maximum, fuzz, flat, resolution
+_GRAB, _CLOCK = _request(1, 0x90, 4), _request(1, 0xA0, 4)
+_MONOTONIC = 1
+_CHUNK = 64 * 24
+
+
+class KernelDevice:
+    """``EventSource`` on a device node, read by us alone: what it types must not reach the screen too.
+
+    Times are of the monotonic clock. Raises DriverError where it is not to be had.
+    """
+
+    def __init__(self, entry: DeviceEntry, folder: Path = NODES) -> None:
+        path = folder / entry.node
+        try:
+            self._fd = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        except PermissionError as error:
+            raise DriverError(_not_allowed(entry, path)) from error
+        except OSError as error:
+            raise DriverError(f"the pendant {entry.name} cannot be opened: {error.strerror}") from error
+        self._able = entry.able
+        try:
+            fcntl.ioctl(self._fd, _CLOCK, struct.pack("@i", _MONOTONIC))
+            fcntl.ioctl(self._fd, _GRAB, 1)
+        except OSError as error:
+            os.close(self._fd)
+            raise DriverError(
+                f"the pendant {entry.name} is read by another program: end that one ({error.strerror})"
+            ) from error
+
+    def fileno(self) -> int:
+        """For select."""
+        return self._fd
+
+    def read(self) -> bytes:
+        """What has come since."""
+        try:
+            return os.read(self._fd, _CHUNK)
+        except BlockingIOError:
+            return b""
+
+    def keys(self) -> frozenset[int]:
+        """EVIOCGKEY: a bit for each key that is down."""
+        bits = bytearray(KEYS // 8)
+        fcntl.ioctl(self._fd, _request(2, 0x18, len(bits)), bits)
+        return frozenset(i for i in range(KEYS) if bits[i // 8] >> (i % 8) & 1)
+
+    def ranges(self) -> Mapping[int, AxisRange]:
+        """EVIOCGABS of every axis that it has."""
+        told = {}
+        for code in range(AXES):
+            if (ABS, code) in self._able:
+                raw = array.array("B", bytes(_ABSINFO.size))
+                fcntl.ioctl(self._fd, _request(2, 0x40 + code, _ABSINFO.size), raw)
+                value, low, high, *_ = _ABSINFO.unpack(raw)
+                told[code] = AxisRange(low, high, value)
+        return told
+
+    def close(self) -> None:
+        """Let it go: it types for everybody again."""
+        with contextlib.suppress(OSError):
+            os.close(self._fd)
+
+
+def _not_allowed(entry: DeviceEntry, path: Path) -> str:
+    vendor, _, product = entry.numbers.partition(":")
+    return (
+        f"{path} (the pendant {entry.name}) may not be read: write into {RULES} the line"
+        f' SUBSYSTEM=="input", ATTRS{{idVendor}}=="{vendor}", ATTRS{{idProduct}}=="{product}", TAG+="uaccess"'
+        " and plug it in again"
+    )

@@ -1,0 +1,102 @@
+"""[pendant] of the machine file: which device on USB it is; its buttons are inputs at ``pendant.…``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from core.table_schema import AT_PENDANT, Driver, DriverTable, Field, FileReading, Finding, Kind, written
+from drivers.pendant.input_codes import button_of, wheel_of
+
+_PATH, _WHEEL = "pendant", "io.analog.handwheel"
+_FIELDS = (
+    Field("device", Kind.TEXT),
+    Field("serial", Kind.TEXT, default=""),
+    Field("counts", Kind.CHOICE, choices=("steps", "place"), default="steps"),
+)
+NUMBERS = re.compile(r"([0-9a-fA-F]{4}):([0-9a-fA-F]{4})")
+STOPS = ("hold", "start_inhibit")  # what must not be believed to be there when it is gone
+_MAY = re.compile(r"hold|start_inhibit|wheel_\w+|jog_rapid|jog_[xyzabc]_(plus|minus)")
+_STARTS = re.compile(r"(cycle_?)?start.*|.*palms?.*|spindle_auto", re.IGNORECASE)
+NO_START = (
+    "nothing is started from a pendant: cycle start is a two-hand relay's output, wired to a terminal;"
+    " take this line out"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class PendantModel:
+    """``device`` is its name or ``vendor:product`` in hexadecimal; ``serial`` tells two alike apart.
+
+    ``counts``: its wheel tells steps, as REL says, or its place (0…255), as a Shuttle does.
+    """
+
+    device: str
+    serial: str
+    counts: str
+
+
+def _rules(file: FileReading) -> Iterator[Finding]:
+    for path, terminal in file.at_pendant.items():
+        if why := _wrong_button(path, terminal):
+            yield Finding(f"{path}.at", written(terminal), why)
+    yield from _taken(file)
+    yield from _analog(file)
+    used = [*file.at_pendant, *([_WHEEL] if _wheel(file) else ())]
+    if used and _PATH not in file.tables:
+        yield Finding(f"[{_PATH}]", "", f"missing; {used[0]} is at it. Say which: device = its name")
+    if not used and _PATH in file.tables:
+        expected = 'nothing is at it; expected an input such as hold = { at = "pendant.BTN_B" }'
+        yield Finding(f"[{_PATH}]", "", expected)
+
+
+def _wrong_button(path: str, terminal: str) -> str:
+    name = path.rpartition(".")[2]
+    if path.startswith("io.out."):
+        return "a pendant switches nothing: expected a terminal of the machine"
+    if _STARTS.fullmatch(name) and name != "start_inhibit":
+        return NO_START
+    if not _MAY.fullmatch(name):
+        return (
+            f"{name} is not taken from a pendant: USB is no wire for it. Expected hold, start_inhibit,"
+            " wheel_…, jog_x_plus and so on, jog_rapid"
+        )
+    if button_of(terminal.removeprefix(AT_PENDANT)) is None:
+        return "expected a button by its name in Linux: pendant.BTN_A, pendant.KEY_F13, pendant.ABS_HAT0X+"
+    return ""
+
+
+def _taken(file: FileReading) -> Iterator[Finding]:
+    """One button means one thing: whoever presses it does not mean two."""
+    taken: dict[object, str] = {}
+    for path, terminal in file.at_pendant.items():
+        code = button_of(terminal.removeprefix(AT_PENDANT))
+        first = taken.setdefault(code, path)
+        if code is not None and first != path:
+            expected = f"expected a button of its own; {first} is on this one"
+            yield Finding(f"{path}.at", written(terminal), expected)
+
+
+def _wheel(file: FileReading) -> str:
+    """Where the handwheel is at the pendant; empty where it is not."""
+    path = f"{_WHEEL}.at"
+    at = file.values.text(path) if file.values.has(path) else ""
+    return at if at.startswith(AT_PENDANT) else ""
+
+
+def _analog(file: FileReading) -> Iterator[Finding]:
+    values = file.values
+    for name in file.names("io.analog"):
+        path = f"io.analog.{name}.at"
+        if name != "handwheel" and values.has(path) and values.text(path).startswith(AT_PENDANT):
+            expected = "expected a terminal: of these only a handwheel is at a pendant"
+            yield Finding(path, written(values.text(path)), expected)
+    if (at := _wheel(file)) and wheel_of(at.removeprefix(AT_PENDANT)) is None:
+        expected = "expected a wheel by its name in Linux: pendant.REL_DIAL, pendant.ABS_WHEEL and so on"
+        yield Finding(f"{_WHEEL}.at", written(at), expected)
+
+
+DRIVER = Driver(
+    tables=(DriverTable(_PATH, _FIELDS, lambda file: file.values.model(PendantModel, _PATH), rules=_rules),)
+)

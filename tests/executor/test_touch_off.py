@@ -1,0 +1,313 @@
+"""A tool is touched off at the tool setter: what it finds, how near, and everything that must stop it."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from app.compose.machine_files import load_machine
+from core.executor.commands import EnableDrives, Jog, JogStep, JogStop, Reset, Touch
+from core.executor.snapshot import State, TouchPhase
+from core.machine.machine_model import InputModel, Machine
+from core.machine.setter_table import SetterModel, runs_on
+from drivers.simulated.simulated_table import SimulatedTable
+from tests.executor.rig import INCH, Rig
+
+LEASE = 0.25
+SETTER = SetterModel(
+    x=10.0, z=20.0, width=6.0, overtravel=3.0, speed=8.0, slow=0.25, search=12.0, back_off=1.0
+)
+TIP = (3.7, -41.3)  # where the slides stand when the tip is on part zero
+
+
+def with_setter(setter: SetterModel = SETTER, *inputs: str, tip: tuple[float, float] = TIP) -> Machine:
+    """The shipped lathe with a tool setter, and one tool whose tip is where only the simulation knows."""
+    machine = load_machine()
+    wired = {name: InputModel(name, f"test {name}", "") for name in ("probe", *inputs)}
+    tables = {**machine.hardware.tables, "setter": setter, "sim": SimulatedTable(tips=(tip,))}
+    hardware = dataclasses.replace(machine.hardware, tables=tables)
+    return dataclasses.replace(machine, inputs={**machine.inputs, **wired}, hardware=hardware)
+
+
+class TouchRig(Rig):
+    """``held`` is what the key that is held asks for; ``deepest`` how far the stylus was pushed."""
+
+    held: Touch | None = None
+    presses = 0
+
+    def tick(self, dt: float | None = None) -> None:
+        if self.held is not None:
+            self.executor.post(self.held)
+        super().tick(dt)
+
+    def hold(self, axis: str = "X", sign: int = -1, while_on: str = "") -> None:
+        self.presses += 1
+        self.held = Touch(axis, sign, LEASE, self.presses, while_on)
+        self.tick()
+
+    def let_go(self) -> None:
+        self.held = None
+        self.post(JogStop())
+
+    def put(self, x: float, z: float) -> None:
+        """The slides stand there, the tip so far from part zero."""
+        for name, want in zip("XZ", (x + TIP[0], z + TIP[1]), strict=True):
+            index = self.shot.axes.index(name)
+            while abs(way := want - self.shot.demand[index]) > 1e-6:
+                step = max(-2.5, min(2.5, way))
+                self.post(JogStep(name, step, 40.0))
+                self.until(State.IDLE)
+
+    @property
+    def deepest(self) -> float:
+        setter = self.sim.ports.axes._plant.terminals.setter  # type: ignore[attr-defined]
+        return float(setter.deepest)
+
+
+def ready(machine: Machine | None = None, *, x: float = 20.0, z: float = 20.0) -> TouchRig:
+    rig = TouchRig(machine or with_setter())
+    rig.ready()
+    rig.put(x, z)
+    return rig
+
+
+@pytest.mark.parametrize(
+    ("x", "z", "axis", "sign", "face"),
+    [
+        (20.0, 20.0, "X", -1, 13.0),
+        (1.0, 20.0, "X", 1, 7.0),
+        (10.0, 30.0, "Z", -1, 23.0),
+        (10.0, 11.0, "Z", 1, 17.0),
+    ],
+)
+def test_the_place_of_the_touch(x: float, z: float, axis: str, sign: int, face: float) -> None:
+    rig = ready(x=x, z=z)
+    rig.hold(axis, sign)
+    assert rig.shot.touching is TouchPhase.SEARCH
+    rig.until(State.IDLE)
+    touched = rig.shot.touched
+    assert touched is not None
+    assert touched.why == ""
+    index = "XZ".index(axis)
+    assert touched.place == pytest.approx(face + TIP[index], abs=0.0013 + 0.0003)  # a count, and 1 ms of way
+    assert SETTER.face(axis, sign) == face
+    assert touched.error == pytest.approx(0.25 * 0.001 / 2)
+    assert abs(rig.shot.actual[index] - (touched.place - sign * 1.0)) < 0.005  # it stands off
+    assert rig.deepest < SETTER.overtravel
+    assert "probe" not in rig.shot.inputs
+
+
+def test_its_phases_come_in_their_order_and_it_is_slow_at_last() -> None:
+    rig = ready()
+    seen: list[TouchPhase] = []
+    slow: list[float] = []
+
+    def note(shot: object) -> None:
+        phase = rig.shot.touching
+        if phase is not None and (not seen or seen[-1] is not phase):
+            seen.append(phase)
+        if phase is TouchPhase.SLOW and "probe" in rig.shot.inputs:
+            slow.append(rig.shot.velocity)
+
+    rig.watch.append(note)
+    rig.hold()
+    rig.until(State.IDLE)
+    assert seen == [TouchPhase.SEARCH, TouchPhase.BACK_OFF, TouchPhase.SLOW, TouchPhase.RETREAT]
+    assert max(slow) == pytest.approx(0.25, rel=0.6)  # in counts a tick
+
+
+def test_without_a_driver_that_keeps_the_place_a_tick_is_what_it_may_be_off() -> None:
+    rig = ready()
+    context = rig.executor._context
+    context.ports = dataclasses.replace(context.ports, touch=None)
+    rig.hold()
+    rig.until(State.IDLE)
+    touched = rig.shot.touched
+    assert touched is not None
+    assert touched.error == pytest.approx(0.25 * 0.01 / 2)
+    assert touched.place == pytest.approx(13.0 + TIP[0], abs=touched.error + 0.0013)
+
+
+# --- what stops it ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("phase", list(TouchPhase)[:4])
+def test_letting_go_stops_in_every_phase(phase: TouchPhase) -> None:
+    rig = ready()
+    rig.hold()
+    rig.until_true(lambda shot: shot.touching is phase)
+    rig.run(0.05)
+    before = rig.shot.actual[0]
+    rig.let_go()
+    rig.until(State.IDLE)
+    assert abs(rig.shot.actual[0] - before) < runs_on(8.0, 120 * INCH, 0.03)
+    touched = rig.shot.touched
+    assert touched is not None
+    assert (touched.place, touched.why) == (None, "it was let go")
+
+
+def test_a_screen_that_has_died_stops_it_within_the_lease() -> None:
+    rig = ready()
+    rig.hold()
+    rig.run(0.3)
+    before = rig.shot.actual[0]
+    rig.held = None  # no word more
+    rig.until(State.IDLE)
+    assert before - rig.shot.actual[0] < 8.0 * (LEASE + 0.05)
+    assert rig.shot.touched is not None
+    assert rig.shot.touched.place is None
+
+
+def test_a_key_that_is_still_held_begins_nothing_again() -> None:
+    rig = ready()
+    rig.hold()
+    rig.until(State.IDLE)
+    rig.run(1.0)
+    assert rig.state is State.IDLE
+    assert rig.shot.touched is not None
+    assert rig.shot.touched.number == 1
+    rig.hold()  # pressed anew: from where it stands now
+    rig.until(State.IDLE)
+    assert rig.shot.touched.number == 2
+    assert rig.shot.touched.why == ""
+
+
+def test_nothing_there_is_told_and_the_slide_goes_back() -> None:
+    rig = ready(z=60.0)  # beside the setter
+    begin = rig.shot.actual[0]
+    rig.hold()
+    rig.until(State.IDLE)
+    assert rig.shot.touched is not None
+    assert rig.shot.touched.why == "nothing was touched within 12.0 mm"
+    assert rig.shot.touched.place is None
+    assert rig.shot.actual[0] == pytest.approx(begin, abs=0.005)
+    assert rig.shot.alarms == ()
+
+
+def test_an_input_that_stays_on_while_backing_off_stops_there() -> None:
+    rig = ready()
+    rig.hold()
+    rig.until_true(lambda shot: shot.touching is TouchPhase.BACK_OFF)
+    rig.sim.machine.set_input("probe", True)
+    rig.until(State.IDLE)
+    assert rig.shot.touched is not None
+    assert "stays on 1.00 mm off the touch" in rig.shot.touched.why
+    assert rig.shot.touched.place is None
+
+
+def test_a_setter_that_gives_way_is_told() -> None:
+    """The second touch does not come: the stylus is loose, or it was a chip."""
+    rig = ready()
+    rig.hold()
+    rig.until_true(lambda shot: shot.touching is TouchPhase.SLOW)
+    rig.sim.ports.axes._plant.terminals.setter = None  # type: ignore[attr-defined]
+    rig.until(State.IDLE)
+    assert rig.shot.touched is not None
+    assert "second touch did not come" in rig.shot.touched.why
+
+
+def test_feed_hold_e_stop_and_another_key_end_it() -> None:
+    for act, why in (
+        (lambda rig: rig.sim.machine.press_hold(), "feed hold"),
+        (lambda rig: rig.post(Reset()), "reset"),
+        (lambda rig: rig.post(Jog("Z", 1.0, LEASE)), "something else was asked for"),
+        (lambda rig: rig.sim.machine.press_estop(), "E-STOP"),
+    ):
+        rig = ready()
+        rig.hold()
+        rig.run(0.2)
+        act(rig)
+        rig.run(0.5)
+        assert rig.shot.touching is None
+        assert rig.state in {State.IDLE, State.ESTOP}
+        assert rig.shot.touched is not None
+        assert why in rig.shot.touched.why
+        assert rig.shot.velocity == 0.0
+
+
+def test_a_button_that_comes_up_ends_it_though_the_screen_goes_on_asking() -> None:
+    rig = ready(with_setter(SETTER, "jog_x_minus"))
+    rig.sim.machine.set_input("jog_x_minus", True)
+    rig.tick()
+    rig.hold(while_on="jog_x_minus")
+    rig.run(0.2)
+    assert rig.state is State.JOG
+    rig.sim.machine.set_input("jog_x_minus", False)
+    rig.until(State.IDLE)
+    assert rig.shot.touched is not None
+    assert rig.shot.touched.place is None
+
+
+# --- what refuses it --------------------------------------------------------------------------------------
+
+
+def test_the_input_is_on_already() -> None:
+    rig = ready()
+    rig.sim.machine.set_input("probe", True)
+    rig.run(0.05)
+    rig.hold()
+    assert rig.state is State.IDLE
+    assert any("on already" in said for said in rig.said("refused"))
+
+
+def test_no_input_and_no_setter() -> None:
+    rig = TouchRig(load_machine())
+    rig.ready()
+    rig.hold()
+    assert rig.state is State.IDLE
+    assert any("no tool setter" in said for said in rig.said("refused"))
+
+
+def test_the_spindle_turns() -> None:
+    rig = ready()
+    rig.start("G90G94F300\nM03S900\nM02\n")
+    rig.until(State.IDLE)
+    rig.hold()
+    assert rig.state is State.IDLE
+    assert any("spindle turns" in said for said in rig.said("refused"))
+
+
+def test_an_axis_that_is_not_homed() -> None:
+    machine = with_setter()
+    x = dataclasses.replace(machine.axis("X"), absolute=False, home_order=1, home_speed=10.0)
+    rig = TouchRig(dataclasses.replace(machine, axes=(x, *machine.axes[1:])))
+    rig.post(EnableDrives())
+    rig.hold()
+    assert rig.state is State.IDLE
+    assert any("not homed" in said for said in rig.said("refused"))
+
+
+def test_a_search_that_would_leave_the_travel() -> None:
+    rig = ready()
+    rig.put(-TIP[0] - 4.0 * INCH + 10.0, 60.0)  # 10 mm from the end, and it looks 12 mm far
+    rig.hold()
+    assert rig.state is State.IDLE
+    assert any("would leave the travel of X by 5.00 mm" in said for said in rig.said("refused"))
+
+
+@pytest.mark.parametrize(("axis", "sign"), [("C", 1), ("", 1), ("X", 0), ("X", 3)])
+def test_no_direction_at_all(axis: str, sign: int) -> None:
+    rig = ready()
+    rig.hold(axis, sign)
+    assert rig.state is State.IDLE
+    assert any("not touched off along" in said for said in rig.said("refused"))
+
+
+def test_drives_off_and_feed_hold() -> None:
+    rig = TouchRig(with_setter())
+    rig.hold()
+    assert any("DRIVES OFF" in said for said in rig.said("refused"))
+    rig = ready()
+    rig.sim.machine.press_hold()
+    rig.tick()
+    rig.hold()
+    assert rig.state is State.IDLE
+    assert any("feed hold is pressed" in said for said in rig.said("refused"))
+
+
+def test_the_handwheel_is_selected() -> None:
+    rig = ready()
+    rig.executor._control.wheel.axis = "X"
+    rig.executor._control.touch.asked(Touch("X", -1, LEASE, 9), State.IDLE, "X")
+    assert any("handwheel is selected" in said for said in rig.said("refused"))

@@ -1,0 +1,107 @@
+"""[pendant] and [setter] of a machine file: what may be at a pendant, and that nothing is started by it."""
+
+from __future__ import annotations
+
+import pytest
+
+import resources
+from app.compose.machine_files import parse_machine
+from app.compose.pendant_wire import wired
+from core.machine.setter_table import SetterModel
+from core.table_schema import MachineFileError
+from drivers.pendant.pendant_table import PendantModel
+
+PENDANT = """
+[pendant]
+device = "0b33:0030"
+counts = "place"
+
+[io.analog]
+handwheel = { at = "pendant.REL_DIAL" }
+"""
+BUTTONS = """[io.in]
+wheel_x = { at = "pendant.BTN_0" }
+wheel_step = { at = "pendant.BTN_2" }
+jog_z_minus = { at = "pendant.ABS_HAT0X-" }
+start_inhibit = { at = "pendant.BTN_1" }
+probe = { at = "IN-7" }
+"""
+SETTER = """
+[setter]
+x = 0.5
+z = 1.0
+width = 0.25
+overtravel = 0.15
+speed = 20
+slow = 0.5
+"""
+
+
+def text(*changes: tuple[str, str]) -> str:
+    found = resources.machine_file("gt75.toml").replace("[io.in]\n", BUTTONS) + PENDANT + SETTER
+    for old, new in changes:
+        assert old in found
+        found = found.replace(old, new)
+    return found
+
+
+def refused(*changes: tuple[str, str]) -> str:
+    with pytest.raises(MachineFileError) as caught:
+        parse_machine(text(*changes), "test")
+    return str(caught.value)
+
+
+def test_a_pendant_and_a_setter() -> None:
+    machine = parse_machine(text(), "test")
+    assert machine.hardware.table(PendantModel) == PendantModel("0b33:0030", "", "place")
+    setter = machine.hardware.table(SetterModel)
+    assert setter is not None
+    assert setter.face("X", -1) == pytest.approx(25.4 * (0.5 + 0.125))
+    assert setter.face("Z", 1) == pytest.approx(25.4 * (1.0 - 0.125))
+    backend = wired(machine)
+    assert not {"wheel_x", "start_inhibit"} & set(backend.inputs)
+    assert "handwheel" not in backend.hardware.analog
+    assert {"probe", "guard"} <= set(backend.inputs)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        (
+            'start = { at = "IN-2" }',
+            'start = { at = "pendant.BTN_START" }',
+            "nothing is started from a pendant",
+        ),
+        ("wheel_x =", "cycle_start =", "nothing is started from a pendant"),
+        ("wheel_x =", "palm_left =", "nothing is started from a pendant"),
+        ("wheel_x =", "spindle_auto =", "nothing is started from a pendant"),
+        (
+            'estop = { at = "IN-1", active = "low" }',
+            'estop = { at = "pendant.BTN_A" }',
+            "USB is no wire for it",
+        ),
+        ('guard = { at = "IN-4" }', 'guard = { at = "pendant.BTN_A" }', "USB is no wire for it"),
+        ('coolant = { at = "OUT-1"', 'coolant = { at = "pendant.BTN_A"', "switches nothing"),
+        ("pendant.BTN_2", "pendant.BTN_0", "io.in.wheel_x is on this one"),
+        ("pendant.BTN_2", "pendant.BTN_NOPE", "expected a button by its name in Linux"),
+        ("pendant.REL_DIAL", "pendant.BTN_A", "expected a wheel by its name in Linux"),
+        ("wheel_step", "wheel_axis", "a button or switches, not both"),
+        ("jog_z_minus", "jog_y_minus", "no jog button: one of jog_rapid, jog_x_plus"),
+        ('[pendant]\ndevice = "0b33:0030"\ncounts = "place"\n', "", "[pendant]: missing"),
+        ('counts = "place"', 'counts = "clicks"', "pendant.counts"),
+        ("handwheel = {", "feed_pot = {", "only a handwheel is at a pendant"),
+        ('probe = { at = "IN-7" }\n', "", "io.in.probe: missing; [setter] needs its input"),
+        ("speed = 20\nslow", "speed = 100\nslow", "over setter.overtravel; go slower"),
+        ("slow = 0.5", "slow = 15", "setter.slow"),
+        ("speed = 20\nslow = 0.5", "speed = 0.3\nslow = 0.5", "faster than setter.speed"),
+        ("width = 0.25", "width = 0", "setter.width"),
+    ],
+)
+def test_what_is_refused(old: str, new: str, expected: str) -> None:
+    assert expected in refused((old, new))
+
+
+def test_a_pendant_that_nothing_is_at() -> None:
+    found = resources.machine_file("gt75.toml") + '\n[pendant]\ndevice = "Knob"\n'
+    with pytest.raises(MachineFileError, match="nothing is at it"):
+        parse_machine(found, "test")
