@@ -12,7 +12,7 @@ from core.executor.machine_context import MachineContext
 from core.executor.snapshot import State, Touched, TouchPhase
 from core.executor.start_conditions import guard_open
 from core.machine.setter_table import SetterModel
-from core.ports import PROBE, Latch
+from core.ports import PROBE, Latch, Unknown
 
 _SETTLED = 0.1  # s at rest until the input is believed to be off
 _RENEWED = 0.03  # s between two renewals of the way
@@ -136,7 +136,10 @@ class TouchOff:
             (context.signals.hold, "feed hold is pressed"),
             (guard_open(context), "the guard is open: close it"),
             (context.spindle.asked or not context.spindle.stopped, "the spindle turns: stop it first"),
-            (PROBE not in context.inputs, "the input probe is not read: check its terminal"),
+            (
+                PROBE not in context.inputs or Unknown.INPUTS in context.unknown,
+                "the input probe is not read: check its terminal",
+            ),
         )
         return next((why for so, why in reasons if so), "")
 
