@@ -426,6 +426,24 @@ class Unknown(StrEnum):
 ALL_UNKNOWN = frozenset(Unknown)
 
 
+class Wakeup(Protocol):
+    """How a driver tells by itself that something has changed: a machine at rest is then looked at ten times
+    a second, and at once when it rings.
+    """
+
+    def settled(self) -> bool:
+        """Whether nothing that a look tells changes any more without a ring. Asked at rest."""
+        ...
+
+    def ring(self) -> None:
+        """From any thread: look now."""
+        ...
+
+    def wait(self, seconds: float) -> bool:
+        """Until it rings, so long at most; whether it has. What rang before counts."""
+        ...
+
+
 class Clock(Protocol):
     """Monotonic time, and the only way to wait for it."""
 
@@ -449,6 +467,8 @@ class MachinePorts:
     blocks: BlockSink | None = None  # a controller that plans by itself: it takes no setpoints
     trips: Tripping | None = None  # None: nothing switches off by itself when the control is silent
     untraced: str = ""  # why the drives do not follow every setpoint, but only the end of each move
+
+    wakeup: Wakeup | None = None  # None: it is looked at in every tick, at rest too
     samples: SampleSource | None = None  # None: the scope has what the axes say at each tick
     # What is not known now. The ports go on to tell the last that was known of it, and nobody may take that
     # for the present: a spindle of which nothing is heard may turn. Known again once its wire tells it anew.

@@ -49,6 +49,10 @@ class TwoHandRelay:
         """The relay's contact."""
         return self._on_from <= now < self._on_until
 
+    def falls(self, now: float) -> bool:
+        """Whether its output is going to fall by itself."""
+        return now < self._on_until < float("inf")
+
 
 class Panel:
     """Everything on the station, as the operator's hands leave it."""
@@ -73,6 +77,11 @@ class Panel:
         self._hold_down = down
         if down:
             self._hold_until = now + self._pulse
+
+    def settled(self, now: float) -> bool:
+        """Whether it tells the same until somebody's hand is on it again."""
+        pulse = now < self._hold_until or self.relay.falls(now)
+        return self._silent is None and not self.noise and not pulse
 
     def silence(self, on: bool, now: float) -> None:
         """The station's cable is off, or on again."""

@@ -87,6 +87,7 @@ def _attended(
         gear=ports.gear if encoder else None,
         samples=SlidesAlone(ports.samples, len(ports.axes.axes)) if ports.samples is not None else None,
         warnings=(*ports.warnings, *said),
+        wakeup=None,  # nobody rings for what the inverter does by itself
         halt=partial(halt_with, ports, spindle),
         unknown=partial(unknown_with, ports, spindle),
     )

@@ -31,6 +31,7 @@ from core.executor.machine_control import MachineControl
 from core.executor.raised_alarm import AlarmError, log_alarm, log_line, make_alarm
 from core.executor.read_ahead import ProgramPass
 from core.executor.recorder import Tick
+from core.executor.rest import RESTS, Rest
 from core.executor.snapshot import ACTIVE, CYCLE, Event, Snapshot, State
 from core.executor.snapshot_publisher import Publisher
 from core.executor.spindle_control import SpindleControl
@@ -49,9 +50,6 @@ _STARTS = (CycleStart, DriveTest, EnableDrives, Home, Jog, JogStep, Wheel)
 _WAITED_FOR = (EnableDrives, Home, Reset)  # a driver answers them when its drives have obeyed
 _WORTH_AN_ENTRY = 0.1  # change of the feed override that is worth an entry in the log
 _COMMANDS = 100  # looked at in one tick
-_RESTING = frozenset({State.ESTOP, State.DISABLED, State.IDLE, State.FAULT})
-_SETTLED = 100  # ticks in which nothing has happened: from then on one in so many is shown
-_SHOWN = 5
 _POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
 
 
@@ -83,8 +81,6 @@ class Executor:
         self._due = ports.clock.now()  # when the next tick is expected
         self._missed = False  # the scope could not be told something
         self._late = 0.0  # s, the worst since the last that was handed over
-        self._seen: tuple[object, ...] = ()  # what the last tick has seen, but for the time
-        self._same = 0  # ticks since anything of that has changed
         spindle = SpindleControl(ports.spindle, machine.spindle, ports.lock)
         outputs = CommandedOutputs(ports.io, machine.outputs)
         self._context = MachineContext(
@@ -101,6 +97,7 @@ class Executor:
         self._control = MachineControl(self._context, passes, note, left)
         self._handler = CommandHandler(self._context, self._control, self._station)
         self._publisher = Publisher()
+        self._rest = Rest(self._context, self._control)
         self._logged_override = 1.0
         self._lost = ""  # what of the station was gone a tick ago
         self._told_lost = ""
@@ -117,6 +114,22 @@ class Executor:
     def post(self, command: Command) -> None:
         """Ask for something; it is looked at first thing in the next tick. Never waits."""
         self._commands.put((self._ports.clock.now(), command))
+        self.wake()
+
+    def wake(self) -> None:
+        """Look at once, from any thread; where the drivers do not ring that is the next tick anyway."""
+        if self._ports.wakeup is not None:
+            self._ports.wakeup.ring()
+
+    def rest(self) -> bool:
+        """Between two ticks, on their thread: wait where the machine is at rest, until something is asked for
+        or has changed. False, and at once, elsewhere.
+        """
+        with ReportedAttempt(self.failed):
+            if self._commands.empty() and self._rest.wait():
+                self._due = self._context.now + RESTS
+                return True
+        return False
 
     def tick(self) -> None:
         """Once every 10 to 20 ms: look, obey, supervise, go on, publish. Raises nothing."""
@@ -126,7 +139,9 @@ class Executor:
             self._blind()
         for part in (self._mind_watchdog, self._obey, self._supervise, self._go_on, self._turn):
             self._guarded(part)
-        if self._worth_showing():
+        self._late = max(self._late, self._context.now - self._due)
+        self._due = self._context.now + TICK
+        if self._rest.look():
             self._show()
             self._hand_over()
         self.patient = False
@@ -170,35 +185,6 @@ class Executor:
             self.snapshot = replace(
                 self.snapshot, t=self._context.now, state=status.state, alarms=status.alarms
             )
-
-    def _worth_showing(self) -> bool:
-        """Everything is looked at and decided in every tick; what a machine at rest shows is made anew twenty
-        times a second, once nothing has happened for a second, for that is most of what a tick costs.
-        """
-        context, status = self._context, self._control.status
-        self._late = max(self._late, context.now - self._due)
-        self._due = context.now + TICK
-        seen: tuple[object, ...] = ()
-        with Attempt() as look:  # a driver that breaks here is told of by whoever needs what it does not say
-            seen = (
-                status.state,
-                context.sample[1:],
-                context.inputs,
-                context.signals,
-                context.ports.io.outputs(),
-                context.spindle.measured,
-                context.spindle.command,
-                status.alarms,
-                context.stop,
-                status.job,
-                context.unknown,
-            )
-        if look.error is not None:
-            return True
-        changed = self._same < 0 or status.state not in _RESTING or seen != self._seen
-        self._same = 0 if changed else self._same + 1
-        self._seen = seen
-        return self._same < _SETTLED or self._same % _SHOWN == 0
 
     def _hand_over(self) -> None:
         """What the scope records; that nothing can be recorded stops nothing."""
@@ -285,7 +271,7 @@ class Executor:
                 posted, command = self._commands.get_nowait()
             except queue.Empty:
                 return
-            self._same = -1  # whatever it does is shown at once
+            self._rest.over()  # whatever it does is shown at once
             if isinstance(command, _STARTS) and self._context.now - posted > _STALE:
                 self._context.log("refused", f"{type(command).__name__} came too late to be obeyed")
             else:

@@ -44,6 +44,7 @@ class ExecutorThread:
     def close(self) -> None:
         """Stop the machine as E-stop would leave it, and end the thread."""
         self._closing.set()
+        self.executor.wake()
         if self._thread.is_alive():
             self._thread.join(_END)
         if not self._thread.is_alive() and not self._shut:
@@ -53,7 +54,8 @@ class ExecutorThread:
         while not self._closing.is_set():
             with ReportedAttempt(self.executor.failed):
                 self.executor.tick()
-                self._clock.sleep_until(self._clock.now() + self._tick)
+                if not self.executor.rest():
+                    self._clock.sleep_until(self._clock.now() + self._tick)
         self.executor.shut()
         self._shut = True
 

@@ -18,6 +18,7 @@ from drivers.operator_station import Panel
 from drivers.sample_log import SampleLog
 from drivers.setpoint_queue import Tolerance, straight
 from drivers.spindle_gear import GearedQueue, Phase, Slides
+from drivers.wakeup import Touch, Wakeup
 
 # --- The drives' own limits, the last line behind the control's: setpoints beyond them are refused.
 
@@ -77,6 +78,8 @@ class Plant:
         self.config = config
         self.clock = clock
         self.lock = threading.RLock()
+        self.wakeup = Wakeup(self.settled)
+        self.touch = Touch(self.lock, self.wakeup.ring)  # for hands, and for whatever breaks
         self.servos = tuple(Servo(axis) for axis in config.axes)
         self.names = tuple(axis.name for axis in config.axes)
         self.spindle = SpindleMotor(config.spindle)
@@ -119,6 +122,14 @@ class Plant:
             if now > self.spindle.t:
                 self.spindle.advance(now)
         return now
+
+    def settled(self) -> bool:
+        """Whether nothing changes any more until somebody's hand is on it; what breaks by the clock may."""
+        with self.lock:
+            now = self.advance()
+            waits = self.due is not None or self._off_at < _NEVER or self._homing is not None
+            moves = waits or not self.spindle.still or not self._resting()
+            return not moves and self.terminals.settled(now) and self.panel.settled(now)
 
     def _break(self, now: float) -> None:
         """Faults that are due; breaking something looks at the plant too, and must not come back here."""
@@ -195,7 +206,7 @@ class Plant:
 
     def press_estop(self) -> None:
         """The hardware chain: slides brake and lose power, the spindle too, whatever any program wants."""
-        with self.lock:
+        with self.touch:
             now = self.advance()
             self.panel.estop = True
             self.stop(Stop.RAMP_OFF)

@@ -55,6 +55,10 @@ class Terminals:
             return {**self.inputs, PROBE: True}
         return dict(self.inputs)
 
+    def settled(self, now: float) -> bool:
+        """Whether the collet has arrived, open or closed."""
+        return self._opened_at <= now and (self._closed_at <= now or self._closed_at == float("inf"))
+
     def closed(self, now: float) -> bool:
         """Whether the collet truly grips. Opening takes its time too before the switch lets go."""
         if self.outputs.get(self._collet.output, True):

@@ -238,6 +238,7 @@ def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
         station=SimStation(plant),
         gear=SimGear(plant),
         halt=plant.halt,
+        wakeup=plant.wakeup,
         samples=SimSamples(plant),
         touch=SimTouch(plant) if config.setter is not None else None,
     )

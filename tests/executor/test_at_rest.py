@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
-from core.executor.commands import EnableDrives, Jog, SetSwitch
+from app.compose.machine_files import load_machine
+from app.compose.simulated_backend import sim_config
+from core.executor.commands import EnableDrives, ForceOutput, Jog, SetSwitch
+from core.executor.executor import Executor
+from core.executor.rest import RESTS
 from core.executor.snapshot import State
+from core.ports import DriverError, Stop
+from drivers.clocks import StepClock
+from drivers.lookalikes.plant_config import PlannedFault
+from drivers.simulated.simulated_machine import build_simulation
 from tests.executor.rig import Rig
 
 
@@ -42,7 +51,7 @@ def test_it_is_shown_twenty_times_a_second_once_it_has_rested_for_one(powered: b
     assert rig.executor.ticks > 290  # the watchdog sees each of them
 
 
-@pytest.mark.parametrize(
+HAPPENS = pytest.mark.parametrize(
     ("happens", "seen"),
     [
         (lambda rig: rig.sim.machine.press_estop(), lambda rig: rig.state is State.ESTOP),
@@ -54,6 +63,9 @@ def test_it_is_shown_twenty_times_a_second_once_it_has_rested_for_one(powered: b
         (lambda rig: rig.executor.post(Jog("X", 5.0, 0.2)), lambda rig: rig.state is State.JOG),
     ],
 )
+
+
+@HAPPENS
 @pytest.mark.parametrize("phase", range(5))
 def test_whatever_happens_is_shown_by_the_tick_that_sees_it(
     phase: int, happens: Callable[[Rig], None], seen: Callable[[Rig], bool]
@@ -80,3 +92,137 @@ def test_a_late_tick_at_rest_is_still_told() -> None:
     rig.tick(0.07)
     rig.run(0.1)
     assert max(late) == pytest.approx(0.06)
+
+
+# --- between two ticks ------------------------------------------------------------------------------------
+
+
+class Ringing:
+    """Stands in for waiting: how long it would have slept, and whether something had rung by then."""
+
+    def __init__(self, rig: Rig) -> None:
+        self._wakeup = rig.executor._ports.wakeup
+        assert self._wakeup is not None
+        self._wakeup.wait(0.0)
+        self.slept: list[float] = []
+        self.rung: list[bool] = []
+        self.meanwhile: Callable[[], None] = lambda: None
+        self.wait, self._wakeup.wait = self._wakeup.wait, self._sleep  # type: ignore[method-assign]
+
+    def _sleep(self, seconds: float) -> bool:
+        self.slept.append(seconds)
+        self.meanwhile()
+        self.rung.append(self.wait(0.0))
+        return self.rung[-1]
+
+
+@pytest.mark.parametrize("powered", [True, False])
+def test_a_machine_that_rests_is_looked_at_ten_times_a_second(powered: bool) -> None:
+    rig = rested(powered=powered)
+    ringing = Ringing(rig)
+    late: list[float] = []
+    rig.executor._tell = lambda tick: late.append(tick.late)
+    for _ in range(5):
+        before = rig.shot
+        assert rig.executor.rest()
+        rig.tick(RESTS)
+        assert rig.shot is not before  # each of them is shown
+    assert ringing.slept == [RESTS] * 5
+    assert not any(ringing.rung)
+    assert max(late) < 1e-9  # as was meant
+
+
+@HAPPENS
+def test_whatever_happens_ends_its_rest_at_once(
+    happens: Callable[[Rig], None], seen: Callable[[Rig], bool]
+) -> None:
+    rig = rested()
+    ringing = Ringing(rig)
+    ringing.meanwhile = lambda: happens(rig)
+    assert rig.executor.rest()
+    assert ringing.rung == [True]
+    rig.tick(0.001)
+    assert seen(rig)
+    for _ in range(99):
+        assert not rig.executor.rest()
+        rig.tick()
+
+
+def test_what_was_posted_before_it_would_rest_is_not_kept_waiting() -> None:
+    rig = rested()
+    rig.executor.post(SetSwitch("single_block", True))
+    assert not rig.executor.rest()
+
+
+@pytest.mark.parametrize(
+    "goes_on",
+    [
+        lambda rig: setattr(rig.sim.ports.spindle, "speed", lambda: 1.0),
+        lambda rig: rig.post(ForceOutput("coolant", True)),
+        lambda rig: rig.sim.machine.station_silent(),
+        lambda rig: rig.sim.machine.jam("X"),
+    ],
+)
+def test_what_may_change_by_itself_is_looked_at_in_every_tick(goes_on: Callable[[Rig], None]) -> None:
+    rig = rested()
+    Ringing(rig)
+    goes_on(rig)
+    rig.run(3.0)
+    assert rig.state in {State.IDLE, State.FAULT}
+    for _ in range(20):
+        rig.tick()
+        assert not rig.executor.rest()
+
+
+@pytest.mark.parametrize(
+    ("act", "seconds"),
+    [
+        (lambda rig: rig.sim.ports.io.write("collet", False), 0.31),  # .25 s ± 20 %
+        (lambda rig: rig.sim.machine.press_start(), 0.11),
+        (lambda rig: rig.sim.machine.push("X", 0.01), 0.3),
+        (lambda rig: rig.sim.ports.axes.stop(Stop.RAMP_OFF), 0.05),
+    ],
+)
+def test_a_driver_does_not_say_that_it_rests_before_it_does(
+    act: Callable[[Rig], None], seconds: float
+) -> None:
+    rig = rested()
+    wakeup = rig.sim.ports.wakeup
+    assert wakeup is not None
+    assert wakeup.settled()
+    act(rig)
+    assert not wakeup.settled()
+    rig.clock.advance(seconds)
+    assert wakeup.settled()
+
+
+def test_a_machine_on_which_something_is_planned_to_break_never_rests() -> None:
+    faults = (PlannedFault(at=1000.0, what="estop"),)
+    config = replace(sim_config(load_machine()), faults=faults)
+    ports, _hands = build_simulation(config, StepClock())
+    assert ports.wakeup is not None
+    assert not ports.wakeup.settled()
+
+
+def test_drivers_that_do_not_ring_are_looked_at_in_every_tick() -> None:
+    rig = rested()
+    ports = replace(rig.sim.ports, wakeup=None)
+    executor = Executor(rig.machine, ports, rig.events.append)
+    for _ in range(300):
+        executor.tick()
+        assert not executor.rest()
+        rig.clock.advance(0.01)
+
+
+def test_a_driver_that_breaks_when_it_is_asked_whether_it_rests_is_an_alarm(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rig = rested()
+
+    def broken() -> bool:
+        raise DriverError("the wire is cut")
+
+    monkeypatch.setattr(rig.sim.ports.wakeup, "settled", broken)
+    assert not rig.executor.rest()
+    rig.tick()
+    assert rig.state is State.FAULT

@@ -39,8 +39,8 @@ def missing() -> str:
 class Server:
     """A server of our own, with what a hand can do to it. Keys by X's names, or by their codes."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, folder: Path, size: tuple[int, int] = SIZE) -> None:
+        self._folder, self._size = folder, size
         folder.mkdir(parents=True, exist_ok=True)
         self._running: list[subprocess.Popen[bytes]] = []
         self.name = self._serve()
@@ -56,7 +56,8 @@ class Server:
     def _serve(self) -> str:
         """Start it on a display that is free; it tells which."""
         read, write = os.pipe()
-        words = ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24"]
+        width, height = self._size
+        words = ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{width}x{height}x24"]
         words += ["-nolisten", "tcp", "-fbdir", str(self._folder)]
         self._begin(words, pass_fds=(write,))
         os.close(write)
@@ -228,9 +229,9 @@ def another_client(server: Server, what: str) -> Iterator[None]:
 
 
 @contextmanager
-def server(folder: Path) -> Iterator[Server]:
+def server(folder: Path, size: tuple[int, int] = SIZE) -> Iterator[Server]:
     """With a window manager; ended afterwards."""
-    made = Server(folder)
+    made = Server(folder, size)
     try:
         made.manage()
         yield made
