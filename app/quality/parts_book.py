@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass, field
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from app.desk.latest import Latest
@@ -14,10 +15,12 @@ from core.store.measured_parts import FeatureRow, ReadingRow
 from core.store.part_cycles import CorrectionRow, CycleRow, StopRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
+from core.store.store_rows import utc
 from core.store.store_writer import Operation
 from core.store.tool_lives import LifeRow
 
 NONE_KEPT = "NO MEASURED PARTS ARE KEPT HERE"
+_DAYS = timedelta(days=2)
 NEWEST = 1000  # readings, cycles and stops that are looked at
 
 
@@ -33,6 +36,7 @@ class PartsData:
     cycles: tuple[CycleRow, ...] = ()
     stops: tuple[StopRow, ...] = ()
     corrections: tuple[CorrectionRow, ...] = ()
+    day: tuple[CycleRow, ...] = ()  # cycles of all programs, as long ago as a shift may be
 
     def readings_of(self, feature: int) -> tuple[ReadingRow, ...]:
         """Readings of a feature in the order in which they were taken."""
@@ -93,6 +97,7 @@ def parts_data(store: Store, program: str, limit: int = NEWEST) -> PartsData:
             part_cycles.cycles(connection, program, limit),
             part_cycles.stops(connection, None, limit),
             part_cycles.corrections(connection, program, limit),
+            part_cycles.cycles_since(connection, utc(datetime.now(UTC) - _DAYS)),
         )
 
 

@@ -155,7 +155,7 @@ class TrendsSection(QualitySection):
         )
 
     def of_shift(self) -> Availability | None:
-        """Of the shift that is on, up to now, or that ended last today; None before it."""
+        """Of the shift that is on, up to now, or that ended last; whatever program ran. None before it."""
         now = self._now().astimezone()
         first, last = self.shift
         begins = now.replace(hour=first, minute=0, second=0, microsecond=0)
@@ -165,7 +165,7 @@ class TrendsSection(QualitySection):
         ends = min(begins + timedelta(hours=hours), now)
         if ends <= begins:
             return None
-        running = [span for row in self.data.cycles if (span := _span(row, now)) is not None]
+        running = [span for row in self.data.day if (span := _span(row, now)) is not None]
         return availability(Span(begins.timestamp(), ends.timestamp()), running)
 
     # --- drawing -------------------------------------------------------------------------------------

@@ -84,6 +84,16 @@ def cycles(connection: sqlite3.Connection, program: str | None, limit: int) -> t
     return tuple(CycleRow(*row) for row in rows)[::-1]
 
 
+def cycles_since(connection: sqlite3.Connection, since: str) -> tuple[CycleRow, ...]:
+    """Those of all programs that began at this time (UTC) or later, of the newest 20 000."""
+    rows = connection.execute(
+        f"SELECT {_CYCLE} FROM (SELECT * FROM part_cycles ORDER BY id DESC LIMIT 20000)"
+        " WHERE started >= ? ORDER BY id",
+        (since,),
+    )
+    return tuple(CycleRow(*row) for row in rows)
+
+
 def stops(connection: sqlite3.Connection, program: str | None, limit: int) -> tuple[StopRow, ...]:
     """The newest stops in their order; without a program of all."""
     rows = connection.execute(

@@ -192,4 +192,9 @@ def inches(mm: float) -> float:
 
 def utc_now() -> str:
     """This moment, to the millisecond."""
-    return datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+    return utc(datetime.now(UTC))
+
+
+def utc(moment: datetime) -> str:
+    """A moment as it is kept; what is later is greater as a text too."""
+    return moment.astimezone(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")

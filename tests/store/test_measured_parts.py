@@ -6,16 +6,19 @@ import csv
 import math
 import subprocess
 import sys
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
 
+from app.quality.parts_book import parts_data
 from core.store import backup, database, measured_parts, part_cycles, tool_lives
 from core.store.measured_parts import FeatureRow, ReadingRow
 from core.store.part_cycles import CycleRow, StopRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_export import export
+from core.store.store_rows import utc
 from core.store.tool_lives import LifeRow
 
 SPIGOT = FeatureRow(0, "pin.nc", "SPIGOT", "diameter", 12.7, -0.02, 0.02, "tool", 3, 1, 10, 1)
@@ -137,6 +140,15 @@ def test_cycles_and_stops(store: Store) -> None:
         assert (row.part, row.seconds, row.load) == (1, 58.5, None)
         assert part_cycles.stops(connection, None, 10) == (stop,)
         assert part_cycles.stops(connection, "other.nc", 10) == ()
+
+
+def test_the_cycles_of_a_day_are_those_of_all_programs(store: Store) -> None:
+    now = datetime.now(UTC)
+    for hours, program in ((1, "other.nc"), (2, "pin.nc"), (47, "other.nc"), (49, "pin.nc")):
+        started = utc(now - timedelta(hours=hours))
+        cycle(store, f"{hours}", 1, program=program, started=started, ended=started, seconds=8.0)
+    assert {row.key for row in parts_data(store, "pin.nc").day} == {"1", "2", "47"}
+    assert {row.key for row in parts_data(store, "pin.nc").cycles} == {"2", "49"}
 
 
 def test_an_insert_is_changed_and_what_it_made_is_remembered(store: Store) -> None:
