@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from threading import Event
 
 import pytest
 from pytestqt.qtbot import QtBot
@@ -228,11 +229,15 @@ def test_parts_of_before_the_correction_ask_for_no_other(day: Day) -> None:
     measured(day, ".5012")
     day.key(Key.Key_Escape)
     day.key(Key.Key_F8)
+    watch, read = day.desk.attached(PartsWatch), Event()
+    assert watch is not None
+    watch.book.worker.queue(lambda: read.wait(60.0), lambda _read: None, day.desk.say)
     yes(day.window)
     day.sees(lambda: not day.desk.book.busy)
     day.key(Key.Key_Escape)
     day.key(Key.Key_F8)
     assert "STILL READING" in day.prompt, "what is on its way would be proposed once more"
+    read.set()
     day.sees(lambda: settled(day))
     day.key(Key.Key_F8)
     assert "no part begun since the last change of T1 X is measured yet" in day.prompt
