@@ -396,12 +396,14 @@ class Trip(NamedTuple):
     """What something between control and machine has switched off, because nobody told it anything.
 
     ``away``: s for which it heard nothing. ``spindle``: it was to turn. ``outputs``: those that were on.
+    ``found``: on the way back, where it was the machine that was not heard: it was on all the while.
     """
 
     number: int
     away: float
     spindle: bool
     outputs: tuple[str, ...]
+    found: bool = False
 
 
 class Tripping(Protocol):

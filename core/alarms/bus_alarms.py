@@ -51,7 +51,7 @@ WIRES: Entries = {
         521,
         "the connection to the controller is lost",
         ("the cable to the controller was pulled or damaged", "the controller's power is off"),
-        "PRESS E-STOP; it moves what it has and then rests. Check cable and power, start the control again",
+        "PRESS E-STOP, the spindle may turn; check cable and power, Reset connects again. Home where asked",
     ),
     "controller-silent": off(
         522,

@@ -77,6 +77,10 @@ class CommandHandler:
             self._refuse(f"drives cannot be switched on in state {control.state.value}")
         elif control.status.alarms:
             self._refuse("an alarm stands: press Reset first")
+        elif self._context.unknown:
+            self._refuse(
+                "the machine has not yet said what it does: wait a moment, then switch the drives on"
+            )
         else:
             self._context.ports.axes.enable(True)
             self._context.sample = self._context.ports.axes.sample()

@@ -19,7 +19,7 @@ from core.executor.program_run import ProgramRun
 from core.executor.raised_alarm import AlarmError
 from core.executor.snapshot import ACTIVE, CYCLE, STOPPED, State
 from core.executor.start_conditions import Starting
-from core.ports import AxisSample, Trip, code_of
+from core.ports import AxisSample, Trip, Unknown, code_of
 
 
 class Supervisor:
@@ -90,6 +90,8 @@ class OutputsWatch:
         if trips is not None and trip is not None:
             trips.acknowledge(trip)  # first: the hold is setpoints too
             self._tripped(trip)
+        if Unknown.OUTPUTS in self._context.unknown:
+            return
         if self._program_run.status.state not in CYCLE:
             self._known_off = frozenset()
             for each in self._context.outputs.accept():
@@ -116,9 +118,9 @@ class OutputsWatch:
             context.spindle.dropped("THE FEEDER HAS SWITCHED OFF")
         context.outputs.fell(trip.outputs)
         self._known_off |= set(trip.outputs)
-        self._disturbed(
-            "feeder-tripped", f"CONTROL WAS SILENT FOR {trip.away:.1f} S, SWITCHED OFF: {', '.join(off)}"
-        )
+        who = "THE MACHINE WAS NOT HEARD" if trip.found else "CONTROL WAS SILENT"
+        what = "FOUND ON, SWITCHED OFF" if trip.found else "SWITCHED OFF"
+        self._disturbed("feeder-tripped", f"{who} FOR {trip.away:.1f} S, {what}: {', '.join(off)}")
 
     def _disturbed(self, code: Code, words: str) -> None:
         program_run, state = self._program_run, self._program_run.status.state

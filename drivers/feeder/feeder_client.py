@@ -325,10 +325,10 @@ class FeederTrips(_OnLine):
         shown = self._line.look().get("trip")
         if shown is None:
             return None
-        count, away, spindle, outputs = items(shown)
+        count, away, spindle, outputs, found = items(shown)
         (away_s,) = floats([away])
         (number_,) = floats([count])
-        return Trip(int(number_), away_s, spindle is True, tuple(texts(outputs)))
+        return Trip(int(number_), away_s, spindle is True, tuple(texts(outputs)), found is True)
 
     def acknowledge(self, trip: Trip) -> None:
         """It may go on: the control knows."""

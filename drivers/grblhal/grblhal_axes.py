@@ -8,6 +8,7 @@ from core.ports import AxisSample, DriverError, Segments, Stop
 from drivers.grblhal import grblhal_codes, grblhal_scripts
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_controller import Controller
+from drivers.grblhal.grblhal_wire import Opening
 
 _REPORTED = 0.002  # mm between where a block has ended and a report, which has three decimals
 _STEPS = 100  # setting, steps in a millimetre
@@ -18,8 +19,16 @@ class GrblAxes:
 
     commit = 0.0
 
-    def __init__(self, controller: Controller, blocks: GrblBlocks, pump: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        controller: Controller,
+        blocks: GrblBlocks,
+        pump: Callable[[], None],
+        reopen: Callable[[], Opening],
+    ) -> None:
+        """``reopen`` begins to open the wire anew."""
         self._c = controller
+        self._reopen = reopen
         self._blocks = blocks
         self._pump = pump
         self.axes = tuple(axis.name for axis in controller.config.axes)
@@ -47,6 +56,9 @@ class GrblAxes:
         """As last reported."""
         self._pump()
         c = self._c
+        if c.restarted:
+            c.restarted = False
+            self._forget_places()
         if c.fault or not c.trusted:
             self._homing = ""
         if self._homing and not c.busy and (c.ready or c.is_homed(self._homing)):
@@ -88,15 +100,21 @@ class GrblAxes:
         self._blocks.home(axis)
 
     def clear_fault(self) -> None:
-        """The operator has seen it: reset, unlock, verify. Raises DriverError when the wire is gone."""
-        if self._c.lost:
-            raise DriverError(f"{self._c.fault}; start the control again", "controller-lost")
+        """The operator has seen it: reset, unlock, verify. A wire that is gone is opened anew; why
+        it cannot be is the next fault.
+        """
         self._blocks.powered = False
         if not self._c.trusted:
-            self._known = {axis.name: not axis.wired for axis in self._c.config.axes}
-        if self._c.fault:
+            self._forget_places()
+        if self._c.lost:
+            self._c.reconnect(self._reopen(), lambda: grblhal_scripts.reconnect(self._c))
+        elif self._c.fault:
             self._c.fault = ""
             self._c.run(grblhal_scripts.recover(self._c))
+
+    def _forget_places(self) -> None:
+        """What the controller only counts may be anywhere; where it homes by itself its own word counts."""
+        self._known = {axis.name: not axis.wired for axis in self._c.config.axes}
 
     def _is_known(self, name: str) -> bool:
         """The controller's own word counts where it homes; where it does not, the machine file's."""

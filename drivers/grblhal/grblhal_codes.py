@@ -5,7 +5,7 @@ from __future__ import annotations
 from core.ports import FaultCode
 
 # The range from 0x80 on: its older twins ? ~ ! are plain text inside comments and $ lines.
-STATUS, START, HOLD, JOG_CANCEL, FULL = 0x80, 0x81, 0x82, 0x85, 0x87
+STATUS, START, HOLD, TELL_MODES, JOG_CANCEL, FULL = 0x80, 0x81, 0x82, 0x83, 0x85, 0x87
 RESET, STOP = 0x18, 0x19
 FEED, SPINDLE = tuple(range(0x90, 0x95)), tuple(range(0x99, 0x9E))  # to 100 %, up and down by 10, by 1
 RAPIDS = {100: 0x95, 50: 0x96, 25: 0x97}

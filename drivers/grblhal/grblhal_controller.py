@@ -9,12 +9,12 @@ import re
 from collections import deque
 from collections.abc import Callable
 
-from core.ports import Clock, Fault, FaultCode, code_of
+from core.ports import Clock, DriverError, Fault, FaultCode, code_of
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig
 from drivers.grblhal.grblhal_dialogue import Ask, Runner, Script, Stream
 from drivers.grblhal.grblhal_report import Identity, Report, read_report
-from drivers.grblhal.grblhal_wire import Wire, WireLostError
+from drivers.grblhal.grblhal_wire import Opening, Wire, WireLostError
 
 _LINE = 1024  # bytes; the controller sends no longer line
 _RUNNING, _RESTING, _ASKING = 0.1, 0.2, 0.05  # s between two questions for a report
@@ -81,6 +81,14 @@ class Controller:
         self._next_question = 0.0
         self._sees_overrides = False
         self._halted = False
+        self._opening: Opening | None = None  # of a wire that was lost
+        self._asks_modes = False
+        self._then: Callable[[], Script] | None = None  # once it is open
+        self.modes = ""  # as it has told them to a real-time question
+        self.restarted = False  # while nothing was heard of it: what it only counts is not where it stands
+        self.found_on: tuple[float, str] | None = (
+            None  # s unheard, and what was still on and was switched off
+        )
 
     def send(self, line: str, ticket: int = 0) -> Ask:
         """A line for the controller; its answer comes with later pumps."""
@@ -116,8 +124,24 @@ class Controller:
         if not (full and self._sees_overrides):
             self._next_question = now + self._interval()
 
+    def question_modes(self) -> None:
+        """Ask for the parser's state by a byte that passes every buffer; ``modes`` has it once it is told."""
+        self.modes, self._asks_modes = "", True
+        self.realtime(grblhal_codes.TELL_MODES)
+
+    def reconnect(self, opening: Opening, script: Callable[[], Script]) -> None:
+        """Begin to open the wire anew, and then the script; why that fails becomes the fault."""
+        self.fault, self.ready = "", False
+        self._opening, self._then = opening, script
+
+    def close(self) -> None:
+        """Let the wire go."""
+        self._wire.close()
+
     def pump(self) -> None:
         """Read, go on, watch. Never waits, never raises."""
+        if self._opening is not None:
+            self._reopen(self._opening)
         if self.lost:
             return
         try:
@@ -140,10 +164,6 @@ class Controller:
         )
         self._halted = True
 
-    def close(self) -> None:
-        """Let the wire go."""
-        self._wire.close()
-
     # --- what it is in -------------------------------------------------------------------------------
 
     @property
@@ -163,6 +183,8 @@ class Controller:
             return self.fault
         if self.alarm == grblhal_codes.HOMING_REQUIRED and not self.busy:
             return "the controller has to be homed first"
+        if self._opening is not None:
+            return "the connection to the controller is being made again"
         if self.busy or not self.ready:
             return "the controller's modes are being verified"
         return ""
@@ -309,6 +331,9 @@ class Controller:
     # --- lines that have come ------------------------------------------------------------------------
 
     def _told(self, line: str) -> None:
+        if self._asks_modes and line.startswith("[GC:"):
+            self.modes, self._asks_modes = line, False
+            return
         if self.stream.stale and line.startswith("[GC:"):
             self.stream.stale = False
         if not line.startswith("[MSG:"):
@@ -373,6 +398,25 @@ class Controller:
             self._wire.write(data)
         except WireLostError as error:
             self._gone(error)
+
+    def _reopen(self, opening: Opening) -> None:
+        """What was said or asked on the old wire counts no more, and what was heard is of before."""
+        try:
+            wire = opening.take()
+        except DriverError as error:
+            self._opening = None
+            self.fail(f"the connection to the controller is lost: {error}", "controller-lost")
+            return
+        if wire is None:
+            return
+        self._opening, self._wire, self.lost, self._halted = None, wire, False, False
+        self._inbox, self.alarm, self.identity = b"", 0, None
+        self.asked.clear()
+        self.owed_since = None
+        self._garbage.clear()
+        self.void()
+        assert self._then is not None
+        self.run(self._then(), "reconnect")
 
     def _gone(self, error: WireLostError) -> None:
         self.lost = self.mute = True

@@ -117,6 +117,7 @@ class Runner:
         self._script: Script | None = None
         self._step: Step = (lambda: True, 0.0, "")
         self._until = 0.0
+        self._inside = False  # its step is under way
 
     @property
     def busy(self) -> bool:
@@ -130,8 +131,8 @@ class Runner:
         self._step, self._until = (lambda: True, 0.0, ""), now
 
     def drop(self) -> None:
-        """Nothing is under way any more."""
-        if self._script is not None:
+        """Nothing is under way any more; a script that finds its wire gone ends with its step."""
+        if self._script is not None and not self._inside:
             self._script.close()
         self._script = None
 
@@ -145,6 +146,7 @@ class Runner:
                     return why
                 return ""
             try:
+                self._inside = True
                 self._step = next(self._script)
             except StopIteration:
                 self._script = None
@@ -153,4 +155,6 @@ class Runner:
                 return Fault(str(error), error.code)
             else:
                 self._until = now + self._step[1]
+            finally:
+                self._inside = False
         return ""

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from core.ports import ALL_UNKNOWN, Clock, DriverError, MachinePorts, Stop, Unknown
+from core.ports import ALL_UNKNOWN, Clock, DriverError, MachinePorts, Stop, Trip, Unknown
 from drivers.grblhal import grblhal_scripts
 from drivers.grblhal.grblhal_axes import GrblAxes
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_config import ESTOP, HARDWARE, GrblConfig
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_spindle import GrblEncoder, GrblSpindle
-from drivers.grblhal.grblhal_terminals import GrblInputs, GrblIO
-from drivers.grblhal.grblhal_wire import Wire, open_wire
+from drivers.grblhal.grblhal_terminals import LETTERS, GrblInputs, GrblIO
+from drivers.grblhal.grblhal_wire import Opening, Wire, open_wire
 from drivers.operator_station import PanelStation
 
 _ROUND = 0.005  # s between two looks while it connects
@@ -35,13 +35,15 @@ class GrblMachine:
     ) -> None:
         self._clock = clock
         self._idle = idle
+        self._wire = wire
+        self._trips = 0
         self.controller = Controller(config, wire or open_wire(config.port, config.baud), clock)
         self.blocks = GrblBlocks(self.controller)
         self.spindle = GrblSpindle(self.controller, self.blocks)
         self.encoder = GrblEncoder(self.controller)
         self.inputs = GrblInputs(self.controller, self.blocks)
         self.io = GrblIO(self.controller, self.blocks, self.inputs)
-        self.axes = GrblAxes(self.controller, self.blocks, self.pump)
+        self.axes = GrblAxes(self.controller, self.blocks, self.pump, self._reopen)
         self.blocks.terminals = self.io.able
         voided = self.controller.on_void
 
@@ -63,6 +65,7 @@ class GrblMachine:
             blocks=self.blocks,
             halt=self.controller.halt,
             unknown=self.unknown,
+            trips=self,
         )
 
     def pump(self) -> None:
@@ -76,6 +79,31 @@ class GrblMachine:
     def unknown(self) -> frozenset[Unknown]:
         """A controller that is not heard goes on with what it has, and its spindle turns on."""
         return ALL_UNKNOWN if self.controller.mute else frozenset()
+
+    def tripped(self) -> Trip | None:
+        """What a controller that was not heard had on, and what was switched off once it was heard again."""
+        found = self.controller.found_on
+        if found is None:
+            return None
+        unheard, letters = found
+        outputs = self.controller.config.outputs
+        on = (name for name, output in outputs.items() if LETTERS.get(output.terminal, " ") in letters)
+        return Trip(self._trips, unheard, bool({"S", "C"} & set(letters)), tuple(on), found=True)
+
+    def acknowledge(self, trip: Trip) -> None:
+        """The control knows."""
+        if trip.number == self._trips:
+            self._trips, self.controller.found_on = self._trips + 1, None
+
+    def _reopen(self) -> Opening:
+        """The old wire is let go first: a port that somebody has open cannot be opened."""
+        close, config = self.controller.close, self.controller.config
+
+        def opened() -> Wire:
+            close()
+            return self._wire or open_wire(config.port, config.baud)
+
+        return Opening(opened, at_once=self._wire is not None)
 
     def close(self) -> None:
         """Nothing is left moving; then the wire goes."""

@@ -43,7 +43,12 @@ def fresh(c: Controller) -> Script:
 
 
 def _by(c: Controller, ask: Ask, by: float) -> Callable[[], bool]:
-    return lambda: ask.done or c.clock.now() >= by
+    return _by_time(c, lambda: ask.done, by)
+
+
+def _by_time(c: Controller, ready: Callable[[], bool], by: float) -> Callable[[], bool]:
+    """Ready, or the time is over: what is not told then goes on without."""
+    return lambda: ready() or c.clock.now() >= by
 
 
 def asked(c: Controller, line: str, within: float = ANSWER) -> Generator[Step, None, list[str]]:
@@ -234,12 +239,44 @@ _BOOT = 6.0  # s; some boards start when their port is opened
 _HOMING = 120.0
 _COASTING, _LOOK = 8.0, 0.1  # s a spindle is given to stand, between two looks at it
 _STANDS = 5.0  # rpm
+_TELLS = 0.5  # s for the modes, asked by a byte: firmware from before 2020 does not know it
+_LASTING = ("G8", "G18")  # of our modes, those that no reset leaves
+_AT_ZERO = 0.002  # mm: reports have three decimals
 _ALONE = 2  # of $22: one axis may be homed without the others
 
 
 def connect(c: Controller) -> Script:
     """From an open wire to verified modes; a controller in alarm stays there for the operator."""
     yield from full_report(c, _BOOT)
+    yield from _set_up(c)
+
+
+def reconnect(c: Controller) -> Script:
+    """The same on a wire that was lost: what has become of it meanwhile is looked at first."""
+    unheard = c.clock.now() - c.heard_at
+    yield from full_report(c, _BOOT)
+    yield from same_session(c)
+    on = c.accessories[1] if c.accessories is not None else ""
+    yield from _set_up(c)
+    c.found_on = (unheard, on) if on else None
+
+
+def same_session(c: Controller) -> Script:
+    """Whether it is what it was when it was last heard. A reset or a restart leaves other modes than ours
+    (G17, by ``gc_init``); and one that has restarted counts from 0, at any other place it has not.
+    """
+    by = c.clock.now() + _TELLS
+    c.question_modes()
+    yield _by_time(c, lambda: c.modes != "", by), ANSWER, ""
+    told = c.modes.removeprefix("[GC:").rstrip("]").split()
+    places = c.report.position if c.report is not None else None
+    if all(mode in told for mode in _LASTING) or any(abs(place) > _AT_ZERO for place in places or ()):
+        return
+    c.restarted = True
+    c.origin.clear()
+
+
+def _set_up(c: Controller) -> Script:
     if c.report is not None and c.report.state not in {"Idle", "Alarm"}:
         yield from stop(c)
     yield from fresh(c)
@@ -257,6 +294,7 @@ def connect(c: Controller) -> Script:
     number = _alarm_of(c)
     if number:
         c.alarm = number
+        c.trusted = c.trusted and number not in grblhal_codes.LOST
         if number != grblhal_codes.HOMING_REQUIRED:
             c.fail(grblhal_codes.alarm_text(number), grblhal_codes.alarm_code(number))
         return
@@ -324,7 +362,10 @@ def abort(c: Controller) -> Script:
 def recover(c: Controller) -> Script:
     """The operator has cleared the alarm: reset, unlock, verify. What stood in the planner is gone."""
     c.void()
+    unheard = c.mute
     yield from full_report(c)
+    if unheard:
+        yield from same_session(c)
     if c.report is not None and "E" in c.report.pins:
         raise ScriptError("E-stop is pressed at the controller: release it, then Reset", "controller-estop")
     if c.report is not None and c.report.moves:

@@ -90,7 +90,7 @@ class GrblInputs:
 
 _COOLANT = {"flood": "M8", "mist": "M7"}
 _MIST = "M"  # among the letters of its build
-_LETTERS = {"flood": "F", "mist": "M"}  # among the accessories of its reports
+LETTERS = {"flood": "F", "mist": "M"}  # among the accessories of its reports
 _OBEYS = 1.0  # s from a line to a report that has it: lines wait behind blocks
 _COLLET = "collet"  # stays closed as it was found
 
@@ -116,7 +116,7 @@ class GrblIO:
         told = self._c.accessories
         shown = dict(self._wanted)
         for name, output in self._c.config.outputs.items():
-            letter = _LETTERS.get(output.terminal)
+            letter = LETTERS.get(output.terminal)
             said_at = self._said_at.get(name)
             if letter is None or told is None or said_at is None:
                 continue

@@ -28,6 +28,8 @@ def act(m: Firmware, byte: int) -> None:
         return  # flags are looked at when the wait is over; here they are gone
     elif byte in {0x80, 0x87}:
         m.say(m.reports.text(m, full=byte == 0x87) + "\r\n")
+    elif byte == 0x83:
+        m.say(m.program.told() + "\r\n")
     elif byte == 0x82:
         m.hold = m.hold or not (m.alarm or m.jogs or m.quirks.hold_broken)
     elif byte == 0x81:
@@ -293,6 +295,14 @@ class Firmware:
             return
         moved = self.slides.moving or self.homing is not None or self.index_since is not None
         self.restart(moved)
+
+    def power_cycle(self) -> None:
+        """Its supply was away: it counts from where it stands as 0, and knows no home."""
+        self.alarm, self.homed = 0, 0
+        self.door = self.blocking = False
+        self.slides.place = (0.0, 0.0)
+        self.restart(False)
+        self.alarm = 11 if int(self.registers[22]) & 5 == 5 else 0
 
     # --- inside -------------------------------------------------------------------------------------------
 

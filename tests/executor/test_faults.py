@@ -12,6 +12,7 @@ from core.executor.snapshot import Snapshot, State
 from core.executor.watchdog import ExecutorThread
 from core.interpreter.actions import Collet, Dwell, SpindleRun
 from core.machine.machine_model import Machine
+from core.ports import ALL_UNKNOWN
 from drivers.clocks import RealClock
 from tests.executor.made import Maker
 from tests.executor.rig import INCH, Rig, unhomed_machine
@@ -528,3 +529,17 @@ def test_estop_loses_the_home_of_axes_that_only_count() -> None:
     rig.sim.machine.press_estop()
     rig.run(0.5)
     assert rig.shot.homed == (True, False, True)
+
+
+def test_the_drives_stay_off_while_nothing_is_heard_of_the_machine() -> None:
+    it = Rig()
+    heard = it.executor._ports
+    it.executor._ports = dataclasses.replace(heard, unknown=lambda: ALL_UNKNOWN)
+    it.run(0.1)
+    it.post(EnableDrives())
+    assert it.state is State.DISABLED
+    assert "has not yet said what it does" in it.events[-1].text
+    it.executor._ports = heard
+    it.run(0.1)
+    it.post(EnableDrives())
+    assert it.state is State.IDLE

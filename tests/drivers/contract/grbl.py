@@ -19,7 +19,7 @@ from tests.drivers.grblhal.bench import LoopWire, grbl_machine, quirky
 
 # It ends what it has: 0.4 s beyond the piece of 0.2 s under way, and the ramp.
 _ALONE = "the wire is gone, and the controller has no watch over its host"
-_HOMING = (
+HOMING = (
     (
         "absolute = true                 # false",
         "home = { order = 2, speed = 60 }\nabsolute = false  # false",
@@ -129,7 +129,12 @@ class Grblhal(Rig):
         "drive fault": Fault(told=0.02, rests=0.02, says="ALARM:17, motor fault"),
         "alarm": Fault(told=0.02, rests=0.02, says="ALARM:14"),
         "cable out": Fault(
-            0.02, 0.9, "the connection to the controller is lost", True, _ALONE, _ALONE, unknown=ALL_UNKNOWN
+            0.02,
+            0.9,
+            "the connection to the controller is lost",
+            spins=_ALONE,
+            flows=_ALONE,
+            unknown=ALL_UNKNOWN,
         ),
         "silence": Fault(told=1.4, rests=2.2, says="does not answer", unknown=ALL_UNKNOWN),
         "garbage": Fault(told=0.15, rests=0.3, says="disturbed"),
@@ -153,7 +158,7 @@ class Grblhal(Rig):
     world: GrblWorld
 
     def __init__(self, *, homing: bool = False) -> None:
-        self.machine = grbl_machine(*(_HOMING if homing else ()))
+        self.machine = grbl_machine(*(HOMING if homing else ()))
         self.clock = StepClock()
         self.peer = Firmware(self.clock, quirky(homing=homing))
         self.wire = LateWire(self.peer)
@@ -191,8 +196,8 @@ class Grblhal(Rig):
         self.peer.raise_alarm(17)
 
     def mend(self) -> None:
-        """It speaks again."""
-        self.peer.quirks.deaf = False
+        """It speaks again, its cable is in."""
+        self.peer.quirks.deaf = self.wire.cut = False
 
     def close(self) -> None:
         """Nothing to let go."""

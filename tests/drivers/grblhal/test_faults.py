@@ -6,7 +6,6 @@ import pytest
 
 from core.executor.commands import EnableDrives, FeedOverride, Home, Reset
 from core.executor.snapshot import State
-from core.ports import DriverError
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
 from tests.drivers.grblhal.test_run import LONG
 
@@ -106,18 +105,6 @@ def test_a_silent_controller_is_told() -> None:
     took = bench.until(State.FAULT, limit=3.0)
     assert took < 1.4
     assert "does not answer" in bench.alarms()
-
-
-def test_a_cable_that_is_pulled_out_is_final() -> None:
-    bench = cutting(GrblBench())
-    bench.wire.cut = True
-    bench.until(State.FAULT, limit=0.1)
-    assert "connection" in bench.alarms()
-    bench.post(Reset())
-    bench.run(0.5)
-    assert bench.state is State.FAULT
-    with pytest.raises(DriverError, match="start the control again"):
-        bench.machine.axes.clear_fault()
 
 
 def test_without_its_host_it_runs_on_for_no_more_than_it_was_given() -> None:

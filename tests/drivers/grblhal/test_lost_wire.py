@@ -1,0 +1,117 @@
+"""A wire that is lost while the controller lives, and its return: Reset connects, the truth is read anew."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.executor.commands import EnableDrives, Reset
+from core.executor.snapshot import State
+from core.ports import ALL_UNKNOWN
+from tests.drivers.contract.grbl import HOMING
+from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
+
+CUT = "G90G94F300\nM03S600\nM08\nX.1\nG01F30Z-2\nM30\n"
+_HOMING = (
+    (
+        "absolute = true                 # false",
+        "home = { order = 2, speed = 60 }\nabsolute = false  # false",
+    ),
+    ("absolute = true\n\n[axis.C]", "absolute = false\nhome = { order = 1, speed = 60 }\n\n[axis.C]"),
+)
+
+
+def pulled(bench: GrblBench) -> GrblBench:
+    """In the middle of a cut the cable is pulled; the controller comes to rest by itself."""
+    bench.start(CUT)
+    bench.until_true(lambda shot: shot.actual[1] < -8.0)
+    bench.wire.cut = True
+    bench.until(State.FAULT, limit=0.1)
+    bench.run(3.0)
+    bench.peer.advance()
+    return bench
+
+
+def test_nothing_is_known_of_a_controller_whose_wire_is_lost() -> None:
+    bench = pulled(GrblBench())
+    assert bench.shot.unknown == ALL_UNKNOWN
+    assert bench.peer.spindle.speed == pytest.approx(600.0)  # whatever the screen says
+    assert bench.peer.outputs["flood"]
+    assert not bench.executor._context.spindle.stopped
+
+
+def test_reset_without_the_cable_says_so_again() -> None:
+    bench = pulled(GrblBench())
+    bench.post(Reset())
+    bench.run(0.5)
+    assert bench.state is State.FAULT
+    assert bench.shot.alarms[0].code == "controller-lost"
+    assert bench.shot.unknown == ALL_UNKNOWN
+
+
+def test_reset_connects_and_switches_off_what_is_still_on_and_says_so() -> None:
+    bench = pulled(GrblBench())
+    bench.wire.cut = False
+    bench.post(Reset())
+    bench.run(2.0)
+    assert bench.state is State.DISABLED
+    assert bench.peer.spindle.speed == 0.0
+    assert not bench.peer.outputs["flood"]
+    (said,) = [event.text for event in bench.events if event.kind == "disturbed"]
+    assert said.startswith("THE MACHINE WAS NOT HEARD FOR 3.")
+    assert said.endswith("FOUND ON, SWITCHED OFF: SPINDLE, COOLANT")
+    assert bench.shot.unknown == frozenset()
+    assert all(bench.shot.homed)
+    assert bench.shot.actual[:2] == pytest.approx(bench.peer.slides.place, abs=0.001)
+
+
+def test_a_part_is_made_behind_it() -> None:
+    bench = pulled(GrblBench())
+    bench.wire.cut = False
+    bench.post(Reset())
+    bench.run(2.0)
+    bench.start("G90G94F300\nM03S600\nX.1\nG01F100X0\nM30\n")
+    bench.until(State.IDLE)
+    assert bench.shot.parts == 1
+
+
+@pytest.mark.parametrize("homes", [False, True], ids=["counts", "homes"])
+def test_a_controller_that_has_restarted_meanwhile_has_to_be_homed(homes: bool) -> None:
+    """It counts from 0 where it stands, under G17: nobody may believe that place."""
+    bench = GrblBench(grbl_machine(*HOMING), quirky(homing=True)) if homes else GrblBench()
+    if homes:
+        bench.peer.homed = 5
+    bench.ready()
+    bench.run(0.5)
+    bench.wire.cut = True
+    bench.run(0.5)
+    bench.peer.power_cycle()
+    bench.wire.cut = False
+    bench.post(Reset())
+    bench.run(2.0)
+    assert bench.shot.homed[:2] == (False, False)
+    bench.post(EnableDrives())
+    bench.run(0.5)
+    bench.press()
+    assert "must be homed first" in bench.shot.start_refused
+
+
+def test_a_reset_by_its_button_keeps_the_place_where_it_does_not_stand_at_0() -> None:
+    """Its modes are gone, but a controller that restarts counts from 0: this one has not."""
+    bench = pulled(GrblBench())
+    bench.peer.reset()
+    bench.wire.cut = False
+    bench.post(Reset())
+    bench.run(2.0)
+    assert all(bench.shot.homed)
+    assert bench.shot.actual[1] < -8.0
+
+
+def test_firmware_that_knows_no_question_for_its_modes_is_taken_by_its_place() -> None:
+    bench = pulled(GrblBench())
+    told = bench.peer.program.told
+    bench.peer.program.told = lambda: "" if bench.wire.sent[-1:] == b"\x83" else told()  # type: ignore[method-assign]
+    bench.wire.cut = False
+    bench.post(Reset())
+    bench.run(3.0)
+    assert all(bench.shot.homed)
+    assert bench.shot.alarms == ()
