@@ -231,8 +231,8 @@ def test_parts_of_before_the_correction_ask_for_no_other(day: Day) -> None:
     day.key(Key.Key_F8)
     watch, read = day.desk.attached(PartsWatch), Event()
     assert watch is not None
-    watch.book.worker.queue(lambda: read.wait(60.0), lambda _read: None, day.desk.say)
     yes(day.window)
+    watch.book.worker.queue(lambda: read.wait(60.0), lambda _read: None, day.desk.say)
     day.sees(lambda: not day.desk.book.busy)
     day.key(Key.Key_Escape)
     day.key(Key.Key_F8)
