@@ -7,33 +7,13 @@ planned deceleration and without a fault. Hold, override, abort and jog are one 
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from core.ports import DriverError, Segments
-
-# --- One piece of motion with constant acceleration, all axes together, in plain numbers for the fast path.
-
-
-class Piece(NamedTuple):
-    """From ``t`` for ``dt`` seconds: position, velocity, acceleration at its start, one number an axis."""
-
-    t: float
-    dt: float
-    p: tuple[float, ...]
-    v: tuple[float, ...]
-    a: tuple[float, ...]
-
-
-def at(piece: Piece, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Position and velocity at ``t``, held at the piece's end when ``t`` lies behind it."""
-    dt = min(max(t - piece.t, 0.0), piece.dt)
-    p = tuple([x + (v + 0.5 * a * dt) * dt for x, v, a in zip(piece.p, piece.v, piece.a, strict=True)])
-    return p, tuple([v + a * dt for v, a in zip(piece.v, piece.a, strict=True)])
+from drivers.setpoint_pieces import Piece, PieceQueue
 
 
 def pieces_of(segments: Segments, axes: int) -> list[Piece]:
@@ -76,7 +56,6 @@ class AxisFigures:
 
 _SLOT = 1e-6  # s; clock rounding between the end of one piece and the start of the next
 _REST = 0.01  # mm/s or degrees/s; what rounding may leave of a velocity
-_TRIM = 64  # pieces; forgetting the past one by one would cost more than keeping it
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,49 +74,16 @@ class Tolerance:
         return cls((0.001,) * len(axes), tuple(1.01 * axis.corner + 1e-3 for axis in axes))
 
 
-class SetpointQueue:
-    """Setpoints of all axes, in pieces of constant acceleration; not thread-safe, its driver locks."""
+class SetpointQueue(PieceQueue):
+    """Setpoints of all axes, checked before they are queued; not thread-safe, its driver locks."""
 
     def __init__(
         self, axes: tuple[str, ...], rest: Sequence[float], commit: float, tolerance: Tolerance
     ) -> None:
+        super().__init__(rest)
         self.axes = axes
         self.commit = commit
         self._tolerance = tolerance
-        self._zero = (0.0,) * len(axes)
-        self._pieces: list[Piece] = []
-        self._starts: list[float] = []
-        self._end = -np.inf
-        self._rest = tuple(rest)
-
-    def rest_at(self, position: Sequence[float]) -> None:
-        """Forget every setpoint and rest here: after power-up, homing, or a stop by the drive itself."""
-        self._pieces, self._starts, self._end = [], [], -np.inf
-        self._rest = tuple(position)
-
-    def horizon(self, now: float) -> float:
-        """End of the last motion queued; ``now`` when nothing is."""
-        return max(self._end, now)
-
-    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Position and velocity at ``t``; where two pieces meet, those of the later one."""
-        if t >= self._end:
-            return self._rest, self._zero
-        index = bisect_right(self._starts, t) - 1
-        if index < 0:
-            return self._pieces[0].p, self._zero
-        return at(self._pieces[index], t)
-
-    def motion_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
-        """Position, velocity and acceleration at ``t``."""
-        p, v = self.demand_at(t)
-        index = bisect_right(self._starts, t) - 1
-        return p, v, self._pieces[index].a if index >= 0 and t < self._end else self._zero
-
-    @property
-    def pieces(self) -> Sequence[Piece]:
-        """What is queued, with what has not been forgotten of the past."""
-        return self._pieces
 
     def splice(self, segments: Segments, now: float) -> None:
         """Replace everything from ``segments.t[0]`` on.
@@ -154,44 +100,7 @@ class SetpointQueue:
             )
         self._check_joint(self.demand_at(start), (pieces[0].p, pieces[0].v), "where they take over")
         self._check_run(segments)
-        self._replace(start, pieces, at(pieces[-1], np.inf)[0])
-
-    def brake(self, now: float, decel: Sequence[float]) -> float:
-        """The drive's own stop: from now on straight to rest, all axes together; returns when it ends.
-
-        For stops that do not ask the host (E-stop, a fault). It leaves the path only by the curve within the
-        braking distance.
-        """
-        return self._brake(now, self.demand_at(now), decel)
-
-    def _brake(
-        self, now: float, state: tuple[tuple[float, ...], tuple[float, ...]], decel: Sequence[float]
-    ) -> float:
-        p, v = state
-        dt = max((abs(speed) / limit for speed, limit in zip(v, decel, strict=True)), default=0.0)
-        if dt <= 0.0:
-            self.rest_at(p)
-            return now
-        piece = Piece(now, dt, p, v, tuple(-speed / dt for speed in v))
-        self._replace(now, [piece], at(piece, now + dt)[0])
-        return now + dt
-
-    def trim(self, before: float) -> None:
-        """Forget what was over ``before`` this time."""
-        gone = bisect_right(self._starts, before) - 1
-        if gone >= _TRIM:
-            del self._pieces[:gone], self._starts[:gone]
-
-    def _replace(self, start: float, pieces: list[Piece], rest: tuple[float, ...]) -> None:
-        """Cut at ``start`` and append; a gap before ``start`` is rest."""
-        keep = bisect_right(self._starts, start - 1e-12)
-        del self._pieces[keep:], self._starts[keep:]
-        if self._end < start:
-            pieces = [Piece(max(self._end, start - 1.0), 0.0, self._rest, self._zero, self._zero), *pieces]
-        self._pieces += pieces
-        self._starts += [piece.t for piece in pieces]
-        self._end = pieces[-1].t + pieces[-1].dt
-        self._rest = rest
+        self.replace(start, pieces)
 
     def _check_run(self, segments: Segments) -> None:
         """Each piece must begin where the one before ends, and the last must come to rest."""

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from core.ports import Cam, DriverError, Geared, Segments, at_rest
-from drivers.setpoint_queue import Piece, SetpointQueue, Tolerance
+from drivers.setpoint_pieces import Piece
+from drivers.setpoint_queue import SetpointQueue, Tolerance
 
 # --- Angle and speed of a spindle from an encoder that counts in steps, read at the driver's own rate.
 

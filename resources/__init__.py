@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from importlib.resources import files
+from pathlib import Path
 
 
 def machine_names() -> frozenset[str]:
@@ -16,3 +17,8 @@ def machine_names() -> frozenset[str]:
 def machine_file(name: str) -> str:
     """The text of a shipped machine file, such as ``gt75.toml``. Raises FileNotFoundError."""
     return files(__name__).joinpath("machines", name).read_text(encoding="utf-8")
+
+
+def hal_file(name: str) -> Path:
+    """Where a shipped HAL file is, such as ``gt75-hal.hal``: LinuxCNC reads it itself."""
+    return Path(__file__).parent / "machines" / name

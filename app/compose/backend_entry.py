@@ -37,8 +37,8 @@ class Backend:
     ``word`` is what could not be reached where nothing answers. ``driven`` makes what the feeder owns, and
     ``connect`` what lives in the control's own process, with its inverter; a backend that has both is asked
     for the feeder by its machine file. ``played``: machine and other end are simulated here. ``play`` is the
-    other end alone, for trying a machine file without hardware. ``survey`` asks every node by itself: its
-    name, number, what is wrong with it and what it says.
+    other end alone, for trying a machine file without hardware. ``survey`` asks every node by itself, or
+    looks at every pin: its name, where it is, what is wrong with it and what it says.
     """
 
     word: str
@@ -46,7 +46,7 @@ class Backend:
     connect: Callable[[Machine, Clock], Connected] | None = None
     played: Callable[[Machine], bool] = lambda _machine: False
     play: Play | None = None
-    survey: Callable[[Machine, Clock], Iterable[tuple[str, int, str, str]]] | None = None
+    survey: Callable[[Machine, Clock], Iterable[tuple[str, str, str, str]]] | None = None
 
 
 def backend_of(machine: Machine) -> Backend:

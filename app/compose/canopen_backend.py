@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -194,7 +194,12 @@ def _play(
     play_peers(machine, going, say, typed, canopen_peers)
 
 
-BACKEND = Backend("bus", driven=can_driven, played=_played, play=_play, survey=canopen_survey)
+def _survey(machine: Machine, clock: Clock) -> Iterator[tuple[str, str, str, str]]:
+    for answer in canopen_survey(machine, clock):
+        yield f"node {answer.name}", str(answer.node), answer.trouble, answer.detail
+
+
+BACKEND = Backend("bus", driven=can_driven, played=_played, play=_play, survey=_survey)
 
 
 # --- What a control writes to the nodes of a bus at each start, to be compared with what it wrote before.

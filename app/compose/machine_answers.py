@@ -87,9 +87,9 @@ def _ask_nodes(machine: Machine, clock: Clock, answers: Answers) -> None:
     survey = backend_of(machine).survey
     if survey is None or played(machine):
         return
-    for name, node, trouble, detail in survey(machine, clock):
+    for name, at, trouble, detail in survey(machine, clock):
         state = "no answer" if "no answer" in trouble else "wrong" if trouble else "ok"
-        answers.rows.append(Row(f"node {name}", str(node), state, detail))
+        answers.rows.append(Row(name, at, state, detail))
         if trouble:
             answers.trouble.append(trouble)
 

@@ -24,7 +24,7 @@ _ENTRIES = (
     (canopen_table.DRIVER, "canopen_backend"),
     (inverter_table.DRIVER, ""),
     (grblhal_table.DRIVER, "grblhal_backend"),
-    (hal_table.DRIVER, ""),
+    (hal_table.DRIVER, "hal_backend"),
     (serial_table.DRIVER, ""),
     (gauge_table.DRIVER, ""),
     (setter_table.DRIVER, ""),

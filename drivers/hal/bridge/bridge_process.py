@@ -1,0 +1,144 @@
+"""The bridge's process: ``/usr/bin/python3 bridge_process.py FILE``, started by halrun; FILE says the rest.
+
+It looks whether HAL has every pin that the machine file names, hangs itself on them, and plays until its
+driver has gone.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import select
+import socket
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+sys.path.append(str(Path(__file__).resolve().parents[3]))
+
+from drivers.hal.bridge import hal_pins
+from drivers.hal.bridge.hal_bridge import Bridge, BridgeAxis, BridgeConfig
+from drivers.hal.bridge.packets import Head, pack, unpack
+
+_PERIOD = 0.002  # s between two rounds
+_REPORTS = 2  # rounds between two reports
+_PRIORITY = 45  # below the feeder's
+_LARGEST = 1 << 17
+_KINDS = {"float": "HAL_FLOAT", "bit": "HAL_BIT", "s32": "HAL_S32"}
+_WAYS = {"in": "HAL_IN", "out": "HAL_OUT", "io": "HAL_IO"}
+
+
+def main(arguments: list[str]) -> int:
+    """Until the driver has gone, or HAL is not as the machine file says."""
+    said = json.loads(Path(arguments[0]).read_text(encoding="utf-8"))
+    sock = socket.socket(fileno=said["fd"])
+    try:
+        hal = importlib.import_module("hal")  # the system's Python has it, this product's does not
+    except ImportError as error:
+        sock.send(pack({"error": f"{sys.executable} has no module hal ({error}); is it LinuxCNC's Python?"}))
+        return 1
+    try:
+        component = _component(hal, said)
+    except (RuntimeError, OSError, hal.error) as error:
+        sock.send(pack({"error": str(error)}))
+        return 1
+    if component is None:
+        return 1
+    bridge = _bridge(hal, component, said)
+    sock.send(pack({"ready": True, "warnings": _real_time()}))
+    component.ready()
+    return _serve(sock, bridge, lambda: time.monotonic() - said["zero"])
+
+
+def _component(hal: Any, said: Mapping[str, Any]) -> Any | None:
+    """Our component on the machine's pins; None where they are not as they must be, or nobody wants more."""
+    sock = socket.socket(fileno=os.dup(said["fd"]))
+    wanted = [hal_pins.Wanted(*each) for each in said["wanted"]]
+    pins = hal_pins.pins_of(hal_pins.halcmd("-s", "show", "pin"))
+    signals = hal_pins.signals_of(pins, hal_pins.halcmd("-s", "show", "sig"))
+    verdicts = [(each.path, each.pin, hal_pins.trouble(each, pins, signals)) for each in wanted]
+    sock.send(pack({"verdicts": verdicts}))
+    if said["only_check"] or any(wrong for _, _, wrong in verdicts):
+        return None
+    component = hal.component(said["name"])
+    for name, kind, way in said["pins"]:
+        component.newpin(name, getattr(hal, _KINDS[kind]), getattr(hal, _WAYS[way]))
+    script = Path(said["nets"])
+    script.write_text("\n".join(hal_pins.nets(wanted, said["own"], pins, signals)) + "\n", encoding="utf-8")
+    hal_pins.halcmd("-f", str(script))
+    for each in wanted:  # what E-stop leaves as it is, the begin of a session does too
+        output = each.path.removeprefix("io.out.")
+        if output in said["bridge"]["outputs"] and said["bridge"]["outputs"][output] is None:
+            component[f"out.{output}"] = hal_pins.is_on(each.pin, pins, signals)
+    return component
+
+
+def _bridge(hal: Any, component: Any, said: Mapping[str, Any]) -> Bridge:
+    told = dict(said["bridge"])
+    told["axes"] = tuple(BridgeAxis(**axis) for axis in told["axes"])
+    config = BridgeConfig(**told)
+    streams = [hal.stream(component, hal.streamer_base + n, said["columns"]) for n in range(2)]
+    sampler = hal.stream(component, hal.sampler_base, said["sampled"])
+    return Bridge(
+        config, component, (streams[0], streams[1]), sampler, lambda: time.monotonic() - said["zero"]
+    )
+
+
+def _real_time() -> list[str]:
+    """Ask for SCHED_FIFO; what was refused, in words for the operator."""
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_PRIORITY))
+    except OSError as error:
+        return [f"the bridge to HAL runs without real-time priority ({error.strerror}); see docs/hardware.md"]
+    return []
+
+
+def _serve(sock: socket.socket, bridge: Bridge, now: Callable[[], float]) -> int:
+    sock.setblocking(False)
+    due, count = now(), 0
+    while not bridge.done:
+        late = now() - due
+        bridge.round(max(late, 0.0))
+        if late >= 0.0:
+            due = max(due + _PERIOD, now())
+            count += 1
+            if count % _REPORTS == 0 and not bridge.gone:
+                _tell(sock, bridge)
+        left = max(due - now(), 0.0)
+        if bridge.gone:
+            time.sleep(left)
+        elif select.select([sock], [], [], left)[0]:  # what has come is carried out at once
+            for head, numbers in _heard(sock, bridge):
+                bridge.handle(head, numbers)
+    return 0
+
+
+def _tell(sock: socket.socket, bridge: Bridge) -> None:
+    """A driver that does not read has time for the next report."""
+    try:
+        sock.send(bridge.report())
+    except BlockingIOError:
+        return
+    except OSError:
+        bridge.gone = True
+
+
+def _heard(sock: socket.socket, bridge: Bridge) -> Iterator[tuple[Head, Any]]:
+    while not bridge.gone:
+        try:
+            data = sock.recv(_LARGEST)
+        except BlockingIOError:
+            return
+        except OSError:
+            data = b""
+        if not data:
+            bridge.gone = True
+            return
+        yield unpack(data)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

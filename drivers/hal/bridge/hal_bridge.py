@@ -1,0 +1,454 @@
+"""The bridge: setpoints into HAL, samples back, and no motion without a control.
+
+``handle`` a packet of the driver, ``round`` every few milliseconds, ``report`` what is seen. A driver that is
+silent is played to the end of its queue, which is at rest; then spindle and outputs go off. One that is gone
+loses the drives' power too.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from drivers.hal.bridge.packets import Head, flat, number, pack, pieces_of, text
+from drivers.hal.bridge.row_streams import Pins, RowStreams, Stream
+from drivers.hal.bridge.setpoint_player import Cam, Player
+from drivers.setpoint_pieces import INF, Piece, PieceQueue
+
+AWAY = 0.25  # s without a word of the driver
+_QUIET = 0.1  # s without a sample: the servo thread stands
+_GRANT = 0.1  # s in which the chain must close
+_PULSE = 0.01  # s of the reset
+_SLEW = 1e-3  # by which rows may be dealt faster or slower than by this computer's clock, while slides move
+_SLEW_AT_REST = 0.05
+_SETTLES = 0.5  # s in which such a difference is made up
+_PAST = 0.5  # s of setpoints that may still be asked for
+_RUNS_DOWN = 8.0  # s for a spindle to brake
+_STANDS = 0.1  # turns/s
+_ROWS = 300  # samples in one report
+_STILL = 1e-3  # mm/s
+
+
+@dataclass(frozen=True, slots=True)
+class BridgeAxis:
+    """One axis: what it brakes with, and how far it may be off its setpoint for how long."""
+
+    name: str
+    amax: float
+    window: float
+    time: float
+
+
+@dataclass(frozen=True, slots=True)
+class BridgeConfig:
+    """What the bridge has to know of the machine. ``outputs``: their safe states, None keeps.
+
+    ``turns`` and ``speed``: the samples have them, behind the axes. ``bits``: pins that are told as they are.
+    """
+
+    axes: tuple[BridgeAxis, ...]
+    period: float
+    ahead: float
+    outputs: Mapping[str, bool | None] = field(default_factory=dict)
+    inputs: tuple[str, ...] = ()
+    analog: tuple[str, ...] = ()
+    bits: tuple[str, ...] = ()
+    spindle: tuple[str, ...] = ()  # pins that are written
+    turns: bool = False
+    speed: bool = False
+    marks: int = 0  # switches at the end of each sample, for homing
+    figures: tuple[str, ...] = ()  # pins with numbers
+
+
+class Sampler(Protocol):
+    """``hal.stream`` of the sampler."""
+
+    @property
+    def readable(self) -> bool: ...
+    def read(self) -> Sequence[float]: ...
+
+
+class Bridge:
+    """Everything between one driver and one HAL; one thread."""
+
+    def __init__(
+        self,
+        config: BridgeConfig,
+        pins: Pins,
+        streams: tuple[Stream, Stream],
+        sampler: Sampler,
+        now: Callable[[], float],
+    ) -> None:
+        self.config = config
+        self.pins = pins
+        self.player = Player(len(config.axes))
+        self.rows = RowStreams(streams, pins)
+        self._sampler = sampler
+        self._now = now
+        self._orders: deque[tuple[Head, Sequence[float]]] = deque()
+        self._parts: list[Piece] = []
+        self._samples: list[float] = []
+        self._place: tuple[float, ...] = (0.0,) * len(config.axes)  # as fed back
+        self._over = [0.0] * len(config.axes)  # s outside the window
+        self._off_by = 0.0  # s between rows and this computer's clock
+        self._sampled = -INF  # when a sample was last read
+        self._heard = now()
+        self._parted, self._left_at = False, 0.0
+        self.gone = False  # the driver will never speak again
+        self.done = False
+        self.fault, self.code = "", ""
+        self._on = False  # power is asked for
+        self._grant_at = INF  # when it is given
+        self._granted = -INF
+        self._off_at = INF
+        self._reset_until = -INF
+        self._handled = 0.0
+        self._braked: list[float] = []  # pieces of a braking of our own
+        self._brakings = 0
+        self._missed: list[float] = []  # rows that came too late
+        self._least = INF  # rows in HAL, at the least since the last report
+        self._latest = 0.0  # s
+        self._dry = 0
+        self._homing: set[str] = set()
+        pins["watch"] = 1
+        self._acts: Mapping[str, Callable[[Head, Sequence[float]], None]] = {
+            "beat": lambda _head, _numbers: None,
+            "splice": self._splice,
+            "mesh": self._mesh,
+            "brake": lambda _head, _numbers: self._halt(),
+            "enable": self._enable,
+            "off": lambda _head, _numbers: self._power_off(),
+            "ramp-off": lambda _head, _numbers: self._ramp_off(),
+            "clear": lambda _head, _numbers: self._clear(),
+            "spindle": self._spindle,
+            "out": self._output,
+            "safe": lambda _head, _numbers: self._safe(),
+            "homing": self._home,
+            "index": self._index,
+            "end": self._end,
+        }
+
+    # --- the rounds ---------------------------------------------------------------------------------------
+
+    def handle(self, head: Head, numbers: Sequence[float]) -> None:
+        """One packet; it is carried out with the next round."""
+        self._heard = self._now()
+        self._orders.append((head, numbers))
+
+    def round(self, late: float = 0.0) -> None:
+        """Take in what HAL has sampled, watch over it, carry out orders, and see that HAL has enough rows."""
+        now = self._now()
+        self._latest = max(self._latest, late)
+        self.pins["heartbeat"] = not self.pins["heartbeat"]
+        self._take_samples(now)
+        self._supervise(now)
+        while self._orders and not self.rows.busy:
+            head, numbers = self._orders.popleft()
+            act = self._acts.get(text(head, "do"))
+            if act is not None:
+                act(head, numbers)
+            self._handled = number(head, "n", self._handled)
+        self._power(now)
+        self._without_driver(now)
+        self._fill(now)
+        self.player.queue.trim(now - _PAST)
+
+    def report(self) -> bytes:
+        """Everything that is seen, and the samples since the last report."""
+        rows, self._samples = self._samples[: _ROWS * self._width], self._samples[_ROWS * self._width :]
+        pins = self.pins
+        head = {
+            "n": self._handled,
+            "t": self.rows.played_t,
+            "at": self._place,
+            "powered": bool(pins["powered"]),
+            "ok": bool(pins["chain-ok"]),
+            "fault": self.fault,
+            "code": self.code,
+            "in": [bool(pins[f"in.{name}"]) for name in self.config.inputs],
+            "is": [bool(pins[f"is.{name}"]) for name in self.config.outputs],
+            "analog": [pins[f"analog.{name}"] for name in self.config.analog],
+            "bits": [bool(pins[name]) for name in self.config.bits],
+            "figures": [pins[name] for name in self.config.figures],
+            "geared": not self.player.rests,
+            "left": self.player.left,
+            "brakings": self._brakings,
+            "braked": self._braked,
+            "on": self._on,
+            "late": self._latest,
+            "least": None if self._least == INF else self._least,
+            "off_by": self._off_by,
+            "dry": self._dry,
+            "parted": self._parted,
+        }
+        self._latest, self._least = 0.0, INF
+        return pack(head, rows)
+
+    # --- what comes back ----------------------------------------------------------------------------------
+
+    @property
+    def _width(self) -> int:
+        config = self.config
+        return 1 + 2 * len(config.axes) + config.turns + config.speed + config.marks
+
+    def _take_samples(self, now: float) -> None:
+        count, before = len(self.config.axes), self.rows.played
+        axes = 1 + 2 * count
+        while self._sampler.readable:
+            sample = self._sampler.read()
+            row = int(sample[0])
+            if row == self.rows.played and row and self._on:
+                self._dry += 1
+            t = self.rows.seen(row)
+            command, actual = sample[1:axes:2], sample[2:axes:2]
+            self._place = tuple(actual)
+            if self.config.turns:
+                self.player.turns.note(t, sample[axes])
+            self._follow(command, actual)
+            self._samples += (t, *command, *actual, *sample[axes : self._width])
+            self._sampled = now
+        if self.rows.played != before:
+            self._off_by += 0.05 * (self.rows.played_t - now - self._off_by)
+        if len(self._samples) > 40 * _ROWS * self._width:  # nobody takes them
+            del self._samples[: -_ROWS * self._width]
+
+    def _follow(self, command: Sequence[float], actual: Sequence[float]) -> None:
+        """The following error of one sample."""
+        if not self._powered:
+            return
+        for index, axis in enumerate(self.config.axes):
+            if abs(command[index] - actual[index]) <= axis.window:
+                self._over[index] = 0.0
+                continue
+            self._over[index] += self.config.period
+            if self._over[index] > axis.time:
+                self._trip(f"{axis.name}: following error", "following")
+
+    @property
+    def _powered(self) -> bool:
+        return self._granted > -INF
+
+    def _supervise(self, now: float) -> None:
+        pins = self.pins
+        if not self.rows.settle(bool(pins["plays-b"])):
+            self._trip("setpoints came too late to HAL, which played what was queued before", "late")
+        if self._sampled > -INF and now - self._sampled > _QUIET:
+            self._trip("HAL's servo thread stands: is rtapi_app still there?", "feeder-gone")
+        if self._dry and self._powered:
+            self._ran_dry()
+        self._dry = 0
+        if self._powered and not pins["powered"] and now > self._granted + _GRANT:
+            self._lost_power()
+        if not pins["chain-ok"]:
+            self._open_chain()
+        for name in self.config.bits:
+            axis, _, what = name.partition(".")
+            if what == "fault" and pins[name] and self._on:
+                who = "the spindle's drive" if axis == "spindle" else f"{axis}: the drive"
+                self._trip(f"{who} reports a fault", "axis")
+            elif what.startswith("limit") and pins[name] and self._on and axis not in self._homing:
+                self._trip(f"{axis}: on its limit switch", "limit-switch")
+
+    def _ran_dry(self) -> None:
+        """At rest nothing has happened; in motion the limit in HAL has braked."""
+        if any(abs(v) > _STILL for v in self.player.state(self.rows.played_t)[1]):
+            self.player.rest_at(self._target())
+            self._trip(f"HAL had no setpoint for {self._dry} periods: this computer was late", "queue-dry")
+
+    def _target(self) -> tuple[float, ...]:
+        """Where the last row that was played leads to."""
+        return self.player.state(self.rows.last_t)[0]
+
+    def _lost_power(self) -> None:
+        if not self.pins["alive"]:
+            self._trip("this computer was silent: HAL has taken the power", "feeder-silent")
+        self._power_off()
+
+    def _open_chain(self) -> None:
+        """What is off in HAL does not come back by itself when the chain is closed again."""
+        self._spindle_off()
+        for name, safe in self.config.outputs.items():
+            if safe is not None:
+                self.pins[f"out.{name}"] = safe
+
+    def _trip(self, fault: str, code: str) -> None:
+        """All axes brake on their path, then lose power."""
+        if not self.fault:
+            self.fault, self.code = fault, code
+        if self._on and self._off_at == INF:
+            self._ramp_off()
+
+    # --- rows ---------------------------------------------------------------------------------------------
+
+    def _fill(self, now: float) -> None:
+        rows, config = self.rows, self.config
+        if self._sampled == -INF:
+            return
+        if not self._on:
+            self.player.rest_at(self._place)
+        elif self._powered:
+            self._least = min(self._least, rows.ahead)
+        rest = self.player.horizon(now) <= rows.last_t
+        slew = _SLEW_AT_REST if rest else _SLEW
+        step = config.period * (1.0 - min(max(self._off_by / _SETTLES, -slew), slew))
+        rows.last_t = max(rows.last_t, now)
+        most = round(2.0 * config.ahead / config.period)
+        while (t := rows.last_t + step) <= now + config.ahead and rows.ahead < most:
+            if not rows.write(t, self.player.row(t)):
+                return
+
+    def _recall(self, t: float) -> bool:
+        return self.rows.recall(t, self.player.row)
+
+    # --- orders -------------------------------------------------------------------------------------------
+
+    def _splice(self, head: Head, numbers: Sequence[float]) -> None:
+        self._parts += pieces_of(numbers, len(self.config.axes))
+        if head.get("more"):
+            return
+        pieces, self._parts = self._parts, []
+        if not self._on or not pieces or self._off_at < INF:
+            return
+        if self.rows.first_from(pieces[0].t) is None:
+            self._trip("setpoints came too late to be played", "late")
+            return
+        self.player.splice(pieces)
+        self._recall(pieces[0].t)
+
+    def _mesh(self, head: Head, numbers: Sequence[float]) -> None:
+        self._parts += pieces_of(numbers, len(self.config.axes))
+        if head.get("more"):
+            return
+        pieces, self._parts = self._parts, []
+        if not self._on or self._off_at < INF:
+            return
+        count = int(number(head, "way"))
+        way = PieceQueue(pieces[0].p)
+        way.replace(pieces[0].t, pieces[:count])
+        cam = Cam(number(head, "zero"), number(head, "sign", 1.0), way, pieces[count:])
+        t = self.rows.soonest()
+        if cam.sign * (self.player.turns.at(t) - cam.zero) > pieces[0].t:
+            self._trip("the thread came too late to be played", "late")
+            return
+        self.player.mesh(cam)
+        self._recall(t)
+
+    def _brake(self) -> float:
+        """On the path to rest, as soon as rows can be recalled; when that is over."""
+        t = self.rows.soonest()
+        pieces = self.player.brake(t, [axis.amax for axis in self.config.axes])
+        self._braked = list(flat(pieces or [Piece(t, 0.0, *self.player.state(t), self._still)]))
+        self._brakings += 1
+        self._recall(t)
+        return pieces[-1].t + pieces[-1].dt if pieces else t
+
+    def _halt(self) -> None:
+        if self._on and self._off_at == INF:
+            self._brake()
+
+    @property
+    def _still(self) -> tuple[float, ...]:
+        return (0.0,) * len(self.config.axes)
+
+    def _enable(self, _head: Head, _numbers: Sequence[float]) -> None:
+        if self.fault or self._on:
+            return
+        self.player.rest_at(self._place)
+        self._recall(self.rows.soonest())
+        self._on, self._off_at = True, INF
+        self._over = [0.0] * len(self.config.axes)
+        self._grant_at = self.rows.last_t
+        self._close_chain()
+
+    def _close_chain(self) -> None:
+        now = self._now()
+        if not self.pins["alive"]:
+            self.pins["watch"] = 0  # it begins anew with the next round
+        if not self.pins["chain-ok"]:
+            self._reset_until = now + _PULSE
+
+    def _power(self, now: float) -> None:
+        """The chain's reset is a pulse; power comes once HAL plays where the slides are."""
+        self.pins["reset"] = now < self._reset_until and bool(self.pins["alive"])
+        if not self.pins["reset"]:
+            self.pins["watch"] = 1
+        if self._grant_at <= now:
+            self._grant_at, self._granted = INF, now
+            self.pins["enable"] = 1
+        if self._off_at <= now:
+            self._power_off()
+
+    def _power_off(self) -> None:
+        self.pins["enable"] = 0
+        self._on = False
+        self._grant_at = self._off_at = INF
+        self._granted = -INF
+        self._homing.clear()
+        self.player.rest_at(self._place)
+
+    def _ramp_off(self) -> None:
+        if not self._on:
+            return
+        self._off_at = self._brake() + self.config.period
+
+    def _clear(self) -> None:
+        self._power_off()
+        self.fault = self.code = ""
+        self._close_chain()
+
+    def _spindle(self, head: Head, _numbers: Sequence[float]) -> None:
+        rpm, on = number(head, "rpm"), head.get("on") is True
+        if on and not self.pins["chain-ok"]:
+            return
+        said = {"speed": rpm, "on": on, "forward": on and rpm >= 0.0, "reverse": on and rpm < 0.0}
+        said["position_mode"] = head.get("c") is True
+        for name in self.config.spindle:
+            self.pins[f"spindle.{name}"] = said[name]
+
+    def _spindle_off(self) -> None:
+        for name in self.config.spindle:
+            self.pins[f"spindle.{name}"] = 0
+
+    def _output(self, head: Head, _numbers: Sequence[float]) -> None:
+        name, on = text(head, "name"), head.get("on") is True
+        if name in self.config.outputs:
+            self.pins[f"out.{name}"] = on
+
+    def _safe(self) -> None:
+        for name, safe in self.config.outputs.items():
+            if safe is not None:
+                self.pins[f"out.{name}"] = safe
+
+    def _home(self, head: Head, _numbers: Sequence[float]) -> None:
+        """The limit switch of an axis that looks for it stops nothing."""
+        name = text(head, "axis")
+        (self._homing.add if head.get("on") is True else self._homing.discard)(name)
+
+    def _index(self, head: Head, _numbers: Sequence[float]) -> None:
+        """Ask an encoder for its index: the pin falls when it comes by."""
+        self.pins[text(head, "pin")] = head.get("on") is True
+
+    def _end(self, _head: Head, _numbers: Sequence[float]) -> None:
+        self.gone = True
+
+    # --- without a driver ---------------------------------------------------------------------------------
+
+    def _without_driver(self, now: float) -> None:
+        if not self.gone and now - self._heard <= AWAY:
+            self._parted = False
+            return
+        if not self.player.rests and abs(self.player.turns.speed) < _STANDS:
+            self._brake()
+        if self.player.horizon(now) > now:
+            return
+        if not self._parted:
+            self._parted, self._heard = True, min(self._heard, now - AWAY)
+            self._left_at = now
+            self._spindle_off()
+            self._safe()
+        if self.gone:
+            self._power_off()
+            stands = not self.config.turns or abs(self.player.turns.speed) < _STANDS
+            self.done = stands or now - self._left_at > _RUNS_DOWN

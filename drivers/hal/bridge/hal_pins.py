@@ -1,0 +1,131 @@
+"""The machine's pins and signals as HAL has them, and whether each is what the machine file takes it for."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+_KINDS = frozenset(("float", "bit", "s32", "u32"))
+_IN, _OUT, _BOTH = "IN", "OUT", "I/O"
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """A pin or signal that the machine file names: ``path`` is its key, ``ours`` the signal of ours."""
+
+    path: str
+    pin: str
+    kind: str
+    drives: bool
+    ours: str
+
+
+@dataclass(frozen=True, slots=True)
+class Pin:
+    """One pin of HAL: its signal is empty where it hangs on none; its value as halcmd writes it."""
+
+    kind: str
+    way: str
+    signal: str = ""
+    value: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """One signal of HAL: whether a pin drives it, and its value as halcmd writes it."""
+
+    kind: str
+    driven: bool
+    value: str = ""
+
+
+def halcmd(*words: str) -> str:
+    """What halcmd answers. Raises RuntimeError with its own words."""
+    done = subprocess.run(["halcmd", *words], capture_output=True, text=True, timeout=20, check=False)
+    if done.returncode:
+        raise RuntimeError((done.stderr or done.stdout).strip() or "halcmd has failed")
+    return done.stdout
+
+
+def pins_of(shown: str) -> dict[str, Pin]:
+    """``halcmd -s show pin``: owner, type, way, value, name, and the arrow to a signal."""
+    found = {}
+    for line in shown.splitlines():
+        words = line.split()
+        if len(words) >= 5:
+            found[words[4]] = Pin(words[1], words[2], words[6] if len(words) > 6 else "", words[3])
+    return found
+
+
+def signals_of(pins: Mapping[str, Pin], shown: str) -> dict[str, Signal]:
+    """``halcmd -s show sig``: type, value, name, and the pins on it."""
+    driven = {pin.signal for pin in pins.values() if pin.way == _OUT}
+    found = {}
+    for line in shown.splitlines():
+        words = line.split()
+        if len(words) >= 3 and words[0] in _KINDS:
+            found[words[2]] = Signal(words[0], words[2] in driven, words[1])
+    return found
+
+
+def trouble(wanted: Wanted, pins: Mapping[str, Pin], signals: Mapping[str, Signal]) -> str:
+    """What is wrong with it; empty when it is as it has to be."""
+    pin, signal = pins.get(wanted.pin), signals.get(wanted.pin)
+    if pin is None and signal is None:
+        return "HAL has no such pin or signal; is its component loaded, is it written right?"
+    kind = pin.kind if pin is not None else signal.kind if signal is not None else ""
+    if kind != wanted.kind:
+        return f"is {kind}, expected {wanted.kind}"
+    if pin is not None and _wrong_way(wanted, pin):
+        expected = "an input, which this control drives" if wanted.drives else "an output, which it reads"
+        return f"is an {'output' if pin.way == _OUT else 'input'}, expected {expected}"
+    if wanted.drives and pin is not None and pin.signal and signals.get(pin.signal, Signal("", False)).driven:
+        return f"something else drives it by the signal {pin.signal}; take that net out"
+    if wanted.drives and signal is not None and signal.driven:
+        return "something else drives this signal; take that net out"
+    return ""
+
+
+def is_on(name: str, pins: Mapping[str, Pin], signals: Mapping[str, Signal]) -> bool:
+    """Whether a pin or signal is on."""
+    found = signals[name] if name in signals else pins[name]
+    return found.value == "TRUE"
+
+
+def _wrong_way(wanted: Wanted, pin: Pin) -> bool:
+    """An input on a signal may be read all the same: what it hears is heard."""
+    if wanted.drives:
+        return pin.way == _OUT
+    return pin.way == _IN and not pin.signal
+
+
+def nets(
+    wanted: Iterable[Wanted],
+    own: Mapping[str, Sequence[str]],
+    pins: Mapping[str, Pin],
+    signals: Mapping[str, Signal],
+) -> list[str]:
+    """Lines of halcmd that hang the machine on our signals, and the bridge's own pins (by our signal).
+
+    What hangs on a signal of the machine's already keeps it, and what of ours is on the other one goes there.
+    Raises RuntimeError where ours would have to be on two of theirs.
+    """
+    theirs, loose, kept = dict[str, str](), [], list[str]()
+    for each in wanted:
+        signal = pins[each.pin].signal if each.pin in pins else each.pin
+        if not signal:
+            loose.append(each)
+        elif theirs.setdefault(each.ours, signal) != signal:
+            raise RuntimeError(
+                f"{each.path}: {signal} and {theirs[each.ours]} are driven alike; make them one"
+            )
+        if not each.drives and signal in signals and not signals[signal].driven:
+            kept.append(f"sets {signal} {signals[signal].value}")  # the first pin would bring its own value
+    lines = []
+    for name, pin in pins.items():
+        if pin.signal in theirs:
+            lines += [f"unlinkp {name}", f"net {theirs[pin.signal]} {name}"]
+    lines += [f"net {theirs.get(each.ours, each.ours)} {each.pin}" for each in loose]
+    lines += [f"net {theirs.get(signal, signal)} {' '.join(names)}" for signal, names in own.items()]
+    return [*lines, *kept]

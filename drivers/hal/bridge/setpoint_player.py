@@ -1,0 +1,150 @@
+"""What is played when: a queue that ends at rest, and over the turns of the spindle a cam."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from drivers.setpoint_pieces import INF, Piece, PieceQueue
+
+_WINDOW = 0.06  # s of turns from which the speed is taken
+_STANDS = 1e-6  # turns/s
+Row = tuple[float, ...]
+State = tuple[tuple[float, ...], tuple[float, ...]]
+
+
+class TurnsAhead:
+    """Where the spindle will be, by what it has turned of late."""
+
+    def __init__(self) -> None:
+        self._seen: deque[tuple[float, float]] = deque()
+        self.speed = 0.0  # turns/s
+
+    def note(self, t: float, turns: float) -> None:
+        """A reading."""
+        seen = self._seen
+        if seen and t <= seen[-1][0]:
+            return
+        seen.append((t, turns))
+        while len(seen) > 2 and seen[1][0] <= t - _WINDOW:
+            seen.popleft()
+        since = t - seen[0][0]
+        self.speed = (turns - seen[0][1]) / since if since > 0.0 else 0.0
+
+    def at(self, t: float) -> float:
+        """Turns at ``t``."""
+        if not self._seen:
+            return 0.0
+        then, turns = self._seen[-1]
+        return turns + self.speed * (t - then)
+
+
+class Cam(NamedTuple):
+    """Motion over turns from ``zero`` on, as ``core.ports.Cam``; ``then`` goes on by time."""
+
+    zero: float
+    sign: float
+    way: PieceQueue
+    then: Sequence[Piece]
+
+
+class Player:
+    """One row for any time: for each axis its place without the spindle, and its way a turn."""
+
+    def __init__(self, axes: int) -> None:
+        self.queue = PieceQueue((0.0,) * axes)
+        self.turns = TurnsAhead()
+        self.cam: Cam | None = None
+        self.left: float | None = None  # when the way of the cam was over, s
+
+    def rest_at(self, place: Sequence[float]) -> None:
+        """Nothing is queued any more."""
+        self.cam = self.left = None
+        self.queue.rest_at(place)
+
+    def splice(self, pieces: list[Piece]) -> None:
+        """By time from here on."""
+        if self.cam is not None:
+            self.queue.rest_at(pieces[0].p)
+        self.cam = self.left = None
+        self.queue.replace(pieces[0].t, pieces)
+
+    def mesh(self, cam: Cam) -> None:
+        """By the spindle from here on. What lies before its begin stays, where it goes on from one."""
+        before = self.cam
+        if before is not None and (before.zero, before.sign) == (cam.zero, cam.sign):
+            before.way.replace(cam.way.pieces[0].t, list(cam.way.pieces))
+            cam = cam._replace(way=before.way)
+        self.cam, self.left = cam, None
+
+    def brake(self, t: float, decel: Sequence[float]) -> list[Piece]:
+        """From ``t`` on straight to rest; the pieces of that, none where it rests."""
+        state = self.state(t)
+        if self.cam is not None:
+            self.rest_at(state[0])
+        took = max((abs(v) / a for v, a in zip(state[1], decel, strict=True)), default=0.0)
+        if took <= 0.0:
+            self.queue.rest_at(state[0])
+            return []
+        piece = Piece(t, took, *state, tuple(-v / took for v in state[1]))
+        self.queue.replace(t, [piece])
+        return [piece]
+
+    @property
+    def rests(self) -> bool:
+        """Whether the spindle moves nothing."""
+        return self.cam is None or self.left is not None
+
+    def horizon(self, t: float) -> float:
+        """Until when anything moves; endless while the slides follow the spindle."""
+        return self.queue.horizon(t) if self.rests else INF
+
+    def state(self, t: float) -> State:
+        """Place and velocity at ``t``, as far as it is foreseen."""
+        if self.cam is None or (self.left is not None and t >= self.left):
+            return self.queue.demand_at(t)
+        p, per_turn = self.cam.way.demand_at(self._cam_turns(self.cam, t))
+        speed = max(self.cam.sign * self.turns.speed, 0.0)
+        return p, tuple([v * speed for v in per_turn])
+
+    def row(self, t: float) -> Row:
+        """What HAL is given for ``t``: place and way a turn of each axis, one behind the other."""
+        cam = self.cam
+        if cam is not None and (self.left is None or t < self.left):
+            u = self._cam_turns(cam, t)
+            if u < cam.way.horizon(-INF):
+                return self._geared(cam, u)
+            if self.left is None:
+                self._leave(cam, t)
+        place, _ = self.queue.demand_at(t)
+        return tuple([each for p in place for each in (p, 0.0)])
+
+    def geared(self) -> tuple[float, float] | None:
+        """Turns from zero at which the newest reading is, and turns/s; None where nothing follows."""
+        if self.cam is None or self.left is not None:
+            return None
+        return self.cam.sign, self.cam.sign * self.turns.speed
+
+    def _cam_turns(self, cam: Cam, t: float) -> float:
+        return cam.sign * (self.turns.at(t) - cam.zero)
+
+    def _geared(self, cam: Cam, u: float) -> Row:
+        """The tangent where the spindle is foreseen: where it really is then, HAL computes with it."""
+        place, per_turn = cam.way.demand_at(u)
+        start = cam.zero + cam.sign * u
+        return tuple(
+            [
+                x
+                for p, v in zip(place, per_turn, strict=True)
+                for x in (p - cam.sign * v * start, cam.sign * v)
+            ]
+        )
+
+    def _leave(self, cam: Cam, t: float) -> None:
+        """Behind the end of the way: rest, or what goes on by time."""
+        rest, _ = cam.way.demand_at(INF)
+        self.left = t
+        self.queue.rest_at(rest)
+        if cam.then:
+            self.queue.replace(t, [piece._replace(t=piece.t + t) for piece in cam.then])

@@ -1,0 +1,166 @@
+"""Homing on HAL: onto a switch, slowly off it again, and where the encoder has one to its index."""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import Protocol
+
+from core.ports import DriverError, Segments, at_rest
+from drivers.hal.hal_config import HalAxis
+from drivers.hal.hal_table import HERE, NEEDS
+from drivers.setpoint_queue import straight
+
+_DOWN = frozenset((1, 17, 5, 21, 33))  # methods that look for their mark towards lower positions
+_INDEX_ONLY = frozenset((33, 34))
+_SPARE = 1.2  # of the travel
+_SLOWER = 10.0  # than the search, where the file says no slow speed
+_AFTER = 0.2  # s for the bridge's braking to be told
+_INDEX_WAY = 30.0  # mm or degrees within which an index has to come
+
+
+class Slides(Protocol):
+    """What homing asks of the axes; positions as HAL counts."""
+
+    def now(self) -> float: ...
+    def horizon(self) -> float: ...
+    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]: ...
+    def bit(self, name: str) -> bool: ...
+    def figure(self, name: str) -> float: ...
+    def move(self, segments: Segments) -> None: ...
+    def halt(self) -> None: ...
+    def ask_index(self, pin: str, on: bool) -> None: ...
+    def let_limit(self, axis: str, on: bool) -> None: ...
+    def raw(self, index: int) -> float: ...
+    def found(self, index: int, zero: float) -> None: ...
+
+    commit: float
+
+
+class _Step(Enum):
+    BEGIN = "begins"
+    SEARCH = "looks for its switch"
+    STOP = "brakes on its switch"
+    LEAVE = "leaves its switch slowly"
+    INDEX = "looks for the index"
+    END = "brakes behind its mark"
+    DONE = "found"
+
+
+class Homing:
+    """One axis: ``step`` once a tick, ``see`` every sample, until ``done``. Raises DriverError."""
+
+    def __init__(self, axis: HalAxis, index: int, slides: Slides) -> None:
+        self.name = axis.name
+        self._axis, self.index, self._slides = axis, index, slides
+        method = axis.home_method
+        self._way = -1.0 if method in _DOWN else 1.0
+        self._switch = axis.switch
+        self._to_index = "index_enable" in NEEDS.get(method, ())
+        self._slow = axis.home_latch or axis.home_speed / _SLOWER
+        self._step = _Step.BEGIN
+        self._since = 0.0
+        self._on: bool | None = None  # the switch in the newest sample
+        self._mark: float | None = None
+        slides.let_limit(axis.name, True)
+
+    @property
+    def done(self) -> bool:
+        """Home is found, and the axis stands."""
+        return self._step is _Step.DONE
+
+    def see(self, raw: float, on: bool) -> None:
+        """One sample of the axis and its switch: the mark is where it goes off, to one period."""
+        if self._step is _Step.LEAVE and self._on and not on and self._mark is None:
+            self._mark = raw
+        self._on = on
+
+    def step(self, now: float) -> None:
+        """Look, and go on."""
+        rests = at_rest(self._slides.horizon(), now)
+        acts = {
+            _Step.BEGIN: self._begin,
+            _Step.SEARCH: self._search,
+            _Step.STOP: self._stop,
+            _Step.LEAVE: self._leave,
+            _Step.INDEX: self._look_for_index,
+            _Step.END: self._end,
+        }
+        if self._step in acts:
+            acts[self._step](now, rests)
+
+    def _begin(self, now: float, _rests: bool) -> None:
+        if self._axis.home_method in HERE:
+            self._mark = self._slides.raw(self.index)
+            self._enter(_Step.END, now)
+        elif self._axis.home_method in _INDEX_ONLY:
+            self._seek_index(now)
+        elif self._on is None:
+            if now - (self._since or now) > 1.0:
+                raise self._failed("its switch is not sampled")
+            self._since = self._since or now
+        elif self._on:
+            self._go(-self._way, self._slow, _Step.LEAVE, now)
+        else:
+            self._go(self._way, self._axis.home_speed, _Step.SEARCH, now)
+
+    def _search(self, now: float, rests: bool) -> None:
+        if self._on:
+            self._slides.halt()
+            self._enter(_Step.STOP, now)
+        elif rests and now > self._since + _AFTER:
+            raise self._failed("no switch was found within the travel")
+
+    def _stop(self, now: float, rests: bool) -> None:
+        if rests and now > self._since + _AFTER:
+            if not self._on:
+                raise self._failed("the slide has run over its switch; make it longer, or the search slower")
+            self._go(-self._way, self._slow, _Step.LEAVE, now)
+
+    def _leave(self, now: float, rests: bool) -> None:
+        if self._mark is not None and self._to_index:
+            self._slides.ask_index(f"{self.name}.index", True)
+            self._enter(_Step.INDEX, now)
+        elif self._mark is not None:
+            self._slides.halt()
+            self._enter(_Step.END, now)
+        elif rests and now > self._since + _AFTER:
+            raise self._failed("its switch does not go off")
+
+    def _seek_index(self, now: float) -> None:
+        self._go(self._way, self._slow, _Step.INDEX, now, _INDEX_WAY)
+        self._slides.ask_index(f"{self.name}.index", True)
+
+    def _look_for_index(self, now: float, rests: bool) -> None:
+        """The bit falls when the index has come by; what was made up for then is where it was."""
+        if now > self._since + 0.1 and not self._slides.bit(f"{self.name}.index"):
+            self._mark = self._slides.figure(f"{self.name}.index-at")
+            self._slides.halt()
+            self._enter(_Step.END, now)
+        elif rests and now > self._since + _AFTER:
+            self._slides.ask_index(f"{self.name}.index", False)
+            raise self._failed("no index came by")
+
+    def _end(self, now: float, rests: bool) -> None:
+        if rests and now > self._since + _AFTER:
+            assert self._mark is not None
+            self._slides.let_limit(self.name, False)
+            self._slides.found(self.index, self._mark + self._axis.home_offset)
+            self._enter(_Step.DONE, now)
+
+    def _go(self, way: float, speed: float, step: _Step, now: float, length: float = 0.0) -> None:
+        low, high = self._axis.travel or (-180.0, 180.0)
+        length = length or _SPARE * (high - low)
+        place, _ = self._slides.demand_at(now)
+        begins = now + self._slides.commit + 0.005
+        to = place[self.index] + way * length
+        segments = straight(begins, place, self.index, to=to, speed=speed, accel=self._axis.amax)
+        self._slides.move(segments)
+        self._mark = None
+        self._enter(step, now)
+
+    def _enter(self, step: _Step, now: float) -> None:
+        self._step, self._since = step, now
+
+    def _failed(self, why: str) -> DriverError:
+        self._slides.let_limit(self.name, False)
+        return DriverError(f"{self.name}: homing has failed: {why}", "homing")

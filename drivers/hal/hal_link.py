@@ -1,0 +1,156 @@
+"""What the bridge has told last, and words to it; a bridge that is silent or gone is a fault."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from typing import get_args
+
+from core.ports import Clock, DriverError, Fault, FaultCode
+from drivers.hal.bridge.hal_bridge import BridgeConfig
+from drivers.hal.bridge.packets import Head, number, pack, packets_of, text
+from drivers.hal.hal_session import BridgeLink
+from drivers.setpoint_pieces import Piece
+
+_SILENT = 0.15  # s without a report
+_SETTLES = 0.5  # s after which debounced inputs tell the truth
+_LOOK = 0.002  # s between two looks while something is waited for
+
+
+class HalLink:
+    """One thread. ``open_link`` starts HAL and its bridge, and again after it was lost."""
+
+    def __init__(
+        self,
+        open_link: Callable[[], BridgeLink],
+        clock: Clock,
+        bridge: BridgeConfig,
+        idle: Callable[[], None] | None = None,
+    ) -> None:
+        self._open = open_link
+        self._clock = clock
+        self._axes = len(bridge.axes)
+        self._bits = {name: n for n, name in enumerate(bridge.bits)}
+        self._figures = {name: n for n, name in enumerate(bridge.figures)}
+        self._idle = idle
+        self._link: BridgeLink | None = None
+        self._sent = 0
+        self._heard = 0.0
+        self.told: Head = {}
+        self.rows: list[Sequence[float]] = []  # samples that nobody has taken
+        self.lost: Fault | str = ""  # why nothing can be said to it any more
+        self.worst = 0.0  # s by which the bridge woke up too late, at most
+
+    def connect(self) -> None:
+        """Start it, and wait for its first report. Raises DriverError."""
+        self.close()
+        self.lost, self.told, self.rows = "", {}, []
+        self._link = self._open()
+        self._heard = self._clock.now()
+        if not self.wait(lambda: bool(self.told), 3.0):
+            raise DriverError(
+                "the bridge to HAL does not tell anything; start the control again", "feeder-silent"
+            )
+        self.wait(lambda: False, _SETTLES)
+
+    def pump(self) -> None:
+        """Take in what has come. Raises nothing: a bridge that is gone is ``lost``."""
+        if self._link is None or self.lost:
+            return
+        try:
+            for head, numbers in self._link.receive():
+                self.told = head
+                self._heard = self._clock.now()
+                self.worst = max(self.worst, number(head, "late"))
+                if len(numbers):
+                    self.rows.append(numbers)
+        except (DriverError, ValueError) as error:
+            self.lost = Fault(str(error), error.code if isinstance(error, DriverError) else "feeder-silent")
+
+    @property
+    def trouble(self) -> Fault | str:
+        """Why nothing is known of the machine now; empty while it is."""
+        silent = self.age
+        if self.lost or silent <= _SILENT:
+            return self.lost
+        return Fault(f"the bridge to HAL has told nothing for {silent:.2f} s", "feeder-silent")
+
+    @property
+    def age(self) -> float:
+        """Since the bridge's last word, s."""
+        return float("inf") if self.lost else self._clock.now() - self._heard
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is worth knowing of this session of HAL."""
+        return self._link.warnings if self._link is not None else ()
+
+    def beat(self) -> None:
+        """This side lives."""
+        with suppress(DriverError):  # it is lost, and that is told
+            self.say("beat")
+
+    def say(self, what: str, **values: object) -> int:
+        """One order; its number, which the bridge tells once it is carried out. Raises DriverError."""
+        self._sent += 1
+        self._send(pack({"do": what, "n": self._sent, **values}))
+        return self._sent
+
+    def say_pieces(self, what: str, pieces: Sequence[Piece], **values: object) -> None:
+        """An order with setpoints. Raises DriverError."""
+        self._sent += 1
+        for data in packets_of({"do": what, "n": self._sent, **values}, pieces, self._axes):
+            self._send(data)
+
+    def done(self, order: int) -> bool:
+        """Whether the bridge has carried this order out."""
+        return number(self.told, "n") >= order
+
+    def wait(self, ready: Callable[[], bool], longest: float) -> bool:
+        """Look on until it is so; False when that takes too long, or the bridge is gone."""
+        end = self._clock.now() + longest
+        while not self.lost and self._clock.now() < end:
+            self.pump()
+            if ready():
+                return True
+            if self._idle is not None:
+                self._idle()
+            self._clock.sleep_until(self._clock.now() + _LOOK)
+        return False
+
+    def bit(self, name: str) -> bool:
+        """A bit of the bridge's, by its pin; one that it has not is off."""
+        told, at = self.told.get("bits"), self._bits.get(name)
+        return isinstance(told, list) and at is not None and told[at] is True
+
+    def figure(self, name: str) -> float:
+        """A number of the bridge's, by its pin."""
+        told, at = self.told.get("figures"), self._figures.get(name)
+        return float(told[at]) if isinstance(told, list) and at is not None else 0.0
+
+    def take_rows(self) -> Iterator[Sequence[float]]:
+        """The samples since the last look, as they came."""
+        rows, self.rows = self.rows, []
+        yield from rows
+
+    def close(self) -> None:
+        """The bridge ends what is left, and HAL with it."""
+        if self._link is not None:
+            self._link.close()
+        self._link = None
+
+    def _send(self, data: bytes) -> None:
+        if self.lost or self._link is None:
+            raise DriverError(self.lost or "there is no bridge to HAL")
+        try:
+            self._link.send(data)
+        except DriverError as error:
+            self.lost = error.fault
+            raise
+
+
+def told_fault(told: Mapping[str, object]) -> Fault | str:
+    """What the bridge says is wrong."""
+    words = text(told, "fault")
+    code: FaultCode = next((each for each in get_args(FaultCode) if each == told.get("code")), "axis")
+    return Fault(words, code) if words else ""

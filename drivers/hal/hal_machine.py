@@ -1,0 +1,82 @@
+"""The machine behind HAL: connected, then ticked by the one loop that owns its bridge."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from core.ports import ALL_UNKNOWN, Clock, DriverError, FloatArray, MachinePorts, Unknown
+from drivers.hal.hal_axes import HalAxes
+from drivers.hal.hal_config import HalConfig
+from drivers.hal.hal_link import HalLink
+from drivers.hal.hal_session import BridgeLink, bridge_config
+from drivers.hal.hal_terminals import HalSpindle, HalTerminals
+from drivers.sample_log import KEPT, SampleLog
+
+
+class HalSamples:
+    """``core.ports.SampleSource``: every period of the servo thread."""
+
+    def __init__(self, axes: HalAxes, period: float) -> None:
+        self.rate = 1.0 / period
+        self._log = SampleLog(len(axes.axes))
+        axes.keep_samples(self._log.add)
+
+    def take(self, most: int = KEPT) -> FloatArray:
+        """What has come since."""
+        return self._log.take(most)
+
+
+class HalMachine:
+    """Connects when made. Raises DriverError with the first pin that is not as the machine file says."""
+
+    def __init__(
+        self,
+        config: HalConfig,
+        clock: Clock,
+        open_link: Callable[[], BridgeLink],
+        idle: Callable[[], None] | None = None,
+    ) -> None:
+        self.config = config
+        self.clock = clock
+        self.link = HalLink(open_link, clock, bridge_config(config), idle)
+        self.axes = HalAxes(config, self.link, clock.now)
+        self.spindle = HalSpindle(config, self.link, self.axes)
+        self.io = HalTerminals(config, self.link, clock.now)
+        self.samples = HalSamples(self.axes, config.period)
+        try:
+            self.link.connect()
+        except DriverError:
+            self.link.close()
+            raise
+        self.axes.connected()
+
+    @property
+    def ports(self) -> MachinePorts:
+        """What the executor drives; the terminals are the operator station too."""
+        follows = self.config.spindle.encoder and bool(self.config.spindle.pins.position)
+        return MachinePorts(
+            clock=self.clock,
+            axes=self.axes,
+            spindle=self.spindle,
+            io=self.io,
+            station=self.io,
+            gear=self.axes if follows else None,
+            samples=self.samples,
+            unknown=self.unknown,
+            warnings=self.link.warnings,
+        )
+
+    def unknown(self) -> frozenset[Unknown]:
+        """Without a word of the bridge nothing is known."""
+        return ALL_UNKNOWN if self.link.trouble else frozenset()
+
+    def tick(self) -> None:
+        """One round: take in, supervise, say that this side lives. Call it every few milliseconds."""
+        self.link.pump()
+        self.axes.tick()
+        self.spindle.tick()
+        self.link.beat()
+
+    def close(self) -> None:
+        """The bridge brakes, stops the spindle and takes the power; HAL is taken down."""
+        self.link.close()

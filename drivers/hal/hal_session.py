@@ -1,0 +1,275 @@
+"""One session of HAL: halrun with the machine's file and our part in it, and a socket to the bridge."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import socket
+import subprocess
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import NamedTuple, Protocol
+
+from core.ports import DriverError
+from drivers.hal.bridge.hal_bridge import BridgeAxis, BridgeConfig
+from drivers.hal.bridge.packets import Head, pack, text, unpack
+from drivers.hal.hal_border import BIT, BRIDGE, Border, border_of, bridge_nets, columns, session_text
+from drivers.hal.hal_config import HalConfig
+
+PYTHON = "/usr/bin/python3"
+_SCRIPT = Path(__file__).parent / "bridge" / "bridge_process.py"
+_START = 30.0  # s for boards that are slow to be configured
+_END = 15.0
+_LINGER = 2  # s for which HAL goes on when the bridge has died: the slides brake
+_LARGEST = 1 << 17
+
+# What halrun says, and what it means for whoever stands before the control.
+_PLAIN = {
+    "Refusing to run as root": "LinuxCNC refuses to run as root; start the control as an ordinary user",
+    "Realtime already running": "another LinuxCNC or HAL session runs; end it, or after a crash: halrun -U",
+}
+
+
+class Verdict(NamedTuple):
+    """One pin of the machine file: its key, its name, what is wrong with it."""
+
+    path: str
+    pin: str
+    trouble: str
+
+
+class BridgeLink(Protocol):
+    """The way to a bridge and back, in packets. Nothing here waits."""
+
+    warnings: tuple[str, ...]
+
+    def send(self, data: bytes) -> None:
+        """Raises DriverError when nobody takes it."""
+        ...
+
+    def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:
+        """Whatever has come. Raises DriverError when nobody is there any more."""
+        ...
+
+    def close(self) -> None:
+        """The bridge ends what is left."""
+        ...
+
+
+def bridge_config(config: HalConfig) -> BridgeConfig:
+    """What the bridge has to know."""
+    pins = border_of(config).pins
+    read = [pin for pin in pins if pin.way != "out" and not pin.name.startswith(("in.", "is.", "analog."))]
+    written = [pin.name for pin in pins if pin.way == "out"]
+    return BridgeConfig(
+        axes=tuple(
+            BridgeAxis(axis.name, axis.amax, axis.following_window, axis.following_time)
+            for axis in config.driven
+        ),
+        period=config.period,
+        ahead=config.ahead,
+        outputs={name: output.safe for name, output in config.outputs.items()},
+        inputs=tuple(config.inputs),
+        analog=tuple(config.pots),
+        bits=tuple(pin.name for pin in read if pin.kind == BIT),
+        spindle=tuple(name.removeprefix("spindle.") for name in written if name.startswith("spindle.")),
+        turns=bool(config.spindle.pins.position),
+        speed=bool(config.spindle.pins.velocity),
+        marks=sum(bool(axis.switch) for axis in config.driven),
+        figures=tuple(pin.name for pin in read if pin.kind != BIT),
+    )
+
+
+class HalSession:
+    """Started when made. Raises DriverError where halrun is not, or does not come up."""
+
+    def __init__(self, config: HalConfig, zero: float, *, only_check: bool = False) -> None:
+        _demand_halrun()
+        self._folder = Path(tempfile.mkdtemp(prefix="turndesk-hal-"))
+        self._ended = self._folder / "ended"
+        self.warnings: tuple[str, ...] = ()
+        self.verdicts: tuple[Verdict, ...] = ()
+        try:
+            self._start(config, zero, only_check=only_check)
+        except BaseException:
+            self.close()
+            raise
+
+    _halrun: subprocess.Popen[bytes] | None = None
+    _socket: socket.socket | None = None
+
+    def _start(self, config: HalConfig, zero: float, *, only_check: bool) -> None:
+        ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._socket = ours
+        with theirs:
+            self._write(config, theirs.fileno(), zero, only_check=only_check)
+            log = (self._folder / "halrun.log").open("wb")
+            with log:
+                # A session of its own: Ctrl-C is for the control, which then ends this in good order.
+                self._halrun = subprocess.Popen(
+                    ["halrun", "-f", str(self._folder / "session.hal")],
+                    cwd=config.file.parent,
+                    stdin=subprocess.DEVNULL,
+                    stdout=log,
+                    stderr=subprocess.STDOUT,
+                    pass_fds=(theirs.fileno(),),
+                    start_new_session=True,
+                )
+        self._wait_for_bridge(only_check=only_check)
+        ours.setblocking(False)
+
+    def _write(self, config: HalConfig, fd: int, zero: float, *, only_check: bool) -> None:
+        """The files of this session."""
+        border = border_of(config)
+        try:
+            machine = config.file.read_text(encoding="utf-8")
+        except (OSError, UnicodeError) as error:
+            raise DriverError(f"{config.file}: the HAL file cannot be read: {error}") from error
+        folder, session = self._folder, session_text(machine, border, config.thread, str(config.file))
+        (folder / "bridge.json").write_text(
+            json.dumps(_told(config, border, folder, fd, zero, only_check=only_check)), encoding="utf-8"
+        )
+        # HAL goes on for a while behind a bridge that has died: what it has is played, and the limits brake.
+        linger = f'[ -e "{self._ended}" ] || sleep {_LINGER}\n'
+        (folder / "linger.sh").write_text(linger, encoding="utf-8")
+        start = () if only_check else ("start",)
+        lines = (
+            session,
+            f"loadusr -Wn {BRIDGE} {PYTHON} {_SCRIPT} {folder / 'bridge.json'}",
+            *start,
+            f"waitusr {BRIDGE}",
+            f"loadusr -w /bin/sh {folder / 'linger.sh'}",
+        )
+        (folder / "session.hal").write_text("\n".join((*lines, "")), encoding="utf-8")
+
+    def _wait_for_bridge(self, *, only_check: bool) -> None:
+        deadline = time.monotonic() + _START
+        while True:
+            head = self._first_words(deadline)
+            if why := text(head, "error"):
+                raise DriverError(f"HAL: {why}", "drive-setup")
+            if isinstance(said := head.get("verdicts"), list):
+                self.verdicts = tuple(Verdict(*each) for each in said)
+                wrong = [each for each in self.verdicts if each.trouble]
+                if only_check:
+                    return
+                if wrong:
+                    more = f" (and {len(wrong) - 1} more)" if len(wrong) > 1 else ""
+                    raise DriverError(
+                        f"{wrong[0].path} = {wrong[0].pin}: {wrong[0].trouble}{more}", "drive-setup"
+                    )
+            elif head.get("ready") is True:
+                warnings = head.get("warnings")
+                self.warnings = tuple(map(str, warnings)) if isinstance(warnings, list) else ()
+                return
+
+    def _first_words(self, deadline: float) -> Head:
+        """The next of the bridge's packets at its start. Raises DriverError with what halrun has said."""
+        assert self._socket is not None
+        assert self._halrun is not None
+        while time.monotonic() < deadline:
+            self._socket.settimeout(0.2)
+            try:
+                data = self._socket.recv(_LARGEST)
+            except TimeoutError:
+                if self._halrun.poll() is None:
+                    continue
+                data = b""
+            if not data:
+                with suppress(subprocess.TimeoutExpired):
+                    self._halrun.wait(3.0)
+                raise DriverError(f"halrun has ended at its start: {self._said()}", "drive-setup")
+            return unpack(data)[0]
+        raise DriverError(f"HAL does not come up within {_START:g} s: {self._said()}", "drive-setup")
+
+    def _said(self) -> str:
+        """What halrun has said last that is worth telling."""
+        try:
+            lines = (self._folder / "halrun.log").read_text(encoding="utf-8", errors="replace").splitlines()
+        except OSError:
+            lines = []
+        told = [line.strip() for line in lines if line.strip() and not line.startswith("Note:")]
+        for words, plain in _PLAIN.items():
+            if any(words in line for line in told):
+                return plain
+        return " / ".join(told[-3:]).replace(f"{self._folder}/", "") or "it says nothing"
+
+    # --- the link -----------------------------------------------------------------------------------------
+
+    def send(self, data: bytes) -> None:
+        """One packet. Raises DriverError when the bridge has gone, or takes no more."""
+        assert self._socket is not None
+        try:
+            self._socket.send(data)
+        except BlockingIOError as error:
+            raise DriverError("the bridge to HAL takes nothing any more", "feeder-silent") from error
+        except OSError as error:
+            raise DriverError(f"the bridge to HAL has ended ({error.strerror})", "feeder-gone") from error
+
+    def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:
+        """Every packet that has come. Raises DriverError when the bridge has ended."""
+        assert self._socket is not None
+        while True:
+            try:
+                data = self._socket.recv(_LARGEST)
+            except BlockingIOError:
+                break
+            except OSError:
+                data = b""
+            if not data:
+                raise DriverError("the bridge to HAL has ended; start the control again", "feeder-gone")
+            yield unpack(data)
+
+    @property
+    def halrun_lives(self) -> bool:
+        """Whether halrun, which cleans up, is still there."""
+        return self._halrun is not None and self._halrun.poll() is None
+
+    def close(self) -> None:
+        """The bridge brakes what moves and ends; halrun takes HAL down."""
+        if self._socket is not None:
+            self._ended.touch()
+            with suppress(OSError):
+                self._socket.send(pack({"do": "end"}))
+            self._socket.close()
+        if self._halrun is not None:
+            try:
+                failed = self._halrun.wait(_END)
+            except subprocess.TimeoutExpired:
+                self._halrun.kill()
+                failed = self._halrun.wait()
+            if failed < 0:  # it was killed, and has not taken HAL down
+                with suppress(OSError, subprocess.TimeoutExpired):
+                    subprocess.run(["halrun", "-U"], capture_output=True, timeout=_END, check=False)
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+
+def _demand_halrun() -> None:
+    """Raises DriverError where there is no LinuxCNC."""
+    if shutil.which("halrun") is None:
+        raise DriverError(
+            "there is no halrun: backend hal needs LinuxCNC (apt install linuxcnc-uspace)", "drive-setup"
+        )
+
+
+def _told(
+    config: HalConfig, border: Border, folder: Path, fd: int, zero: float, *, only_check: bool
+) -> dict[str, object]:
+    """What the bridge's process is told in its file."""
+    return {
+        "fd": fd,
+        "zero": zero,
+        "name": BRIDGE,
+        "only_check": only_check,
+        "wanted": [(link.path, link.pin, link.kind, link.drives, link.ours[0]) for link in border.links],
+        "pins": [(pin.name, pin.kind, pin.way) for pin in border.pins],
+        "own": dict(bridge_nets(border)),
+        "nets": str(folder / "nets.hal"),
+        "columns": "f" * columns(config),
+        "sampled": border.columns,
+        "bridge": asdict(bridge_config(config)),
+    }

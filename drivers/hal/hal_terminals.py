@@ -1,0 +1,145 @@
+"""Spindle, inputs, outputs, pots and the operator station on HAL's pins, by the names of the machine file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from core.ports import DriverError, Fault, StationState
+from drivers.hal.hal_axes import HalAxes
+from drivers.hal.hal_config import HalConfig
+from drivers.hal.hal_link import HalLink
+
+_TAKES = 0.3  # s in which HAL must have taken an order
+_STANDS = 5.0  # rpm
+
+
+class HalSpindle:
+    """``core.ports.Spindle``. What E-stop has switched off does not come back by itself."""
+
+    def __init__(self, config: HalConfig, link: HalLink, axes: HalAxes) -> None:
+        self._config = config.spindle
+        self._link = link
+        self._axes = axes
+        self._ordered = 0.0  # rpm
+
+    def tick(self) -> None:
+        """An open chain has switched it off."""
+        if self._link.told.get("ok") is not True:
+            self._ordered = 0.0
+
+    def run(self, rpm: float) -> None:
+        """Turn at ``rpm``, signed. Raises DriverError with a fault or an open chain, unless asked to stop."""
+        if rpm and (why := self.fault() or self._axes.fault):
+            raise DriverError(f"the spindle stays off: {why}", "spindle-off")
+        if rpm and self._link.told.get("ok") is not True:
+            raise DriverError("the spindle stays off: the E-stop chain is open; press Reset", "spindle-off")
+        limit = self._config.rpm_max
+        self._ordered = min(max(rpm, -limit), limit)
+        if not self._link.lost:
+            self._link.say("spindle", rpm=self._ordered, on=bool(self._ordered))
+
+    def coast(self) -> None:
+        """Speed 0, and off: what its drive makes of that is the drive's."""
+        self.run(0.0)
+
+    def speed(self) -> float:
+        """Measured rpm, signed; without turns or velocity, what it was told once it is at speed."""
+        pins = self._config.pins
+        if pins.position or pins.velocity:
+            return 60.0 * self._axes.rps
+        return self._ordered if self._link.bit("spindle.at_speed") else 0.0
+
+    def angle(self) -> tuple[float, float] | None:
+        """(time, turns) by the encoder, whole turns at its index where it has one; None without one."""
+        if not self._config.encoder or self._axes.spindle_at is None:
+            return None
+        t, turns = self._axes.spindle_at
+        return t, turns - self._axes.index_at
+
+    def fault(self) -> str:
+        """What is wrong with it; empty when well."""
+        if why := self._link.trouble:
+            return why
+        wrong = self._link.bit("spindle.fault")
+        return Fault("the spindle's drive reports a fault", "spindle") if wrong else ""
+
+
+class HalTerminals:
+    """``core.ports.DigitalIO`` and ``Station``."""
+
+    def __init__(self, config: HalConfig, link: HalLink, now: Callable[[], float]) -> None:
+        self._config = config
+        self._link = link
+        self._now = now
+        self._written: dict[str, tuple[bool, int]] = {}  # orders that the bridge has not carried out yet
+
+    def inputs(self) -> Mapping[str, bool]:
+        """All inputs by name; active is True."""
+        told = self._link.told.get("in")
+        raw = told if isinstance(told, list) else [False] * len(self._config.inputs)
+        wired = zip(self._config.inputs.items(), raw, strict=True)
+        return {name: on is not each.active_low for (name, each), on in wired}
+
+    def outputs(self) -> Mapping[str, bool]:
+        """All outputs as they are at HAL's pins."""
+        told = self._link.told.get("is")
+        real = told if isinstance(told, list) else [False] * len(self._config.outputs)
+        found = {name: on is True for name, on in zip(self._config.outputs, real, strict=True)}
+        for name, (on, order) in list(self._written.items()):
+            if self._link.done(order):
+                del self._written[name]
+            else:
+                found[name] = on
+        return found
+
+    def write(self, name: str, on: bool) -> None:
+        """Switch one output. Raises DriverError."""
+        output = self._config.outputs.get(name)
+        if output is None:
+            raise DriverError(f"output {name!r} is not in the machine file; add it under [io.out]", "output")
+        if on and self._link.trouble:
+            raise DriverError(f"output {name} stays off: {self._link.trouble}", "output")
+        if output.safe is not None and on is not output.safe and self._link.told.get("ok") is not True:
+            raise DriverError(
+                f"output {name} stays as it is: the E-stop chain is open; press Reset", "output"
+            )
+        self._say(name, on)
+
+    def safe(self) -> None:
+        """Every output to its safe state."""
+        if self._link.lost:
+            return
+        order = self._link.say("safe")
+        for name, output in self._config.outputs.items():
+            if output.safe is not None:
+                self._written[name] = output.safe, order
+
+    def _say(self, name: str, on: bool) -> None:
+        self._written[name] = on, self._link.say("out", name=name, on=on)
+
+    def snapshot(self) -> StationState:
+        """The operator station as its pins have it; its age is that of the bridge's last word."""
+        inputs, pot = self.inputs(), self._config.pots.get("spindle_pot")
+        auto = inputs.get(pot.switch, True) if pot is not None and pot.switch else True
+        return StationState(
+            estop=inputs.get("estop", False),
+            start=inputs.get("start", False),
+            hold=inputs.get("hold", False),
+            spindle_auto=inputs.get("spindle_auto", auto),
+            spindle_pot=self._pot("spindle_pot"),
+            feed_pot=self._pot("feed_pot"),
+            handwheel=round(self._analog("handwheel", 0.0)),
+            age=self._link.age,
+        )
+
+    def _pot(self, name: str) -> float:
+        pot = self._config.pots.get(name)
+        if pot is None:
+            return 1.0
+        return pot.low + (pot.high - pot.low) * min(max(self._analog(name, 0.0), 0.0), 1.0)
+
+    def _analog(self, name: str, otherwise: float) -> float:
+        told, names = self._link.told.get("analog"), list(self._config.pots)
+        if not isinstance(told, list) or name not in names:
+            return otherwise
+        return float(told[names.index(name)])

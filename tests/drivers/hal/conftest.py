@@ -1,0 +1,7 @@
+"""The one fixture of this folder."""
+
+from __future__ import annotations
+
+from tests.drivers.hal.halrun import halrun
+
+__all__ = ["halrun"]

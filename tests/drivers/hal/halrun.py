@@ -1,0 +1,90 @@
+"""LinuxCNC's halrun for tests: one session at a time on a computer, and never as root, which it refuses."""
+
+from __future__ import annotations
+
+import fcntl
+import functools
+import os
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+_NOBODY = 65534
+_LOCK = Path(tempfile.gettempdir()) / "turndesk-halrun.lock"
+_WRAPPER = """#!/bin/sh
+[ "$1" = -f ] && chown -R {nobody}:{nobody} "$(dirname "$2")"
+exec setpriv --reuid={nobody} --regid={nobody} --clear-groups env HOME={home} {halrun} "$@"
+"""
+_TRIED = "loadrt threads name1=t period1=1000000\nloadrt streamer depth=8 cfg=f\nstart\n"
+
+
+def folder_with_halrun(folder: Path) -> Path:
+    """A folder for the head of PATH: for root with a halrun that goes on as nobody."""
+    real = shutil.which("halrun")
+    if real is not None and os.geteuid() == 0:
+        home = folder / "home"
+        home.mkdir(parents=True)
+        for each in (folder, home):
+            os.chmod(each, 0o755)
+        os.chown(home, _NOBODY, _NOBODY)
+        wrapper = folder / "halrun"
+        wrapper.write_text(_WRAPPER.format(nobody=_NOBODY, home=home, halrun=real), encoding="utf-8")
+        wrapper.chmod(0o755)
+    return folder
+
+
+def as_halrun() -> list[str]:
+    """What makes a command one of the user who runs HAL."""
+    if os.geteuid() != 0:
+        return []
+    return ["setpriv", f"--reuid={_NOBODY}", f"--regid={_NOBODY}", "--clear-groups"]
+
+
+@functools.cache
+def why_not() -> str:
+    """Why no HAL can be run here; empty where it can. Tried once."""
+    if shutil.which("halrun") is None:
+        return "there is no LinuxCNC here: apt install linuxcnc-uspace"
+    with tempfile.TemporaryDirectory() as name, one_session():
+        folder = Path(name)
+        os.chmod(folder, 0o755)
+        script = folder / "tried" / "tried.hal"
+        script.parent.mkdir()
+        script.write_text(_TRIED, encoding="utf-8")
+        path = f"{folder_with_halrun(folder / 'bin')}:{os.environ['PATH']}"
+        environment = {**os.environ, "PATH": path}
+        halrun = shutil.which("halrun", path=path)
+        assert halrun is not None
+        done = subprocess.run(
+            [halrun, "-f", str(script)],
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=60,
+        )
+    said = (done.stderr or done.stdout).strip().splitlines()
+    return "" if done.returncode == 0 else f"LinuxCNC's HAL does not run here: {' / '.join(said[-2:])}"
+
+
+@contextmanager
+def one_session() -> Iterator[None]:
+    """HAL is one for the whole computer: tests of other processes wait."""
+    with _LOCK.open("a") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
+@pytest.fixture
+def halrun(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """halrun on PATH, for this test alone; skipped with the reason where HAL cannot be run."""
+    if why := why_not():
+        pytest.skip(why)
+    with tempfile.TemporaryDirectory(prefix="turndesk-halrun-") as name, one_session():
+        monkeypatch.setenv("PATH", f"{folder_with_halrun(Path(name))}:{os.environ['PATH']}")
+        yield

@@ -1,0 +1,82 @@
+"""Programs through a real halrun: the shipped lathe of HAL's own components, with real processes and time."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import resources
+from app.compose.machine_answers import check_ports
+from app.compose.machine_files import parse_machine, shipped_machine
+
+SHIPPED = resources.machine_file("gt75-hal.toml")
+PIECE = """\
+G90G94F100
+G00X.5Z.2
+G01X.4Z0F30
+G02X.5Z-.1I.4K-.1
+M08
+G04F.2
+M09
+G00X.6Z.3
+M30
+"""
+
+
+def run(folder: Path, program: str, *more: str) -> subprocess.CompletedProcess[str]:
+    """``turndesk run`` of a program on the shipped HAL lathe, in a folder of its own."""
+    file = folder / "PIECE.nc"
+    file.write_text(program, encoding="utf-8")
+    command = [sys.executable, "-m", "app.cli.main", "run", str(file), "--headless", "--machine", "gt75-hal"]
+    environment = {**os.environ, "TURNDESK_HOME": str(folder / "home")}
+    return subprocess.run(
+        [*command, *more], env=environment, capture_output=True, text=True, check=False, timeout=120
+    )
+
+
+@pytest.mark.long
+@pytest.mark.usefixtures("halrun")
+def test_a_program_runs_to_its_end_where_it_was_proved_to(tmp_path: Path) -> None:
+    done = run(tmp_path, PIECE)
+    assert "complete" in done.stdout, done.stdout + done.stderr
+    assert "at X radius 0.60000  Z 0.30000 in" in done.stdout
+    assert "0 underruns" in done.stdout
+
+
+@pytest.mark.long
+@pytest.mark.usefixtures("halrun")
+def test_every_pin_that_the_machine_file_names_has_its_verdict() -> None:
+    answers = check_ports(shipped_machine("gt75-hal"))
+    assert not answers.trouble
+    pins = {row.name: row for row in answers.rows}
+    assert pins["hal.axes.X.command"].at == "x-servo.in"
+    assert {row.state for row in answers.rows} <= {"ok", "on", "off"}
+
+
+@pytest.mark.long
+@pytest.mark.usefixtures("halrun")
+@pytest.mark.parametrize(
+    ("old", "new", "row", "why"),
+    [
+        ('"x-servo.in"', '"x-servo.inn"', "hal.axes.X.command", "no such pin"),
+        ('"x-motor.out"', '"x-motor.sel"', "hal.axes.X.feedback", "is bit, expected float"),
+        ('"x-servo.in"', '"x-servo.out"', "hal.axes.X.command", "is an output"),
+        ('"z-motor.out"', '"z-servo.in"', "hal.axes.Z.feedback", "is an input"),
+        ('"spindle-ramp.in"', '"spindle.velocity-cmd"', "hal.spindle.speed", "spindle-rps"),
+    ],
+)
+def test_a_pin_that_is_not_as_it_is_said_is_named(
+    old: str, new: str, row: str, why: str, tmp_path: Path
+) -> None:
+    (tmp_path / "gt75-hal.hal").write_text(resources.hal_file("gt75-hal.hal").read_text(), encoding="utf-8")
+    file = tmp_path / "lathe.toml"
+    file.write_text(SHIPPED.replace(old, new, 1), encoding="utf-8")
+    answers = check_ports(parse_machine(file.read_text(encoding="utf-8"), str(file)))
+    wrong = [each for each in answers.rows if each.state != "ok"]
+    assert [each.name for each in wrong] == [row]
+    assert why in wrong[0].detail
+    assert answers.trouble
