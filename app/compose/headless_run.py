@@ -12,6 +12,7 @@ from typing import TextIO
 
 from app.compose.backend_entry import Connected, played
 from app.compose.backends import connect, real_time
+from app.compose.headless_lives import HeadlessLives
 from app.compose.journal import Journal
 from app.compose.shop_floor import open_shop_floor, told_to_agents
 from app.desk.command_errors import CommandError
@@ -77,11 +78,13 @@ def headless(
     A machine that is not simulated runs at its own pace. Raises CommandError for one that does not answer,
     for inputs that it does not have or that are wires and not to be set, and for one on which a job was
     interrupted, unless the program is to begin ``anew`` all the same. The scope's record of the run is in the
-    folder of records, ``lasts`` s at least of what the driver samples.
+    folder of records, ``lasts`` s at least of what the driver samples. What keeps the machine's pace counts
+    for tool life, parts and cycles as on the desk; a run that is faster than its time has made nothing.
     """
+    paced = _paced(machine, realtime)
     with (
-        _remembered(machine, anew=anew, say=say) as note,
-        _connected(machine, realtime) as (clock, connected),
+        _remembered(machine, anew=anew, paced=paced, say=say) as (journal, note),
+        _connected(machine, paced) as (clock, connected),
     ):
         _set_inputs(connected, inputs)
         recorder = Recorder(
@@ -93,24 +96,35 @@ def headless(
             say(recorder.trouble)
 
         def hear(event: Event) -> None:
-            log.add(recorder.note(event))
+            noted = recorder.note(event)
+            log.add(noted)
+            if journal is not None:
+                journal.hear(noted)
 
         executor = Executor(machine, connected.ports, hear, note=note, tell=recorder.tell)
+        lives = HeadlessLives(journal, executor.post, say) if journal is not None else None
         recorder.start()
-        close_floor = _shop_floor(machine, executor, say, paced=isinstance(clock, RealClock))
+        close_floor = _shop_floor(machine, executor, say, paced=paced)
         try:
-            yield HeadlessRun(executor, clock, say, progress, _palms(machine, connected, say))
+            palms, see = _palms(machine, connected, say), lives.see if lives is not None else None
+            yield HeadlessRun(executor, clock, say, progress, palms, see)
         finally:
             executor.shut()  # also on Ctrl-C: the slides brake at once
+            if lives is not None:
+                lives.close()
             recorder.close()
             close_floor()
 
 
-@contextmanager
-def _connected(machine: Machine, realtime: bool) -> Iterator[tuple[RealClock | StepClock, Connected]]:
-    """The machine and the clock that it goes by."""
+def _paced(machine: Machine, realtime: bool) -> bool:
+    """Whether the run takes the time that the machine takes."""
     sim = machine.hardware.table(SimulatedTable)
-    paced = realtime or (sim is not None and sim.realtime) or real_time(machine)
+    return realtime or (sim is not None and sim.realtime) or real_time(machine)
+
+
+@contextmanager
+def _connected(machine: Machine, paced: bool) -> Iterator[tuple[RealClock | StepClock, Connected]]:
+    """The machine and the clock that it goes by."""
     clock = RealClock() if paced else StepClock()
     try:
         connected = connect(machine, clock)
@@ -123,26 +137,33 @@ def _connected(machine: Machine, realtime: bool) -> Iterator[tuple[RealClock | S
 
 
 @contextmanager
-def _remembered(machine: Machine, *, anew: bool, say: Callable[[str], None]) -> Iterator[Note]:
-    """Where what a power cut would leave interrupted is kept: with the screen's store, if the metal is real.
+def _remembered(
+    machine: Machine, *, anew: bool, paced: bool, say: Callable[[str], None]
+) -> Iterator[tuple[Journal | None, Note]]:
+    """Where the run is kept, with the screen's store, and what a power cut would leave interrupted.
 
-    Simulated slides cut nothing, and forget.
+    Simulated slides cut nothing, and leave nothing interrupted.
     """
-    if played(machine):
-        if anew:
-            raise CommandError("--anew: a simulated run remembers no interrupted job")
-        yield lambda _what: None
+    if played(machine) and anew:
+        raise CommandError("--anew: a simulated run remembers no interrupted job")
+    if played(machine) and not paced:
+        yield None, lambda _what: None
         return
     journal = Journal.at_home()
     try:
         if journal.trouble:
-            say(f"an interruption of this run would not be kept: {journal.trouble}")
+            say(f"nothing of this run would be kept: {journal.trouble}")
+        if played(machine):
+            yield journal, lambda _what: None
+            return
         if journal.left is not None:
             _demand_anew(journal.left, anew=anew)
             journal.hear(Event(0.0, "cleared", f"{journal.left.words}; begun anew from the command line"))
-        yield journal.note
+        yield journal, journal.note
     finally:
-        journal.close()
+        lost = journal.close()
+        if lost:
+            say(f"not kept, and lost by closing: {lost}")
 
 
 def _demand_anew(left: InterruptedJob, *, anew: bool) -> None:

@@ -38,13 +38,19 @@ class HeadlessRun:
         say: Callable[[str], None],
         progress: Callable[[float], None],
         palms: Callable[[], None] | None = None,
+        see: Callable[[Snapshot, Proof], None] | None = None,
     ) -> None:
-        """``palms`` presses both palm buttons, or asks a person to, where a command starts nothing."""
+        """``palms`` presses both palm buttons, or asks a person to, where a command starts nothing.
+
+        ``see`` is told of every step once the machine is ready, before the start too.
+        """
         self._executor = executor
         self._clock = clock
         self._say = say
         self._progress = progress
         self._palms = palms
+        self._see = see
+        self._proof: Proof | None = None
         self._last_move = 0.0
 
     def run(self, job: Job, proof: Proof, *, optional_stop: bool = False) -> Outcome:
@@ -56,6 +62,8 @@ class HeadlessRun:
             return self._outcome("waiting", f"the axes have not found home in {HOMING:.0f} s")
         self._executor.post(SetSwitch("optional_stop", optional_stop))
         self._executor.post(LoadJob(job, proof))
+        self._proof = proof
+        self._step()
         before = self._executor.snapshot.parts  # a program of one action is over before anybody looks
         if not self._start(lambda s: s.state is not State.IDLE or bool(s.start_refused) or s.parts > before):
             return self._outcome("waiting", "no start has come; were both palm buttons pressed?")
@@ -143,4 +151,6 @@ class HeadlessRun:
 
     def _step(self) -> None:
         self._executor.tick()
+        if self._see is not None and self._proof is not None:
+            self._see(self._executor.snapshot, self._proof)
         self._clock.sleep_until(self._clock.now() + TICK)

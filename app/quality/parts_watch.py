@@ -50,7 +50,8 @@ class PartsWatch:
 
     def _bar(self, snapshot: Snapshot, loaded: Loaded) -> None:
         """The executor is told before the part ends, so that the next one does not begin."""
-        wanted = self.lives.bar(snapshot, loaded) or self._unmeasured(snapshot)
+        tools = loaded.proof.tools if loaded.proof is not None else ()
+        wanted = self.lives.bar(snapshot, tools) or self._unmeasured(snapshot)
         if wanted not in {snapshot.next_barred, self._barred}:
             self.desk.post(BarNextPart(wanted))
         self._barred = wanted

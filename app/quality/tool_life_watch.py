@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from app.desk.program_loading import Loaded
 from app.desk.translation import tr
 from app.quality.parts_book import PartsBook
 from core.executor.snapshot import CYCLE, Snapshot
@@ -146,16 +145,15 @@ class ToolLifeWatch:
             self._due = lives, notice(max(told, key=lambda life: life.share)) if told else ""
         return self._due[1]
 
-    def bar(self, snapshot: Snapshot, loaded: Loaded) -> str:
-        """Why no other part of the program may begin; of the part under way its tools count already."""
-        used = set(loaded.proof.tools) if loaded.proof is not None else set()
-        for life in self._stopping(used):
+    def bar(self, snapshot: Snapshot, tools: Collection[int]) -> str:
+        """Why no other part that uses these tools may begin; the part under way counts already."""
+        for life in self._stopping(tools):
             after = replace(life, parts=life.parts + 1) if snapshot.counts else life
             if after.state is LifeState.SPENT:
                 return spent(after)
         return ""
 
-    def _stopping(self, used: set[int]) -> Iterator[ToolLife]:
+    def _stopping(self, used: Collection[int]) -> Iterator[ToolLife]:
         yield from (life for life in self.lives().values() if life.stops and life.number in used)
 
 

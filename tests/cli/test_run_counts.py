@@ -1,0 +1,104 @@
+"""What a run without a screen leaves in the store: tool life, parts and cycles, where it keeps the pace."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from core.store import part_cycles, tool_lives
+from core.store.store import Store
+from core.store.tool_lives import LifeRow
+from tests.cli.conftest import Turndesk
+
+# .05 in at 60 in/min is .05 s at feed with T1.
+TEXT = "G90G94F300\nG73\nT1\nG00X1Z.1\nG01G94F60Z.05\nM30\n"
+
+
+@pytest.fixture
+def part(tmp_path: Path) -> Path:
+    path = tmp_path / "part.nc"
+    path.write_text(TEXT)
+    return path
+
+
+def life(home: Path, number: int = 1) -> LifeRow:
+    with Store.open(home, read_only=True) as store, store.read() as connection:
+        return tool_lives.lives(connection).get(number, LifeRow(number))
+
+
+def limited(home: Path, parts: int, *, stops: bool) -> None:
+    with Store.open(home) as store:
+        row = LifeRow(1, limit_parts=parts, stops=stops)
+        store.write(lambda connection: tool_lives.set_limits(connection, row)).result(5.0)
+
+
+def test_a_run_at_the_machines_pace_counts_part_and_time_at_feed(
+    turndesk: Turndesk, home: Path, part: Path, offsets: Path
+) -> None:
+    for made in (1, 2):
+        told = turndesk("run", part, "--headless", "--realtime", "--offsets", offsets)
+        assert told.status == 0, told.err
+        assert life(home).parts == made
+        assert life(home).seconds == pytest.approx(0.05 * made, abs=0.03 * made)
+    with Store.open(home, read_only=True) as store:
+        assert store.parts("part.nc") == 2
+        with store.read() as connection:
+            rows = part_cycles.cycles(connection, "part.nc", -1)
+    assert [row.outcome for row in rows] == ["COMPLETE", "COMPLETE"]
+
+
+def test_the_part_after_the_last_of_a_life_is_refused(
+    turndesk: Turndesk, home: Path, part: Path, offsets: Path
+) -> None:
+    limited(home, 1, stops=True)
+    first = turndesk("run", part, "--headless", "--realtime", "--offsets", offsets)
+    assert first.status == 0
+    assert "T1: ITS LIFE IS GONE" in first.err
+    second = turndesk("run", part, "--headless", "--realtime", "--offsets", offsets)
+    assert second.status == 1
+    assert "refused: " in second.err
+    assert "the life of T1 is gone, 1 of 1 parts" in second.err
+    assert life(home).parts == 1
+
+
+def test_a_life_that_stops_nothing_only_tells(
+    turndesk: Turndesk, home: Path, part: Path, offsets: Path
+) -> None:
+    limited(home, 1, stops=False)
+    for _ in range(2):
+        assert turndesk("run", part, "--headless", "--realtime", "--offsets", offsets).status == 0
+    assert life(home).parts == 2
+
+
+def test_a_run_that_is_faster_than_its_time_has_made_nothing(
+    turndesk: Turndesk, home: Path, part: Path, offsets: Path
+) -> None:
+    limited(home, 1, stops=True)
+    for _ in range(3):
+        assert turndesk("run", part, "--headless", "--offsets", offsets).status == 0
+    assert life(home).parts == 0
+
+
+def test_a_store_that_another_has_open_counts_nothing_and_that_is_said(
+    turndesk: Turndesk, home: Path, part: Path, offsets: Path
+) -> None:
+    with Store.open(home):
+        told = turndesk("run", part, "--headless", "--realtime", "--offsets", offsets)
+    assert told.status == 0
+    assert "nothing of this run would be kept" in told.err
+    assert life(home).parts == 0
+
+
+def test_a_tool_that_the_program_does_not_use_stops_nothing(
+    turndesk: Turndesk, home: Path, tmp_path: Path, offsets: Path
+) -> None:
+    limited(home, 1, stops=True)
+    with Store.open(home) as store:
+        store.write(lambda connection: tool_lives.set_use(connection, 1, 5, 10.0)).result(5.0)
+    path: Callable[[str], Path] = tmp_path.joinpath
+    other = path("other.nc")
+    other.write_text(TEXT.replace("T1", "T2"))
+    assert turndesk("run", other, "--headless", "--realtime", "--offsets", offsets).status == 0
+    assert life(home, 2).parts == 1
