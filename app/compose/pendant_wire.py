@@ -49,7 +49,7 @@ def with_pendant(machine: Machine, connected: Connected, find: Find | None = Non
         return connected
     bound, wheel = _bound(machine), _wheel(machine)
     wanted = {**bound, **({WHEEL: wheel} if wheel is not None else {})}
-    look = find or open_devices
+    look, ports = find or open_devices, connected.ports
     pendant = Pendant(
         bound,
         frozenset(STOPS),
@@ -57,10 +57,10 @@ def with_pendant(machine: Machine, connected: Connected, find: Find | None = Non
         lambda: look(model, wanted),
         time.monotonic,
         place=model.counts == "place",
+        ring=ports.wakeup.ring if ports.wakeup is not None else lambda: None,
     )
     pendant.start()
     away = pendant.state().away
-    ports = connected.ports
     station = PendantStation(
         ports.station,
         pendant,

@@ -29,6 +29,11 @@ class EventTimes:
         self._frames = FRAMES  # shown since
         self._offsets: dict[str, tuple[float, float]] = {}  # of whose clock: offset, and when it was seen
 
+    @property
+    def known(self) -> bool:
+        """Whether what is to be seen has been shown since the last stall."""
+        return self._frames >= FRAMES
+
     def frame(self) -> None:
         """A frame is shown."""
         self._lives(self.clock())
@@ -66,4 +71,4 @@ class EventTimes:
         if not stamp:
             return False
         at = self.at(stamp, whose)
-        return at <= self._behind or self._frames < FRAMES or self.clock() - at > STALL
+        return at <= self._behind or not self.known or self.clock() - at > STALL

@@ -31,7 +31,7 @@ from app.screen.window_frame import Frame
 from app.screen.window_layout import LEAST
 
 FRAME_MS = 16  # at most 60 pictures a second
-REST_MS = 48  # between two of a machine at rest that nobody has touched of late
+REST_MS = 48  # between two looks at a machine at rest that nobody has touched of late
 UNTOUCHED = 2.0  # s
 
 
@@ -69,14 +69,19 @@ class MainWindow(QWidget):
         self._timer.start(FRAME_MS)
 
     def _tick(self) -> None:
+        """Every picture at the full pace; at rest those in which there is something new."""
+        known, frame = self.times.known, self.frame
         self.times.frame()
-        self.refresh()
-        if self.frame is not None:
-            self._pace(FRAME_MS if self._lively(self.frame) else REST_MS)
+        if frame is None:
+            return
+        if not known or self._lively(frame) or frame.stale():
+            self.refresh()
+        self._pace(FRAME_MS if self._lively(frame) else REST_MS)
 
     def _lively(self, frame: Frame) -> bool:
         """Whether every picture counts: something moves or was touched, on the machine or on the screen."""
-        return not frame.at_rest or frame.page.lively() or self.times.clock() - self.times.touched < UNTOUCHED
+        played = frame.page.lively() and not self.isMinimized()
+        return not frame.at_rest or played or self.times.clock() - self.times.touched < UNTOUCHED
 
     def _wake(self) -> None:
         """The first event ends the leisure, before it is judged."""

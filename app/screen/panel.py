@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import ClassVar, Generic, TypeVar
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import QEventPoint, QFontMetricsF, QMouseEvent, QPainter, QPaintEvent, QPen, QTouchEvent
@@ -41,6 +41,7 @@ class Panel(QWidget):
 
     title = ""
     ground = "ground"
+    paints: ClassVar[int] = 0  # how often any of them has been
 
     def __init__(self, look: Look, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -51,6 +52,7 @@ class Panel(QWidget):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Qt's call to draw. The painter ends whatever happens: one left open takes the process with it."""
+        Panel.paints += 1
         with Painter(self, self.look) as painter:
             painter.setRenderHint(QPainter.RenderHint.Antialiasing)
             painter.fill(self.area(), self.ground)

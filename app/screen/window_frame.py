@@ -23,6 +23,7 @@ from app.screen.alarm_panels import AlarmList, Notice
 from app.screen.look import Look
 from app.screen.page_base import Host, KeyActions, Page
 from app.screen.page_table import make_page
+from app.screen.panel import Panel
 from app.screen.readout_panels import (
     FeedGauge,
     HeadLine,
@@ -40,6 +41,7 @@ from core.executor.snapshot import Snapshot, State
 _KEYS = (("F6", "SEARCHTO"), ("Y", "FROM LINE 1"))
 GAP = 4  # pixels under the rows that stand
 _RESTING = frozenset({State.ESTOP, State.DISABLED, State.IDLE, State.FAULT})
+STALE = 0.25  # s after which all is looked at again where nothing seems to have changed
 _SETTLED = 3.0  # s after a move by hand before the room of a page may change
 
 
@@ -53,6 +55,8 @@ class Frame(QWidget):
         super().__init__(parent)
         self.look, self.desk = look, desk
         self.at_rest = False  # nothing moves on the machine
+        self._shown: tuple[Snapshot, Loaded] | None = None  # the last time
+        self._shown_at, self._paints = 0.0, 0
         self.title = TitleLine(look, self)
         self.head = HeadLine(look, self)
         self.run = RunLine(look, self)
@@ -236,9 +240,19 @@ class Frame(QWidget):
 
     # --- what is shown -------------------------------------------------------------------------------
 
+    def stale(self) -> bool:
+        """Whether there may be something else to show than the last time: another state of the machine,
+        another program, something that was drawn since and may not be done; or that it was a while ago.
+        """
+        shown, desk = self._shown, self.desk
+        if shown is None or self._paints != Panel.paints or desk.clock() - self._shown_at > STALE:
+            return True
+        return shown[1] is not desk.session.now or not shown[0].tells_as(desk.snapshot())
+
     def refresh(self) -> None:
         """Take one snapshot and show it everywhere."""
         snapshot, view, loaded = self.desk.look()
+        self._shown, self._shown_at, self._paints = (snapshot, loaded), self.desk.clock(), Panel.paints
         self.at_rest = snapshot.state in _RESTING and not snapshot.wheel
         self.notices.rows = self._notices_of(snapshot, loaded, here=self.page is self.automatic)
         by_hand = self._by_hand(snapshot)

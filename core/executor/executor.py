@@ -195,7 +195,8 @@ class Executor:
             late, self._late = self._late, 0.0
             samples = source.take() if source is not None else None
             queued = math.nan if source is not None else max(self._ports.axes.horizon() - now, 0.0)
-            self._tell(Tick(self.snapshot, late, queued, self._context.spindle.angle.turns, samples))
+            turns, rests = self._context.spindle.angle.turns, self._rest.holds
+            self._tell(Tick(self.snapshot, late, queued, turns, samples, rests))
         if trial.error is not None and not self._missed:
             self._missed = True  # once: it would come a hundred times a second
             _log.error("the scope misses what the machine does", exc_info=trial.error)

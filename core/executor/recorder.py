@@ -1,7 +1,7 @@
 """The recorder of the scope: takes over what the executor hands out each tick, and keeps the last minutes.
 
-The executor only appends to a queue. A thread of its own empties that ten times a second into the ring, and
-writes what stood before an alarm into a file.
+The executor only appends to a queue. A thread of its own empties that ten times a second into the ring, twice
+a second while the machine rests, and writes what stood before an alarm into a file.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from core.records.ring_file import NOW, RingFile, new_ring
 _log = logging.getLogger(__name__)
 _NAN = float("nan")
 _LOOK = 0.1  # s between two looks at what was handed over
+_RESTS = 0.5  # s more while nothing happens
 _AT_REST = 0.1  # s between two rows of a machine on which nothing changes
 _GRAIN = 0.005  # s; half a tick
 _MOST = 12_000  # ticks that wait for a recorder that does not come: two minutes
@@ -50,6 +51,7 @@ class Tick(NamedTuple):
     queue: float  # s of motion queued, nan where the samples say it
     turns: float  # of the spindle, nan where it has no encoder
     samples: FloatArray | None
+    rests: bool = False  # nothing has happened for a while
 
 
 class _Frozen(NamedTuple):
@@ -97,7 +99,7 @@ class Recorder:
         self._file: RingFile | None = None
         if folder is not None:
             self._open(folder, name)
-        self._closing = threading.Event()
+        self._closing, self._happens = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
 
     def _open(self, folder: Path, name: str) -> None:
@@ -112,6 +114,8 @@ class Recorder:
         """One tick; never waits."""
         self._program = tick.snapshot.program
         self._told.append(tick)
+        if not tick.rests:
+            self._happens.set()
 
     def note(self, event: Event) -> Event:
         """An alarm or E-stop is given the name of its record, which will be written; never waits."""
@@ -156,6 +160,7 @@ class Recorder:
     def close(self) -> None:
         """Keep what was handed over, write what was frozen, and end."""
         self._closing.set()
+        self._happens.set()
         if self._thread.is_alive():
             self._thread.join()
         self.drain(last=True)
@@ -165,6 +170,8 @@ class Recorder:
 
     def _run(self) -> None:
         while not self._closing.wait(_LOOK):
+            self._happens.wait(_RESTS)
+            self._happens.clear()
             with Attempt() as trial:
                 self.drain()
             if trial.error is not None:

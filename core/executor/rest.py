@@ -62,15 +62,20 @@ class Rest:
         machine is not at rest or its drivers do not ring.
         """
         wakeup = self._wakeup
-        if wakeup is None or not self._holds() or not wakeup.settled():
+        if wakeup is None or not self._lasts() or not wakeup.settled():
             return False
         if wakeup.wait(RESTS):
             self.over()
         return True
 
-    def _holds(self) -> bool:
-        """Nothing has happened for a second, nothing turns, nothing is on that an E-stop would switch off."""
-        if self._same < _SETTLED or self._control.wheel.axis:
+    @property
+    def holds(self) -> bool:
+        """Whether nothing has happened for a second."""
+        return self._same >= _SETTLED
+
+    def _lasts(self) -> bool:
+        """Nothing turns either, and nothing is on that an E-stop would switch off."""
+        if not self.holds or self._control.wheel.axis:
             return False
         context = self._context
         outputs, models = context.ports.io.outputs(), context.machine.outputs

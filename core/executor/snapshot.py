@@ -7,8 +7,9 @@ control and becomes an alarm.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
+from operator import attrgetter
 from typing import NamedTuple
 
 from core.alarms import Code
@@ -177,6 +178,10 @@ class Snapshot:
     touched: Touched | None = None  # how the last such touch-off has ended
     spindle_load: float | None = None  # per cent, where the machine has such an input
 
+    def tells_as(self, other: Snapshot) -> bool:
+        """Whether another one tells the same, but for its time."""
+        return self is other or _told(self) == _told(other)
+
     @property
     def interrupted_line(self) -> int:
         """The line at which the loaded program was interrupted, 0: it was not."""
@@ -187,6 +192,9 @@ class Snapshot:
     def tip(self) -> tuple[float, float]:
         """Actual machine X and Z: where the pictures of a lathe show the tool."""
         return self.actual[self.axes.index("X")], self.actual[self.axes.index("Z")]
+
+
+_told = attrgetter(*(each.name for each in fields(Snapshot) if each.name != "t"))
 
 
 @dataclass(frozen=True, slots=True)

@@ -62,6 +62,7 @@ class ExecutorThread:
 
 _log = logging.getLogger(__name__)
 LOOK = 0.1  # s between two looks
+OTHERS = 10  # looks at the executor to one at the other threads
 STUCK = 10  # looks without a tick: a second
 PATIENT = 70  # the same while the executor waits for a drive to come on, which may take five seconds
 AGAIN = 5  # looks after which the machine is halted once more: a controller that holds is then reset
@@ -89,6 +90,7 @@ class Watchdog:
         self._others = list(others)
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._watch, name="watchdog", daemon=True)
+        self._looks = 0
         self._ticks = -1
         self._still = 0  # looks without a tick
         self._halted = 0
@@ -113,7 +115,9 @@ class Watchdog:
         """Look once at the executor and the other threads. Raises nothing."""
         with Attempt() as trial:
             self._mind_executor()
-            self._mind_others()
+            if self._looks % OTHERS == 0:
+                self._mind_others()
+            self._looks += 1
         if trial.error is not None:
             _log.error("the watchdog has failed", exc_info=trial.error)
 

@@ -43,7 +43,10 @@ class Pendant:
         now: Callable[[], float],
         *,
         place: bool = False,
+        ring: Callable[[], None] = lambda: None,
     ) -> None:
+        """``ring`` is called when something has changed."""
+        self._ring = ring
         self._buttons = PendantButtons(bound, stops, wheel, place)
         self._find, self.now = find, now
         self._lock = threading.Lock()
@@ -114,6 +117,7 @@ class Pendant:
             self._nodes = {node: Packets() for node in nodes}
             self._buttons.begin(keys, ranges)
             self._away = ""
+        self._ring()
 
     def _take(self, node: EventSource) -> None:
         data = node.read()
@@ -127,12 +131,14 @@ class Pendant:
                 else:
                     self._buttons.begin(*again)
                     self._broke = self.now()
+        self._ring()
 
     def _drop(self, why: str) -> None:
         nodes, self._nodes = self._nodes, {}
         with self._lock:
             self._buttons.gone()
             self._away, self._broke = why, self.now()
+        self._ring()
         for node in nodes:
             with contextlib.suppress(OSError):
                 node.close()

@@ -226,3 +226,14 @@ def test_a_driver_that_breaks_when_it_is_asked_whether_it_rests_is_an_alarm(
     assert not rig.executor.rest()
     rig.tick()
     assert rig.state is State.FAULT
+
+
+def test_the_recorder_is_told_that_the_machine_rests() -> None:
+    rig = rested()
+    told: list[bool] = []
+    rig.executor._tell = lambda tick: told.append(tick.rests)
+    rig.run(0.2)
+    assert set(told) == {True}
+    rig.sim.machine.set_input("guard", True)
+    rig.tick()
+    assert told[-1] is False

@@ -9,6 +9,7 @@ from PySide6.QtCore import QTimer
 from PySide6.QtTest import QTest
 
 from app.screen.main_window import FRAME_MS, REST_MS, UNTOUCHED
+from app.screen.window_frame import STALE
 from core.executor.snapshot import State
 from tests.screen.hands import Hands, Key
 
@@ -63,3 +64,84 @@ def test_a_motion_is_seen_with_the_next_frame(hands: Hands) -> None:
     hands.machine.now = replace(hands.machine.now, state=State.JOG)
     left_alone(hands)
     assert interval(hands) == FRAME_MS
+
+
+# --- which frames are made at all -------------------------------------------------------------------------
+
+
+class Counted:
+    """Ticks of the window's timer at rest, made by hand on a clock of their own, and their frames."""
+
+    def __init__(self, hands: Hands) -> None:
+        self._hands, self._window = hands, hands.window
+        self._window._timer.stop()
+        self.t = 1000.0
+        hands.desk.clock = self._window.times.clock = lambda: self.t
+        self.frames = 0
+        self._refresh, self._window.refresh = self._window.refresh, self._count  # type: ignore[method-assign]
+        self.until_still()
+
+    def _count(self) -> None:
+        self.frames += 1
+        self._refresh()
+
+    def until_still(self) -> None:
+        """All is drawn, and nobody has touched anything for a while."""
+        self._hands.machine.alive = False  # the same time in every snapshot would be a silent control
+        self._window.times.touched = self.t - UNTOUCHED - 0.1
+        for _ in range(50):
+            self.tick(0.0)
+            self._hands.qtbot.wait(1)  # what is to be drawn is drawn
+        self.frames = 0
+
+    def tick(self, after: float = 0.048) -> int:
+        """One tick so much later; the frames since the last one."""
+        self.t += after
+        before = self.frames
+        self._window._tick()
+        return self.frames - before
+
+
+@pytest.fixture
+def counted(hands: Hands) -> Counted:
+    return Counted(hands)
+
+
+def test_a_picture_in_which_nothing_is_new_is_not_made(counted: Counted) -> None:
+    assert [counted.tick() for _ in range(5)] == [0] * 5
+
+
+def test_all_is_looked_at_four_times_a_second_all_the_same(counted: Counted) -> None:
+    counted.tick(STALE + 0.01)
+    assert counted.frames == 1
+
+
+def test_what_is_new_but_for_the_time_is_in_the_next_picture(hands: Hands, counted: Counted) -> None:
+    machine = hands.machine
+    machine.now = replace(machine.now, t=machine.now.t + 0.1)
+    assert counted.tick() == 0
+    machine.now = replace(machine.now, inputs=frozenset({"guard"}))
+    assert counted.tick() == 1
+
+
+def test_another_program_is_in_the_next_picture(hands: Hands, counted: Counted) -> None:
+    hands.desk.session.adopt(replace(hands.desk.session.now, reached=7))
+    assert counted.tick() == 1
+
+
+def test_what_was_drawn_may_not_be_done_and_is_looked_at_again(hands: Hands, counted: Counted) -> None:
+    hands.frame.prompt.repaint()
+    assert [counted.tick() for _ in range(2)] == [1, 0]
+
+
+def test_behind_a_stall_what_is_to_be_seen_is_shown_before_anything_starts(counted: Counted) -> None:
+    assert [counted.tick(after) for after in (0.31, 0.001, 0.001)] == [1, 1, 0]
+
+
+def test_a_page_that_plays_is_not_played_where_nobody_can_see_it(
+    hands: Hands, counted: Counted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(hands.page, "lively", lambda: True)
+    assert counted.tick(0.001) == 1
+    monkeypatch.setattr(hands.window, "isMinimized", lambda: True)
+    assert counted.tick(0.001) == 0

@@ -37,8 +37,14 @@ class Bench:
         self.t = 100.0
         self.peer: Peer | None = None
         self.plug(*pressed)
-        self.pendant = Pendant(BOUND, frozenset(STOPS), WHEEL, self._find, lambda: self.t, place=place)
+        self.rung = 0
+        self.pendant = Pendant(
+            BOUND, frozenset(STOPS), WHEEL, self._find, lambda: self.t, place=place, ring=self._ring
+        )
         self.look()
+
+    def _ring(self) -> None:
+        self.rung += 1
 
     def plug(self, *pressed: int) -> Peer:
         self.peer = Peer(HAT)
@@ -331,3 +337,22 @@ def test_its_thread_reads_and_ends() -> None:
     bench.pendant.close()
     assert bench.device.closed
     assert bench.held == set()
+
+
+def test_a_control_at_rest_hears_at_once_that_something_was_pressed_turned_or_unplugged() -> None:
+    bench = Bench()
+    for act in (
+        lambda: bench.device.key(BTN_A, True),
+        lambda: bench.device.turn(1),
+        bench.device.pull,
+    ):
+        before = bench.rung
+        bench.look()
+        assert bench.rung == before  # nothing has happened
+        act()
+        bench.look()
+        assert bench.rung > before
+    before = bench.rung
+    bench.plug()
+    bench.look()
+    assert bench.rung > before
