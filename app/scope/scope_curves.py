@@ -22,6 +22,7 @@ from core.records.record import Channel, Record
 FloatArray = npt.NDArray[np.float64]
 Range = tuple[float, float]
 GAP = 0.02  # s that a fetch reaches back beyond what derived signals need
+_REST = 0.25  # s; samples of a machine at rest are a tenth of a second apart
 ALARMED = (State.FAULT.value, State.ESTOP.value)
 
 
@@ -75,6 +76,7 @@ class Sight:
     ranges: Mapping[Quantity, Range] = field(default_factory=dict)
     at: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     released: float | None = None  # when the trigger was, seconds of the clock
+    level: tuple[float, ...] | None = None  # figures of live curves that are nothing but level lines
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +129,23 @@ def ranges_of(
             least = quantity.least * quantity.scale(wanted.metric)
             found[quantity] = kept_range(before.get(quantity), low, high, least)
     return found
+
+
+def level_of(curves: Sequence[Curve], begin: float, width: float) -> tuple[float, ...] | None:
+    """The figure of each curve where all are level across the whole window, nan for an empty one; else None.
+
+    Such a picture rolls on without being another one.
+    """
+    levels = []
+    for curve in curves:
+        times, values = curve.points.times, curve.points.values
+        if not len(values):
+            levels.append(np.nan)
+        elif times[0] <= begin + max(_REST, 2.0 * width) and values.min() == values.max():
+            levels.append(float(values[0]))
+        else:
+            return None
+    return tuple(levels)
 
 
 # --- of a record ----------------------------------------------------------------------------------------
@@ -261,6 +280,7 @@ class LiveCurves:
             self._ranges,
             {},
             released,
+            None if earlier else level_of(curves, begin, wanted.width),
         )
 
     def _carry_on(self, wanted: Wanted, newest: float) -> float:

@@ -19,11 +19,13 @@ from app.scope.scope_curves import LiveCurves, LiveSamples, Range, RecordCurves,
 from app.scope.scope_trigger import Trigger, When
 from app.scope.signals import Quantity, Signal, first_chosen, signals_of
 from app.scope.time_window import PAN, Cursors, Window
+from core.executor.snapshot import Snapshot
 from core.records.record import Record
 
 MOST_SHOWN = 8  # curves; inputs and outputs come beside them
 MOST_LOGIC = 12
 FROZEN = 60.0  # s that are taken when the curves are frozen, or three windows
+LEVEL_FOR = 1.0  # s after which level lines are looked at again where nothing seems to have happened
 ZOOM = 1.5  # a step of a lane's range
 FORGOTTEN = tr("THE CURVES ARE LIVE: PRESS F2 TO FREEZE THEM FIRST")
 NO_SAMPLES = tr("NOTHING IS RECORDED ON THIS MACHINE: OPEN A RECORD WITH F9")
@@ -65,6 +67,7 @@ class Scope:
     _released: float | None = None
     _drawn: object = None  # what was last asked for of a record
     _carried: LiveCurves | None = None
+    _asked: tuple[Wanted, Snapshot, float] | None = None  # for the last live picture, and when
 
     def __post_init__(self) -> None:
         if self.live is not None:
@@ -136,7 +139,17 @@ class Scope:
             self._released = None
             self._freeze_at(released, wanted.span)
             return
-        self.worker.ask(lambda _: carried.sight(wanted, overlay), self._take, self.desk.say)
+        if not self._stays(wanted):
+            self._asked = wanted, self.desk.snapshot(), self.desk.clock()
+            self.worker.ask(lambda _: carried.sight(wanted, overlay), self._take, self.desk.say)
+
+    def _stays(self, wanted: Wanted) -> bool:
+        """Level lines of a machine that tells what it told when they were asked for, not long ago."""
+        if self._asked is None or self.sight.level is None or self.armed:
+            return False
+        asked, snapshot, at = self._asked
+        recent = self.desk.clock() - at < LEVEL_FOR
+        return recent and asked == wanted and snapshot.tells_as(self.desk.snapshot())
 
     def _take(self, sight: Sight) -> None:
         if sight.live is not self.is_live:

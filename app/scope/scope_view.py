@@ -16,6 +16,7 @@ from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.sheet import Key
 from app.desk.translation import tr
+from app.scope.scope_curves import Sight
 from app.scope.scope_model import NO_SAMPLES, Scope, Side
 from app.scope.scope_readings_view import Readings
 from app.scope.scope_sheets import ScopeSheets
@@ -226,8 +227,8 @@ class ScopePage(ListPage):
         }
 
     def lively(self) -> bool:
-        """Live curves go on."""
-        return self.scope.is_live
+        """Live curves go on; level lines that roll are the same picture again."""
+        return self.scope.is_live and self.scope.sight.level is None
 
     def has_field(self) -> bool:
         """A level or a line that is asked for."""
@@ -259,7 +260,7 @@ class ScopePage(ListPage):
             self.readings.show_sight(scope.sight)
         if not self.table.isHidden():
             self.table.show_sheet(self.sheets.sheet())
-        shown = (scope.sight, scope.cursors.times, scope.cursors.at)
+        shown = (_seen(scope.sight), scope.cursors.times, scope.cursors.at)
         if chart is not None and shown != self._drawn:
             self._drawn = shown
             chart.show_sight(scope.sight, scope.cursors)
@@ -351,6 +352,14 @@ class _ScopeKeys:
     def leave(self) -> None:
         """Nothing stays half entered."""
         self._sheets.entry.text = ""
+
+
+def _seen(sight: Sight) -> object:
+    """Where two are equal the pictures are."""
+    if sight.level is None:
+        return sight
+    figures = [(each.signal.key, f"{level!r}") for each, level in zip(sight.curves, sight.level, strict=True)]
+    return figures, dict(sight.ranges), sight.begin, sight.end, sight.metric
 
 
 def span_words(seconds: float) -> str:

@@ -29,6 +29,7 @@ from tests.stories.x11 import Server, server
 SIZE = (1920, 1080)
 CASES = ("off", "ready", "keys", "scope", "minimised", "feeder", "canopen")
 ARRIVES, SETTLES, RESTS, PEER = 12.0, 6.0, 3.5, 3.0  # s
+ROLLS = 12.0  # s; the window of the scope, until nothing of what was before rolls in it
 PRESSES = 30
 LEAST = 0.0001  # of a core
 FEEDER = "[machine]\nfeeder = true\n"
@@ -195,6 +196,7 @@ def simulated(stage: Server, folder: Path, names: set[str], seconds: float, mach
         bench.stage.down("Shift_L")
         bench.keys("F10")
         bench.stage.up("Shift_L")
+        time.sleep(ROLLS)
         bench.measure("scope shown", seconds)
     if "minimised" in names:
         bench.minimise()

@@ -165,6 +165,20 @@ def test_live_curves_are_those_of_the_record() -> None:
             assert np.nanmin(column[near]) - 1e-9 <= value <= np.nanmax(column[near]) + 1e-9
 
 
+def test_nothing_but_level_lines_is_told() -> None:
+    played = PlayedSamples()
+    live = LiveCurves(played)
+    assert live.sight(wanted("spindle command", "C actual")).level == (1000.0, 0.0)
+    assert live.sight(wanted("spindle command", "X actual")).level is None
+    young = LiveCurves(PlayedSamples(now=5.0))  # it still grows across the window
+    assert young.sight(wanted("spindle command")).level is None
+
+
+def test_an_earlier_record_below_them_is_drawn_as_it_lies() -> None:
+    earlier = RecordCurves(record_of(seconds(90.0, 100.0)), 95.0)
+    assert LiveCurves(PlayedSamples()).sight(wanted("C actual"), earlier).level is None
+
+
 def test_only_what_is_new_is_looked_at() -> None:
     played = PlayedSamples()
     live = LiveCurves(played)

@@ -121,6 +121,29 @@ def test_frozen_curves_do_not_move(hands: Hands, played: PlayedSamples) -> None:
     hands.sees(lambda: page.scope.sight.live and page.scope.sight.zero > before + 4.9)
 
 
+def test_level_curves_that_roll_are_not_drawn_again(hands: Hands, played: PlayedSamples) -> None:
+    page, scope = opened(hands), hands.desk.attached(Scope)
+    assert scope is not None
+    assert page.lively()  # they swing
+    scope.chosen = ("spindle command", "C actual")
+    hands.sees(lambda: not page.lively())
+    chart = page.curves.chart
+    assert chart is not None
+    hands.sees(lambda: page._drawn is not None and chart.sight.level == (0.0, 1000.0))
+    seen = chart.sight
+    played.now += 1.0
+    hands.sees(lambda: scope.sight.zero > played.now - 0.1)
+    assert chart.sight is seen
+    played.now += 1.0
+    hands.machine.now = replace(hands.machine.now, inputs=frozenset({"guard"}))  # something happens
+    before = hands.desk.clock()
+    hands.sees(lambda: scope.sight.zero > played.now - 0.1)
+    hands.desk.clock = lambda: before  # no second passes any more
+    scope.chosen = ("spindle command", "C actual", "Z actual")
+    hands.sees(lambda: chart.sight is not seen and len(chart.sight.curves) == 3)
+    assert page.lively()
+
+
 def test_the_wheel_zooms_about_the_pointer(hands: Hands) -> None:
     page = frozen(hands)
     before = page.scope.window.begin + 0.25 * page.scope.window.span
