@@ -94,6 +94,7 @@ class Wanted:
     trigger: Trigger = field(default_factory=Trigger)
     cursors: tuple[float, float] | None = None
     ranges: Mapping[Quantity, Range] = field(default_factory=dict)  # those chosen by hand
+    armed: float = -np.inf  # time of the newest sample when the trigger was armed
 
     @property
     def span(self) -> float:
@@ -241,7 +242,7 @@ class LiveCurves:
     _latest: dict[str, float] = field(default_factory=dict)
     _ranges: Mapping[Quantity, Range] = field(default_factory=dict)
     _watched: float = np.nan  # up to where the trigger has looked
-    _trigger: Trigger | None = None
+    _trigger: tuple[Trigger, float] | None = None  # and when it was armed
 
     def sight(self, wanted: Wanted, overlay: RecordCurves | None = None) -> Sight:
         """The picture of the last seconds, up to the newest sample."""
@@ -308,10 +309,11 @@ class LiveCurves:
         return record.rate
 
     def _released(self, wanted: Wanted, newest: float) -> float | None:
-        """When the trigger was released by what has come; what lay before it was set counts for nothing."""
+        """When the trigger was released by what has come; what lay before it was armed counts for nothing."""
         trigger = wanted.trigger
-        if trigger != self._trigger:
-            self._trigger, self._watched = trigger, newest
+        if (trigger, wanted.armed) != self._trigger:
+            self._trigger = trigger, wanted.armed
+            self._watched = wanted.armed if np.isfinite(wanted.armed) else newest
         name = trigger.wants
         if not name:
             return None

@@ -63,6 +63,7 @@ class Scope:
     name: str = ""  # of the file that is open
     over_name: str = ""  # of the one that is laid over
     armed: bool = False
+    _armed_at: float = -np.inf  # of the samples' clock
     _ranges: dict[Quantity, Range] = field(default_factory=dict)  # chosen by hand
     _released: float | None = None
     _drawn: object = None  # what was last asked for of a record
@@ -127,6 +128,7 @@ class Scope:
             trigger,
             cursors,
             dict(self._ranges),
+            self._armed_at,
         )
 
     def _follow(self, wanted: Wanted) -> None:
@@ -181,7 +183,7 @@ class Scope:
         self.window.most = (-self.live.lasts, 0.0)
         self.window.end = 0.0
         self.window.begin = -min(span, self.live.lasts)
-        self.armed = self.trigger.when is not When.OFF
+        self._arm()
         self._other_signals(signals_of(self.live.channels))
 
     def _freeze_at(self, instant: float | None, span: float) -> None:
@@ -328,7 +330,12 @@ class Scope:
     def set_trigger(self, trigger: Trigger) -> None:
         """Another trigger; it is armed as long as it is one and the curves roll."""
         self.trigger = trigger
-        self.armed = trigger.when is not When.OFF and self.is_live
+        self._arm()
+
+    def _arm(self) -> None:
+        """From this sample on: what was sampled before, or while the curves stood, releases nothing."""
+        self.armed = self.trigger.when is not When.OFF and self.is_live
+        self._armed_at = self.live.last if self.live is not None else -np.inf
         self._released = None
 
     @property

@@ -259,9 +259,12 @@ def test_a_trigger_freezes_once(hands: Hands, played: PlayedSamples) -> None:
     assert scope.armed
 
     def later() -> bool:
-        played.now += 0.25
+        """Samples come no faster than the worker looks at them, however busy the computer is."""
+        if played.asked[-1][1] >= played.last:
+            played.now += 0.25
         return scope.frozen is not None
 
+    played.now += 8.0  # before the worker has looked at all: what came since it was armed counts
     hands.sees(later)
     # .01·cos t = .00762 on the way up: 2πn − arccos(.762)
     assert scope.frozen is not None
@@ -269,6 +272,13 @@ def test_a_trigger_freezes_once(hands: Hands, played: PlayedSamples) -> None:
     assert scope.window.begin == pytest.approx(-5.0)
     assert scope.window.end == pytest.approx(5.0)
     assert not scope.armed
+    assert played.now < 112.0
+    played.now = 117.0  # while the curves stand the level is crossed once more, at 112.4 s
+    hands.key(Key.Key_F3)
+    hands.key(Key.Key_F2)
+    assert scope.armed
+    hands.sees(later)
+    assert scope.frozen.zero == pytest.approx(32.0 * np.pi + 6 * np.pi - np.arccos(0.762), abs=0.002)
 
 
 def test_a_level_that_is_none_is_refused(hands: Hands) -> None:
