@@ -115,6 +115,7 @@ class PartsBook:
     loads: int = 0  # how often ``now`` was read
     worker: Latest = field(default_factory=lambda: Latest("measured-parts"))
     _stale: bool = True
+    _reading: bool = False
     _saving: list[tuple[Future[Any], Callable[[], None], Callable[[str], None]]] = field(default_factory=list)
     _behind: Future[None] | None = None  # answered when the writer has come to here
     _kept: list[Callable[[], None]] = field(default_factory=list)  # on the disk, and not read again yet
@@ -131,6 +132,7 @@ class PartsBook:
             self.now, self._stale = PartsData(program, lives=self.now.lives), True
         store = self.store
         if store is not None and not self.worker.busy and self._written(store):
+            self._reading = True
             self.worker.ask(lambda _watch: parts_data(store, program), self._read, self._failed)
 
     def _written(self, store: Store) -> bool:
@@ -147,12 +149,12 @@ class PartsBook:
         return True
 
     def _read(self, found: PartsData) -> None:
-        self.now, self.trouble = found, ""
+        self.now, self.trouble, self._reading = found, "", False
         self.loads += 1
         self._tell_done()
 
     def _failed(self, why: str) -> None:
-        self.trouble = why
+        self.trouble, self._reading = why, False
         self._tell_done()
 
     def _tell_done(self) -> None:
@@ -186,7 +188,7 @@ class PartsBook:
     @property
     def settled(self) -> bool:
         """Whether ``now`` is what is kept: nothing is on its way to the disk or back."""
-        return not (self.busy or self._stale or self._behind is not None or self.worker.busy)
+        return not (self.busy or self._stale or self._behind is not None or self._reading)
 
     def write(
         self, operation: Operation[Any], done: Callable[[], None], failed: Callable[[str], None]

@@ -10,7 +10,9 @@ import numpy.typing as npt
 
 from core.quality.control_charts import Chart, ChartPair
 from core.quality.drift_rules import findings
+from core.quality.wear_proposal import Proposal
 
+AHEAD = 4.0  # parts behind the last one, for which a correction is drawn
 FloatArray = npt.NDArray[np.float64]
 
 
@@ -80,6 +82,31 @@ def control_plots(
     first = 1 if pair.size == 1 else 0  # a moving range belongs to the later of its two parts
     spread = _plot(names[1], pair.spread, _last_parts(parts, pair.size)[first:], unit)
     return location, spread
+
+
+def correction_plot(
+    readings: Sequence[tuple[int, float]], found: Proposal, title: str, names: tuple[str, str], unit: float
+) -> Plot:
+    """Sizes over parts, the mean of those that count, and where a correction brings the parts behind them.
+
+    Readings of one part stand beside each other; lengths in units of ``unit`` mm.
+    """
+    parts = np.asarray([part for part, _ in readings], dtype=np.float64)
+    if (np.diff(parts) <= 0.0).any():
+        parts = np.arange(1.0, len(parts) + 1.0)  # measured twice, or counted anew: by turns
+    sizes = np.asarray([size for _, size in readings]) / unit
+    last, first = parts[-1], parts[-min(found.count, len(parts))]
+    now = Curve(np.array([first, last]), np.full(2, found.mean / unit), 1, dots=False, name=names[0])
+    then = Curve(
+        np.array([last + 1.0, last + 1.0 + AHEAD]),
+        np.full(2, found.expected / unit),
+        2,
+        dots=False,
+        name=names[1],
+    )
+    middle = Level(found.feature.middle / unit, "", "centre")
+    tolerance = tuple(Level(limit / unit, "", "tolerance") for limit in found.feature.limits)
+    return Plot(title, (Curve(parts, sizes), now, then), (middle, *tolerance))
 
 
 def _last_parts(parts: Sequence[int], size: int) -> FloatArray:

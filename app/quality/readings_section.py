@@ -13,9 +13,11 @@ from app.desk.machine_status import Tone
 from app.desk.sheet import Key, Row, Sheet
 from app.desk.translation import tr
 from app.offsets.offset_history import refusal
+from app.quality.correction_effect import CorrectionEffect
 from app.quality.gauge_line import Gauge, NoGauge, Reading
 from app.quality.parts_book import feature_of
 from app.quality.parts_watch import PartsWatch
+from app.quality.plots import Drawing
 from app.quality.readings_file import write_readings
 from app.quality.section import QualitySection, mark_of, signed_size, size, typed_length
 from app.quality.wear_correction import correction, proposal
@@ -25,6 +27,7 @@ from core.store import measured_parts
 from core.store.measured_parts import FeatureRow, ReadingRow
 from core.store.store_rows import Kind
 
+CHART = 0.45  # of the height, for the effect of a proposed correction
 FAR = 3.0  # tolerances off: typed wrong, or another part
 MM = {"mm": 1.0, "in": 25.4}
 
@@ -52,6 +55,7 @@ class ReadingsSection(QualitySection):
         self.folder = folder
         self.gauge = gauge or NoGauge()
         self._part = 0  # 0: the last that was made
+        self.effect = CorrectionEffect(desk)
         self._last: tuple[Kind, str] | None = None  # the correction that was taken over last, and its reason
 
     @property
@@ -70,12 +74,17 @@ class ReadingsSection(QualitySection):
         """Of each feature nominal, last reading, deviation from the middle, and whether it is good."""
         self.settle()
         mode, feature = self.mode, self.feature
+        self.chart_share = CHART if self.effect.stands else 0.0
+        made = self.effect.sheet(mode) if self.effect.stands else None
+        if made is not None:
+            return made
         rows = tuple(self._row(each) for each in self.data.features)
         question = ""
         if feature is not None:
             question = tr("{name} OF PART {part}?").format(name=feature.name, part=self.part)
         heads = ("FEATURE", f"NOMINAL {mode.name}", "PART", "MEASURED", "DEVIATION", "")
-        notes = (self._gauge_words(), "F8 proposes a correction, F9 takes the last one back.")
+        words = self.effect.words() if self.effect.stands else ""
+        notes = (words or self._gauge_words(), "F8 proposes a correction, F9 takes the last one back.")
         title = f"READINGS  ·  {self.program}" if self.program else "READINGS"
         return Sheet(title, heads, (0.2, 0.19, 0.08, 0.19, 0.16, 0.18), rows, self.marked, question,
                      self.entry.text, notes, raw=frozenset({0}), figures=frozenset({2}))  # fmt: skip
@@ -116,6 +125,10 @@ class ReadingsSection(QualitySection):
     def prompt(self) -> str:
         """How to enter a reading."""
         return self.missing() or "TYPE THE MEASURED SIZE AND PRESS RETURN; ESC GOES BACK TO THE LIST"
+
+    def drawing(self) -> Drawing:
+        """What a proposed correction does to the feature."""
+        return self.effect.drawing(self.mode) if self.effect.stands else Drawing()
 
     # --- readings ------------------------------------------------------------------------------------
 
@@ -227,12 +240,14 @@ class ReadingsSection(QualitySection):
                 mean = size(found.mean, self.mode)
                 self.desk.say(f"{feature.name} {mean}: {tr(found.why)}")
                 return
-            words = correction(found, self.desk, self.mode).words
+            change = correction(found, self.desk, self.mode)
         except (QualityError, EntryError) as error:
             self.desk.refuse(str(error))
             return
-        asked = tr("{words}: PRESS Y TO TAKE IT OVER, ESC TO LEAVE IT")
-        self.desk.ask(asked.format(words=words), partial(self._correct, feature))
+        asked = tr("{words}: PRESS Y TO TAKE IT OVER, ESC TO LEAVE IT").format(words=change.words)
+        self.desk.ask(asked, partial(self._correct, feature))
+        taken = tuple((each.part, each.value) for each in self.data.readings_of(feature.id))
+        self.effect.show(self.desk.notice, found, change, taken)
 
     def _settled(self) -> bool:
         """Whether what is known is what is kept: a change that is on its way would be proposed once more."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from app.desk.desk import Desk
 from app.desk.formats import fixed
 from app.offsets.offset_values import Mode, to_mm
@@ -20,7 +18,7 @@ NO_FEATURE = "NO FEATURE IS ENTERED YET: SECTION 1, F2"
 class QualitySection(FigureFunction):
     """What all sections share: the book, the program on the desk, its unit, the marked feature."""
 
-    chart_share: ClassVar[float] = 0.0  # of the height: what the drawing takes below the table
+    chart_share: float = 0.0  # of the height: what the drawing takes below the table
 
     def __init__(self, desk: Desk, watch: PartsWatch) -> None:
         super().__init__(desk)

@@ -223,6 +223,48 @@ def test_the_correction_goes_the_way_of_a_typed_one_and_back(day: Day) -> None:
     assert day.store.tools()[1].wear_x == 0.0
 
 
+def test_what_a_correction_would_do_is_shown_before_it_is_taken_over(day: Day) -> None:
+    """The peg's diameter is .5 as programmed; .0006 less of wear makes it .4994. Nothing is changed."""
+    spigot(day)
+    parts(day, 2)
+    measured(day, ".5012", ".5012")
+    day.key(Key.Key_Escape)
+    day.sees(lambda: cells(day)[0][2] == "2")
+    shown = model(day).shown
+    assert isinstance(shown, ReadingsSection)
+    assert (shown.chart_share, shown.drawing().plots) == (0.0, ())
+    day.key(Key.Key_F8)
+    asked = day.prompt
+    day.sees(lambda: sheet(day).title.startswith("WHAT IT DOES TO THE PART"))
+    (diameter,) = [row.cells for row in sheet(day).rows if row.lit]
+    assert diameter[1:] == ("0.50000", "0.49940", "−0.00060")
+    (plot,) = shown.drawing().plots
+    taken, now, then = plot.curves
+    assert list(taken.y) == pytest.approx([0.5012, 0.5012])
+    assert list(now.y) == pytest.approx([0.5012, 0.5012])
+    assert list(then.y) == pytest.approx([0.5006, 0.5006])
+    assert then.x[0] == taken.x[-1] + 1.0
+    assert [each.value for each in plot.levels] == pytest.approx([0.5, 0.499, 0.501])
+    assert shown.chart_share > 0.0
+    assert (day.prompt, day.store.tools()[1].wear_x) == (asked, 0.0)
+    day.key(Key.Key_Escape)
+    assert cells(day)[0][0].upper() == "SPIGOT", "the readings are back"
+    assert (shown.chart_share, shown.drawing().plots) == (0.0, ())
+
+
+def test_a_refused_proposal_shows_no_effect(day: Day) -> None:
+    spigot(day)
+    parts(day, 1)
+    measured(day, ".5001")
+    day.key(Key.Key_Escape)
+    day.key(Key.Key_F8)
+    assert "dead band" in day.prompt
+    shown = model(day).shown
+    assert isinstance(shown, ReadingsSection)
+    assert not shown.effect.stands
+    assert shown.drawing().plots == ()
+
+
 def test_parts_of_before_the_correction_ask_for_no_other(day: Day) -> None:
     spigot(day)
     parts(day, 1)
