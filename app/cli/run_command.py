@@ -70,12 +70,12 @@ def run(args: argparse.Namespace) -> int:
 def _proved(args: argparse.Namespace, around: Circumstances, job: Job) -> Report:
     """The proof with that of the part, each finding with the weight that it has on a desk (decision 0045)."""
     from app.cli.part_options import part_setting, with_kept_stock
-    from app.compose.desk_part import as_known
+    from app.desk.program_loading import at_a_machine
     from core.proving.part_proof import prove_with_part
 
     setting = with_kept_stock(part_setting(args, around), job.source.name, args)
     report, _part = prove_with_part(job.reading, around.setup, around.machine, setting)
-    return replace(report, diagnostics=tuple(map(as_known, report.diagnostics)))
+    return replace(report, diagnostics=tuple(map(at_a_machine, report.diagnostics)))
 
 
 def _run(args: argparse.Namespace, around: Circumstances, job: Job, report: Report) -> int:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from app.desk.kept_part import NOTHING_KEPT, KeptPart
 from app.desk.latest import AbandonedError, Watch, sentence
-from app.desk.program_loading import PartProved
+from app.desk.program_loading import PartProved, at_a_machine
 from app.desk.translation import tr
 from core.language.diagnostics import Diagnostic, Severity
 from core.store.store_errors import StoreError
@@ -118,17 +118,9 @@ def _unusable(why: str) -> Diagnostic:
 
 def _weighed(found: Iterable[Diagnostic], report: PartReport | None) -> PartProved:
     """With the weight that each finding has on the desk, and what of them is announced before a start."""
-    seen = [(each, as_known(each)) for each in found]
+    seen = [(each, at_a_machine(each)) for each in found]
     warned = [now for was, now in seen if was is not now or was.code in {NOT_MADE, NO_STOCK}]
     return PartProved(tuple(now for _, now in seen), tuple(_in_short(each) for each in warned), report)
-
-
-def as_known(found: Diagnostic) -> Diagnostic:
-    """An error that rests on what nobody has said is a warning at a machine."""
-    if found.severity is not Severity.ERROR or not found.assumed:
-        return found
-    what = ", ".join(found.assumed)
-    return replace(found, severity=Severity.WARNING, message=f"{found.message} Assumed: {what}.")
 
 
 def _in_short(found: Diagnostic) -> str:

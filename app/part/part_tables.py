@@ -122,7 +122,7 @@ def _stock_notes(page: PartSheet) -> tuple[str, ...]:
         return (tr("COUNTS ONLY WITH [clamping] IN THE MACHINE FILE"),)
     part = page.loaded.part
     told = part.report.assumed if part is not None and part.report is not None else ()
-    said = (f"{tr('ASSUMED')}: {each}" for each in told[:3])
+    said = (f"{tr('ASSUMED')}: {tr(each)}" for each in told[:3])
     return tuple(textwrap.shorten(each, ACROSS, placeholder=" …") for each in said)
 
 

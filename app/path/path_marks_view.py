@@ -108,11 +108,14 @@ def draw_border(painter: QPainter, look: Look, room: QRectF) -> None:
 
 
 def draw_words(painter: QPainter, look: Look, room: QRectF, words: str, ink: str = "soft") -> None:
-    """At the upper left of a pane: what it is, or what is to be said of it."""
+    """At the upper left of a pane: what it is, or what is to be said of it, over figures of its axis."""
     u = look.u
-    painter.setPen(look.colour(ink))
     painter.setFont(look.fit(words, 1.6, room.width() - 2 * u, bold=True))
-    put(painter, QRectF(room.x() + 1.2 * u, room.y() + 0.9 * u, room.width() - 2 * u, 2 * u), LEFT, words)
+    box = QRectF(room.x() + 1.2 * u, room.y() + 0.9 * u, room.width() - 2 * u, 2 * u)
+    long = min(QFontMetricsF(painter.font()).horizontalAdvance(tr(words)), box.width())
+    painter.fillRect(QRectF(box.x() - 0.4 * u, box.y(), long + 0.8 * u, box.height()), look.colour("ground"))
+    painter.setPen(look.colour(ink))
+    put(painter, box, LEFT, words)
 
 
 def draw_nothing(painter: QPainter, look: Look, room: QRectF, why: str) -> None:

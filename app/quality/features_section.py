@@ -128,7 +128,7 @@ class FeaturesSection(QualitySection):
                 Row((each.name, mark_of(each) + size(each.nominal, mode), tolerance,
                      feature_of(each).corrected_by, every, sample))
             )  # fmt: skip
-        heads = ("NAME", f"NOMINAL {mode.name}", "TOLERANCE", "BY", "MEASURED", "SAMPLE")
+        heads = ("NAME", f"NOMINAL {mode.name}", "TOLERANCE", tr("BY"), "MEASURED", "SAMPLE")
         waits = tr("PARTS WAIT UNTIL THE PLAN IS DONE") if self.watch.waits else tr("PARTS GO ON")
         notes = (
             "F2 enters a feature, Return changes the marked one. F5: whether parts wait for the plan.",
@@ -142,10 +142,11 @@ class FeaturesSection(QualitySection):
         mode = self.mode
         rows = tuple(Row((field, draft.shown(field, mode))) for field in FIELDS)
         turned = draft.field in _TURNED
-        question = tr("RETURN TURNS IT OVER") if turned else f"{tr(draft.field)}?"
+        question = "" if turned else f"{tr(draft.field)}?"
+        way = "Return takes what is typed and goes on; F6 keeps the feature, Esc leaves it as it was."
         return Sheet(
             "FEATURE", ("", mode.name), (0.55, 0.45), rows, draft.at, question, self.entry.text,
-            ("Return takes what is typed and goes on; F6 keeps the feature, Esc leaves it as it was.",),
+            (tr("RETURN TURNS IT OVER"), way) if turned else (way,),
             raw=frozenset({1}),
         )  # fmt: skip
 
@@ -154,7 +155,7 @@ class FeaturesSection(QualitySection):
         if self.draft is not None:
             return {"F6": Key("KEEP", self.keep)}
         return {
-            "F2": Key("NEW", self.new),
+            "F2": Key(tr("NEW"), self.new),
             "F3": Key("CHANGE", self.change),
             "F4": Key("REMOVE", self.remove),
             "F5": Key("GO ON" if self.watch.waits else "WAIT", self._turn_waits),

@@ -129,9 +129,11 @@ class PlotsPane(QWidget):
         drawn.setXRange(across[0] - side, across[1] + side, padding=0)
 
     def _title(self, drawn: chart.Plot, words: str) -> None:
-        """In the upper corner, over what is drawn."""
+        """In the upper corner, over what is drawn, on a ground of its own: no limit strikes it out."""
         (left, _), (_, top) = drawn.vb.viewRange()
-        title = pg.TextItem(words, color=self.look.colour("text"), anchor=(0.0, 0.0))
+        ground = self.look.colour("panel")
+        title = pg.TextItem(words, color=self.look.colour("text"), anchor=(0.0, 0.0), fill=ground)
+        title.setZValue(10.0)
         title.setFont(self.look.font(1.8, bold=True))
         title.setPos(left, top)
         drawn.addItem(title)

@@ -107,8 +107,8 @@ class ReadingsSection(QualitySection):
     def keys(self) -> Mapping[str, Key]:
         """Part number, gauge, file, correction."""
         return {
-            "F2": Key("PART −", partial(self._step, -1)),
-            "F3": Key("PART +", partial(self._step, 1)),
+            "F2": Key(tr("PART −"), partial(self._step, -1)),
+            "F3": Key(tr("PART +"), partial(self._step, 1)),
             "F4": Key("TAKE OUT", self.take_out),
             "F5": Key("NO GAUGE" if self.gauge.open else "GAUGE", self.turn_gauge),
             "F6": Key("CSV", self.write_file),

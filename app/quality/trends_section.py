@@ -34,7 +34,7 @@ class TrendsSection(QualitySection):
 
     name = "TRENDS"
     use = "cycle times, wear, stops, availability"
-    chart_share = 0.58
+    chart_share = 0.42
 
     def __init__(
         self, desk: Desk, watch: PartsWatch, now: Callable[[], datetime] = lambda: datetime.now(UTC)

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from app.desk.program_loading import at_a_machine
 from app.desk.translation import tr
 from app.report.run_record import RunRecord, Stop, ToolTime
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
+from core.language.diagnostics import Severity
 from core.language.source import Dialect
 from core.machine.machine_model import Machine
 from core.part.clamping import Clamping
@@ -39,6 +41,7 @@ class SetupSheet:
     metric: bool
     cycle: float
     errors: int
+    warnings: int
     stock: Stock | None
     part: Piece | None
     milled: bool
@@ -47,6 +50,15 @@ class SetupSheet:
     secondary: tuple[tuple[int, SecondaryOffset], ...]
     zero: tuple[tuple[int, ZeroOffset], ...]
     stops: tuple[Stop, ...]
+
+    @property
+    def verdict(self) -> str:
+        """What the proof has found, as it counts at the machine; empty: nothing that matters."""
+        if self.errors:
+            return tr("{count} ERRORS: this program will not run as it stands").format(count=self.errors)
+        if self.warnings:
+            return tr("{count} WARNINGS: look at them before the first part").format(count=self.warnings)
+        return ""
 
     def length(self, mm: float) -> str:
         """A length with its unit, as the program counts."""
@@ -118,12 +130,14 @@ def setup_sheet(
     """Prove the program once more and put together what its setup asks for. ``watch`` may raise."""
     record = RunRecord(setting)
     report, part = prove_with_part(program, setup, machine, setting, watch, seen=record.see)
+    found = [at_a_machine(each).severity for each in report.diagnostics]
     shapes = part.shapes if part is not None else {}
     numbers = sorted({*report.tools, *(n for n, time in record.times.items() if n and time.total)})
     return SetupSheet(
         metric=report.metric or report.dialect is not Dialect.OMNITURN,
         cycle=report.times.cycle,
-        errors=len(report.errors),
+        errors=found.count(Severity.ERROR),
+        warnings=found.count(Severity.WARNING),
         stock=part.stock if part is not None else None,
         part=part.last if part is not None else None,
         milled=part is not None and part.milled,

@@ -24,16 +24,15 @@ def setup_sheet_html(
     if outside_words(sheet):
         rows.append((tr("PART"), outside_words(sheet)))
     return "".join(
-        (_errors(sheet), pairs(rows), _notes(notes), _tools(sheet, remarks), _offsets(sheet), _stops(sheet),
+        (_verdict(sheet), pairs(rows), _notes(notes), _tools(sheet, remarks), _offsets(sheet), _stops(sheet),
          _section(sheet))
     )  # fmt: skip
 
 
-def _errors(sheet: SetupSheet) -> str:
-    if not sheet.errors:
+def _verdict(sheet: SetupSheet) -> str:
+    if not sheet.verdict:
         return ""
-    text = tr("{count} ERRORS: this program will not run as it stands").format(count=sheet.errors)
-    return verdict("bad", text)
+    return verdict("bad" if sheet.errors else "doubt", sheet.verdict)
 
 
 def _section(sheet: SetupSheet) -> str:

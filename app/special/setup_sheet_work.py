@@ -35,9 +35,8 @@ class Made:
 def rows_of(made: Made, remarks: Mapping[int, str]) -> Iterator[Row]:
     """Time, stock, what holds it, tools, offsets, stops."""
     sheet = made.sheet
-    if sheet.errors:
-        text = tr("{count} ERRORS: this program will not run as it stands").format(count=sheet.errors)
-        yield Row((tr("ERRORS"), text, ""))
+    if sheet.verdict:
+        yield Row((tr("ERRORS") if sheet.errors else tr("WARNINGS"), sheet.verdict, ""))
     part = outside_words(sheet)
     stock = sheet.stock_words + (f"\n{tr('PART')} {part}" if part else "")
     yield Row((tr("TIME A PART"), clock(sheet.cycle), ""))

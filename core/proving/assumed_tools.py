@@ -17,6 +17,19 @@ from core.proving.tip_moves import QUICK, LiveStep, TipMove
 
 _ON_AXIS = 0.05  # mm; a tool that feeds along Z no further off it is a drill
 _SQUARE = 0.02  # mm of Z, in a plunge
+_NAMES = {
+    ToolKind.TURNING: "a turning tool",
+    ToolKind.BORING: "a boring tool",
+    ToolKind.GROOVING: "a grooving tool",
+    ToolKind.PARTING: "a parting tool",
+    ToolKind.THREADING: "a threading tool",
+    ToolKind.DRILL: "a drill",
+    ToolKind.CENTRE_DRILL: "a centre drill",
+    ToolKind.REAMER: "a reamer",
+    ToolKind.TAP: "a tap",
+    ToolKind.END_MILL: "an end mill",
+    ToolKind.FORM: "a form tool",
+}
 _GROOVE = 2.0  # mm; width of a grooving or parting tool that nobody has given
 _WIDEST = 8.0  # mm, of what a groove is plunged with
 _USUAL, _SMALLEST, _ALLOWANCE = 6.35, 1.0, 0.5  # mm; diameter of a drill that nobody has given
@@ -327,8 +340,7 @@ def _diameter(comment: str) -> float:
 
 
 def _names(kind: ToolKind, shape: ToolShape) -> str:
-    name = {ToolKind.END_MILL: "an end mill"}.get(kind, f"a {kind.replace('-', ' ')}")
     size = f", {shape.diameter / 25.4:.3f} in" if shape.diameter and shape.turns_itself else ""
     if shape.width:
         size = f", {shape.width / 25.4:.3f} in wide"
-    return f"{name}{'' if shape.turns_itself else ' tool'}{size}"
+    return f"{_NAMES[kind]}{size}"

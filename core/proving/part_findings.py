@@ -133,12 +133,17 @@ class PartFindings:
     def _rapid(self, move: TipMove, met: Cut) -> None:
         if met.depth <= RAPID or met.width <= RAPID:
             return
-        what = "A rapid" if move.kind is Kind.RAPID else "A feed as fast as a rapid"
+        deep, fed = _depth(met, move), move.kind is not Kind.RAPID
         behind_cut = self._before is not None and not self._before.quick
-        if behind_cut:
-            self._add("through-part", move, f"{what} leaves a cut through the part, {_depth(met, move)}.")
+        if behind_cut and fed:
+            text = f"A feed as fast as a rapid leaves a cut through the part, {deep}."
+        elif behind_cut:
+            text = f"A rapid leaves a cut through the part, {deep}."
+        elif fed:
+            text = f"A feed as fast as a rapid goes into metal, {deep}."
         else:
-            self._add("rapid-into-stock", move, f"{what} goes into metal, {_depth(met, move)}.")
+            text = f"A rapid goes into metal, {deep}."
+        self._add("through-part" if behind_cut else "rapid-into-stock", move, text)
 
     def pause(self) -> None:
         """The program waits, or switches something."""

@@ -97,7 +97,7 @@ def test_what_rests_on_an_assumed_bar_is_a_warning_that_is_announced(desk: Make)
     (found,) = loaded.diagnostics
     assert (found.line, found.check, found.severity) == (11, "rapid-into-stock", Severity.WARNING)
     assert found.assumed == ("stock", "T1")
-    assert found.message.endswith("Assumed: stock, T1.")
+    assert found.hint.endswith("Assumed: stock, T1.")
     assert "G00 left on" in found.hint
     assert found.n > 0
     assert loaded.phase is Phase.READY

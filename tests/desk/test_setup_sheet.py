@@ -1,0 +1,52 @@
+"""The setup sheet without a screen: what it says of the proof is what holds at the machine."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.compose.machine_files import load_machine
+from app.compose.machine_setup import setup_for
+from app.special.setup_sheet import SetupSheet, setup_sheet
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.job_setup import ToolOffset
+from core.language.source import Source
+from core.part.stock import Stock, bar
+from core.part.tool_shape import ToolKind, ToolShape
+from core.proving.part_proof import PartSetting
+
+TURNED = "G90G94F300\nM03S1500\nT1\nX.6Z.05\nX.4\nG95F.004Z-.5\nX.55\nG94F300Z1\nM30\n"
+SLIP = TURNED.replace("G95F.004Z-.5", "G00Z-.5")
+TOOL = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.4, insert="DCMT11T304")
+ROD = bar(25.4, 0.0, -60.0)
+
+
+def sheet_of(text: str, stock: Stock | None = None, shapes: dict[int, ToolShape] | None = None) -> SetupSheet:
+    machine = load_machine(None)
+    setup = setup_for(machine, tools={1: ToolOffset()}, secondary={})
+    return setup_sheet(ReadProgram(Source("P", text)), setup, machine, PartSetting(stock, shapes or {}))
+
+
+@pytest.mark.parametrize(("stock", "shapes"), [(None, {}), (ROD, {}), (None, {1: TOOL})])
+def test_what_rests_on_something_assumed_is_a_warning_as_on_the_desk(
+    stock: Stock | None, shapes: dict[int, ToolShape]
+) -> None:
+    sheet = sheet_of(SLIP, stock, shapes)
+    assert sheet.errors == 0
+    assert sheet.verdict.endswith("WARNINGS: look at them before the first part")
+
+
+def test_an_error_of_what_is_said_is_one() -> None:
+    sheet = sheet_of(SLIP, ROD, {1: TOOL})
+    assert sheet.verdict.endswith("ERRORS: this program will not run as it stands")
+    assert sheet_of(TURNED, ROD, {1: TOOL}).verdict == ""
+
+
+def test_a_groove_tool_without_a_width_is_assumed_and_so_is_its_width() -> None:
+    grooved = "G90G94F300\nM03S900\nT1\nX.6Z-.5\nG95F.002X.4\nG94F300X.6\nZ1\nM30\n"
+    groover = ToolShape(ToolKind.GROOVING, tip=3, stick_out=30.0)
+    (tool,) = sheet_of(grooved, ROD, {1: groover}).tools
+    assert tool.assumed
+    assert tool.shape is not None
+    assert tool.shape.width == 2.0
+    (said,) = sheet_of(grooved, ROD, {1: ToolShape(ToolKind.GROOVING, tip=3, width=3.0)}).tools
+    assert not said.assumed
