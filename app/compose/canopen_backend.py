@@ -28,6 +28,7 @@ from drivers.canopen.canopen_table import (
     Objects,
     can_terminal,
 )
+from drivers.canopen.drive_profiles import CIA402, PROFILES
 from drivers.feeder.feeder_server import Driven
 from drivers.operator_station import PanelStation
 
@@ -114,6 +115,7 @@ def _axis(axis: Axis, machine: Machine, node: CanNode | None) -> AxisConfig:
     return AxisConfig(
         **axis_figures(axis, machine),
         node=node,
+        profile=PROFILES.get(node.drive, CIA402) if node is not None else CIA402,
         counts_per_rev=node.counts_per_rev if node is not None else 0,
         home_method=home.method,
         home_latch=home.latch,
@@ -169,7 +171,7 @@ def can_driven(machine: Machine, clock: Clock) -> Driven:
         panel = PanelStation(clock, ports.io.inputs, wired)
         hands, ports = hands or panel, replace(ports, station=panel)
     if peers is None:
-        return Driven(ports, owned.tick, owned.close, hands)
+        return Driven(ports, owned.tick, owned.close, hands, owned.wake, owned.notes)
 
     def tick() -> None:
         peers.pump()
@@ -180,7 +182,7 @@ def can_driven(machine: Machine, clock: Clock) -> Driven:
         owned.close()
         peers.close()
 
-    return Driven(ports, tick, close, hands)
+    return Driven(ports, tick, close, hands, owned.wake, owned.notes)
 
 
 def _play(
@@ -208,6 +210,7 @@ BACKEND = Backend("bus", driven=can_driven, played=_played, play=_play, survey=_
 def written_at_start(machine: Machine) -> dict[str, Objects]:
     """Every object that each node is told at a start, by the node's name. Raises DriverError."""
     try:
+        from drivers.canopen.canopen_objects import drive_dictionary
         from drivers.canopen.canopen_setup import axis_objects, stopping, watching
     except ImportError as error:
         raise DriverError(lacking(error)) from error
@@ -215,7 +218,8 @@ def written_at_start(machine: Machine) -> dict[str, Objects]:
     told: dict[str, Objects] = {}
     for axis in config.axes:
         if axis.node is not None:
-            told[axis.name] = (*axis_objects(axis, config.bus), *axis.node.sdo)
+            family = replace(axis, profile=drive_dictionary(axis.node)[1])
+            told[axis.name] = (*axis_objects(family, config.bus), *axis.node.sdo)
     if config.spindle is not None:
         told["spindle"] = (*stopping(config.bus), *config.spindle.node.sdo)
     return told | {module.name: (*watching(config.bus), *module.sdo) for module in config.modules}

@@ -10,23 +10,31 @@ from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_homing import Homing
 from drivers.canopen.canopen_objects import CSP, IP, PP, DriveState
 from drivers.canopen.canopen_setup import check_limits, limits
-from drivers.canopen.cia402_drives import DriveSet
-from drivers.canopen.position_modes import CspFollower, Follower, ProfiledFollower
+from drivers.canopen.cia402_drives import POINT_TARGET, DriveSet, Motion
+from drivers.canopen.cyclic_mode import CyclicFollower, SyncSchedule
+from drivers.canopen.position_modes import Follower, ProfiledFollower
 from drivers.canopen.pvt_mode import PvtFollower
 from drivers.setpoint_queue import SetpointQueue, Tolerance
 
 # --- The ways to follow setpoints, by the word of the machine file.
 
 
-MODES = {"pvt": IP, "pp": PP, "csp": CSP}  # objects 0x6060
+MODES = {
+    "pvt": Motion(IP),
+    "csp": Motion(CSP, cyclic=True),
+    "ip": Motion(IP, POINT_TARGET, cyclic=True),
+    "pp": Motion(PP),
+}
 
 
-def follower_of(config: CanopenConfig, drives: DriveSet, queue: SetpointQueue) -> Follower:
+def follower_of(
+    config: CanopenConfig, drives: DriveSet, queue: SetpointQueue, schedule: SyncSchedule
+) -> Follower:
     """The one of ``config.mode``."""
     if config.mode == "pp":
         return ProfiledFollower(drives.axes, drives.indices, queue)
-    if config.mode == "csp":
-        return CspFollower(drives.axes, drives.indices, queue, config.bus.sync)
+    if MODES[config.mode].cyclic:
+        return CyclicFollower(drives.axes, drives.indices, queue, MODES[config.mode].mode, schedule)
     return PvtFollower(drives.axes, drives.indices, queue, config.commit, config.record)
 
 
@@ -47,7 +55,9 @@ class CanopenAxes:
         self.drives = DriveSet(config.axes, bus, MODES[config.mode])
         tolerance = Tolerance.of(config.axes)
         self.queue = SetpointQueue(self.axes, (0.0,) * len(self.axes), config.commit, tolerance)
-        self.follower = follower_of(config, self.drives, self.queue)
+        self.schedule = SyncSchedule(config.bus.sync, bus.clock.now())
+        self.follower = follower_of(config, self.drives, self.queue, self.schedule)
+        self.cyclic = MODES[config.mode].cyclic
         self.homing: Homing | None = None
         self.fault = ""
         self.beside = ""  # what is wrong elsewhere on the bus
@@ -63,16 +73,24 @@ class CanopenAxes:
         self.queue.rest_at(self._actual())
 
     def tick(self, now: float) -> None:
-        """Supervise, home, feed. Raises nothing: what is wrong becomes the fault, and all axes stop."""
+        """Supervise, home, feed; what is fed at each SYNC is fed by ``go_on``. Raises nothing.
+
+        What is wrong becomes the fault, and all axes stop.
+        """
+        self._supervise()
+        if not self.cyclic:
+            self.go_on(now)
+        self._end_braking(now)
+        self.drives.note_motion(now)
+        self.queue.trim(now - _PAST)
+
+    def go_on(self, now: float) -> None:
+        """The next step of a homing, or the next setpoints."""
         try:
-            self._supervise()
             if self._on and not self.fault:
                 self._go_on(now)
         except DriverError as error:
             self._trip(error.fault)
-        self._end_braking(now)
-        self.drives.note_motion(now)
-        self.queue.trim(now - _PAST)
 
     # --- the port -----------------------------------------------------------------------------------------
 
@@ -101,7 +119,7 @@ class CanopenAxes:
     def sample(self) -> AxisSample:
         """The axes as the last answers have it, at the time of their SYNC."""
         actual, powered, seen = self._actual(), self._powered(), self.drives.seen
-        demand, velocity = self.queue.demand_at(seen)
+        demand, velocity = self.queue.demand_at(self.follower.path_time(seen))
         busy = self.homing is not None or self._given_up is not None
         if not powered or busy:
             demand = actual
@@ -112,7 +130,7 @@ class CanopenAxes:
             following_error=tuple([d - a for d, a in zip(demand, actual, strict=True)]),
             enabled=powered,
             homed=self._homed(),
-            moving=busy or any(velocity) or self.drives.moving,
+            moving=busy or any(velocity) or self.drives.moving or (self.cyclic and self.follower.playing),
             fault=self.fault,
         )
 
@@ -137,7 +155,7 @@ class CanopenAxes:
             self._hold()
             return
         self._off(DriveState.OFF if how is Stop.OFF else DriveState.QUICK_STOP)
-        if not self._bus.trouble:
+        if not self._bus.trouble and not self.cyclic:  # else with the next SYNC, which keeps its time
             self.drives.exchange()
 
     def home(self, axis: str) -> None:
@@ -228,7 +246,8 @@ class CanopenAxes:
         if homing.done:
             if self.homing is not None:
                 homing.axis.homed = True
-                homing.axis.drive.setup.write_all(limits(homing.config))
+                for index, sub, value in limits(homing.config):
+                    homing.axis.drive.setup.try_write(index, sub, value)
             self.homing = self._given_up = None
             self.queue.rest_at(self._actual())  # the path goes on from where the drive has stopped
 

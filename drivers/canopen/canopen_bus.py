@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import struct
 import time
@@ -39,6 +40,7 @@ class Bus(canopen.Network):
         self.garbled = 0
         self.trouble: Fault | str = ""  # why the bus cannot be trusted; stays until it is opened anew
         self._idle = idle
+        self.meanwhile: Callable[[], float] | None = None  # goes on in every wait; s until it has to again
         self._next_beat = clock.now()
         if config.interface not in _ECHOING:
             for cob in (_SYNC, _NMT, _BEAT + config.host_id):
@@ -73,7 +75,8 @@ class Bus(canopen.Network):
         now = self.clock.now()
         if (at_once or now >= self._next_beat) and not self.trouble:
             self._next_beat = now + self.config.heartbeat
-            self.send_message(_BEAT + self.config.host_id, bytes([_OPERATIONAL]))
+            with contextlib.suppress(DriverError):  # kept as the bus's trouble
+                self.send_message(_BEAT + self.config.host_id, bytes([_OPERATIONAL]))
 
     def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
         """Send one frame. Raises DriverError when the interface does not take it."""
@@ -101,8 +104,14 @@ class Bus(canopen.Network):
             left = end - time.monotonic()
             if left <= 0.0 or self.trouble:
                 return False
-            self.pump(min(left, 0.005))
+            due = self.meanwhile() if self.meanwhile is not None else 0.005
+            self.pump(min(left, due, 0.005))
         return True
+
+    @property
+    def stepped(self) -> bool:
+        """Time does not pass by itself (tests)."""
+        return self._idle is not None
 
     def lost(self, why: str) -> None:
         """Nothing on this bus can be believed any more; the first reason is kept."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from drivers.canopen.canopen_table import BusConfig, CanNode, CanTerminal
+from drivers.canopen.drive_profiles import CIA402, DriveProfile
 from drivers.setpoint_queue import AxisFigures
 
 
@@ -14,10 +15,21 @@ class AxisConfig(AxisFigures):
     """One axis. Without a ``node`` it has no drive, and only counts."""
 
     node: CanNode | None = None
-    counts_per_rev: int = 0  # PVT velocities in rpm of so many counts; 0: in counts/s
+    profile: DriveProfile = CIA402
+    counts_per_rev: int = 0  # the drive's velocities are rpm of so many counts; 0: counts/s
     home_method: int = 0
     home_latch: float = 0.0
     home_offset: float = 0.0
+
+    def velocity(self, speed: float) -> float:
+        """A speed, mm/s or degrees/s, in the drive's unit: counts/s, or rpm."""
+        counts = speed / self.count
+        return counts * 60.0 / self.counts_per_rev if self.counts_per_rev else counts
+
+    def acceleration(self, accel: float) -> int:
+        """An acceleration, mm/s² or degrees/s², in the drive's unit: counts/s², or rpm/s; at least one."""
+        counts = accel / self.count
+        return max(round(counts * 60.0 / self.counts_per_rev if self.profile.rpm else counts), 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +88,6 @@ class CanopenConfig:
     outputs: Mapping[str, OutputConfig] = field(default_factory=dict)
     inputs: Mapping[str, CanTerminal] = field(default_factory=dict)
     pots: Mapping[str, PotConfig] = field(default_factory=dict)
-    mode: str = "pvt"  # pvt, pp or csp
+    mode: str = "pvt"  # pvt, csp, ip or pp
     commit: float = 0.14
     record: float = 0.02

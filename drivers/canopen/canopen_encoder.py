@@ -43,12 +43,13 @@ class CanEncoder:
         if config.node is not None:
             setup.pre_operational()
             setup.demand_profile(406)
-            setup.write_all((*watching(self._bus.config), *config.node.sdo))
+            setup.configure(watching(self._bus.config), config.node.sdo, (od.HEARTBEAT,))
             self._check_counts()
             self.node.nmt.add_heartbeat_callback(self._heartbeat)
             self.node.emcy.add_callback(self._emergency)
         entry = config.index | config.sub << 16
-        setup.transmit(1 if self._drive is None else 3, self._told, (entry, 32))
+        every = self._bus.config.seldom
+        setup.transmit(1 if self._drive is None else 3, self._told, (entry, 32), every=every)
         self._raw, self.missing, self.trouble = None, 0, ""
         self._heard = self._bus.clock.now()
         self._reads.clear()
@@ -58,9 +59,9 @@ class CanEncoder:
         if self._drive is None:
             self.node.nmt.state = "OPERATIONAL"
 
-    def sync_sent(self) -> None:
-        """A SYNC goes out now."""
-        self.missing, self._asked = self.missing + 1, self._bus.clock.now()
+    def sync_sent(self, now: float, *, counted: bool = True) -> None:
+        """A SYNC goes out; ``counted``: an answer to it is waited for."""
+        self.missing, self._asked = self.missing + counted, now
 
     def look(self) -> None:
         """Supervise."""

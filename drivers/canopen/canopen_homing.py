@@ -12,12 +12,14 @@ from drivers.canopen.cia402_drives import Drive402, DrivenAxis
 _FIRST = 0.1  # s in which "target reached" may still be that of the last move
 _MODE = 0.5  # s for a change of mode
 _SPARE = 10.0  # s beyond the way at homing speed
+_SETTLE = 0.05  # s in which its new count must have been answered: setpoints begin there
 _STILL = 0.1  # s without a count before a drive that was halted counts as standing
 
 
 class _Step(Enum):
     MODE = "waits for the homing mode"
     RUN = "looks for the switch"
+    SETTLE = "has found it, and begins to count anew"
     HALT = "brakes, given up"
     BACK = "waits for the old mode"
     DONE = "back in its old mode"
@@ -50,6 +52,8 @@ class Homing:
             self._enter(_Step.RUN, now)
         elif self._step is _Step.RUN:
             self._look(now, waited)
+        elif self._step is _Step.SETTLE and waited > _SETTLE:
+            self._leave(now)
         elif self._step is _Step.HALT:
             self._brake(now, waited)
         elif self._step is _Step.BACK and drive.shown_mode == self._back:
@@ -78,7 +82,7 @@ class Homing:
         if status & BIT_13:
             self._fail("the drive reports a homing error; check switch, method and direction")
         elif waited > _FIRST and status & BIT_12 and status & REACHED:
-            self._leave(now)
+            self._enter(_Step.SETTLE, now)
         elif waited > self._longest():
             self._fail("no switch was found within the travel")
 
@@ -94,17 +98,23 @@ class Homing:
         self.trouble = Fault(f"{self.config.name}: homing has failed: {why}", "homing")
 
     def _write(self) -> None:
-        """Method, speeds, acceleration and offset. Raises DriverError."""
-        config, count = self.config, self.config.count
+        """Method, speeds, acceleration and place, as far as the drive has them. Raises DriverError."""
+        config, setup = self.config, self._drive.setup
         slow = config.home_latch or config.home_speed / 10.0
+        setup.write(od.HOME_METHOD, 0, config.home_method)
         for index, sub, value in (
-            (od.HOME_METHOD, 0, config.home_method),
-            (od.HOME_SPEEDS, 1, round(config.home_speed / count)),
-            (od.HOME_SPEEDS, 2, round(slow / count)),
-            (od.HOME_ACCEL, 0, round(config.amax / count)),
-            (od.HOME_OFFSET, 0, round(config.home_offset / count)),
+            (od.HOME_SPEEDS, 1, max(round(config.velocity(config.home_speed)), 1)),
+            (od.HOME_SPEEDS, 2, max(round(config.velocity(slow)), 1)),
+            (od.HOME_ACCEL, 0, config.acceleration(config.amax)),
         ):
-            self._drive.setup.write(index, sub, value)
+            setup.try_write(index, sub, value)
+        place = round(config.home_offset / config.count)
+        if not setup.try_write(config.profile.home_place, 0, place) and place:
+            raise DriverError(
+                f"{config.name}: the drive has no object {config.profile.home_place:04X}h, home offset:"
+                f" axis.{config.name}.home.offset must be 0",
+                "homing",
+            )
 
     _braking = False
 

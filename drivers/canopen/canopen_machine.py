@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from core.ports import ALL_UNKNOWN, Clock, DriverError, FloatArray, MachinePorts, Spindle, Stop, Unknown
 from drivers.canopen.canopen_axes import CanopenAxes
@@ -13,6 +13,7 @@ from drivers.canopen.canopen_objects import DriveState
 from drivers.canopen.canopen_spindle import CanopenSpindle
 from drivers.canopen.canopen_terminals import CanopenIO
 from drivers.canopen.cia402_drives import Drive402
+from drivers.canopen.cyclic_mode import CyclicFollower
 from drivers.canopen.spindle_as_c import SpindleC
 from drivers.sample_log import KEPT, SampleLog
 
@@ -20,6 +21,9 @@ _NAN = float("nan")
 _UNTRACED = (
     'the drives plan single moves by themselves ([canopen] mode = "pp"): no test can be played to them'
 )
+_BEFORE, _PART_BEFORE = 0.0004, 0.3  # s, and of a period: before a SYNC its answers are taken in
+_EPSILON = 1e-9
+_QUIET = 1.0  # s between two notes
 _FIRST = 0.5  # s in which everything must have answered a first SYNC
 
 
@@ -56,6 +60,9 @@ class CanopenMachine:
         self.clock = clock
         self.bus = Bus(config.bus, clock, idle)
         self._next = clock.now()
+        self._looked = self._feeding = False  # since the last SYNC; setpoints are being made
+        self._count = 0  # SYNCs
+        self._told = -_QUIET
         try:
             self.axes = CanopenAxes(config, self.bus)
             self.spindle = CanopenSpindle(config.spindle, self.bus) if config.spindle else None
@@ -121,7 +128,67 @@ class CanopenMachine:
         return frozenset(found)
 
     def tick(self) -> None:
-        """One round: take in, supervise, feed, send, SYNC. Call it every few milliseconds."""
+        """One round: take in, supervise, feed, send, SYNC. Call it every few milliseconds, or at ``wake``."""
+        if not self.axes.cyclic:
+            self._look(exchange=True)
+            return
+        schedule = self.axes.schedule
+        due = self.clock.now() >= schedule.due - _EPSILON
+        if not due or not self._looked:  # answers in hand are those to the last SYNC: they come first
+            self._look(exchange=False)
+            self._looked = True
+        if due and not self.bus.trouble:
+            self._cycle()
+
+    def wake(self) -> float | None:
+        """When the next round is due: before a SYNC, to take its answers in, and at it. None: every 5 ms."""
+        if not self.axes.cyclic:
+            return None
+        schedule = self.axes.schedule
+        before = max(_BEFORE, _PART_BEFORE * schedule.period)
+        return schedule.due if self._looked else schedule.due - before
+
+    def notes(self) -> Sequence[str]:
+        """What is worth telling of late setpoints, at most once a second."""
+        follower, now = self.axes.follower, self.clock.now()
+        if not isinstance(follower, CyclicFollower) or not follower.gaps or now < self._told + _QUIET:
+            return ()
+        schedule = follower.schedule
+        told = f"setpoints came late {follower.gaps} times, by {1000 * schedule.worst:.1f} ms at most"
+        follower.gaps, schedule.worst, self._told = 0, 0.0, now
+        return (f"{told}: the path waited for them; has the feeder real-time priority?",)
+
+    def _cycle(self) -> None:
+        """SYNC at its time, then what the drives take at the next one."""
+        now = self.clock.now()
+        waited = self.axes.schedule.sent(now)
+        try:
+            self.bus.synchronise()
+            self._looked = False
+            self._count += 1
+            counted = self._count % self.config.bus.seldom == 0
+            self._sync_sent(now, counted=counted)
+            if not self._feeding:  # else a homing waits for a node meanwhile
+                self._feeding = True
+                if waited and isinstance(self.axes.follower, CyclicFollower):
+                    self.axes.follower.waited(waited)
+                self.axes.go_on(now)
+                self._feeding = False
+            self.axes.drives.command()
+            if counted:
+                self._command_spindle()
+        except DriverError as error:
+            self.bus.lost(str(error))
+
+    def _meanwhile(self) -> float:
+        """Where something waits for a node: SYNC and setpoints go on."""
+        left = self.axes.schedule.due - self.clock.now()
+        if left <= 0.0 and not self.bus.trouble:
+            self._cycle()
+        return max(self.axes.schedule.due - self.clock.now(), 0.0)
+
+    def _look(self, *, exchange: bool) -> None:
+        """Take in and supervise; ``exchange``: feed, command and SYNC in one where it is time."""
         self.bus.pump()
         now = self.clock.now()
         self.axes.tick(now)
@@ -136,7 +203,7 @@ class CanopenMachine:
                 self.c.tick(now)
             if self.encoder is not None:
                 self.encoder.look()
-            if now >= self._next or self.axes.follower.urgent:
+            if exchange and (now >= self._next or self.axes.follower.urgent):
                 self._next = max(self._next, now - self.config.bus.sync) + self.config.bus.sync
                 self.axes.follower.urgent = False
                 self._exchange()
@@ -164,6 +231,9 @@ class CanopenMachine:
             self.encoder.connect()
         self.io.connect()
         self.axes.drives.operational()
+        self.axes.schedule.due = self.clock.now()
+        if self.axes.cyclic:
+            self.bus.meanwhile = self._meanwhile
         if self.spindle is not None:
             self.spindle.drive.operational()
         if self.encoder is not None:
@@ -184,10 +254,21 @@ class CanopenMachine:
 
     def _exchange(self) -> None:
         self.axes.drives.command()
+        self._command_spindle()
+        self._sync_sent(self.clock.now(), counted=True)
+        self.bus.synchronise()
+
+    def _command_spindle(self) -> None:
         if self.spindle is not None and self.spindle.drive not in self.axes.drives.drives:
             self.spindle.drive.command()
+
+    def _sync_sent(self, now: float, *, counted: bool) -> None:
+        """``counted``: who answers seldom is to have answered once since."""
+        self.axes.drives.sync_sent(now)
+        if self.spindle is not None and self.spindle.drive not in self.axes.drives.drives:
+            self.spindle.drive.sync_sent(now, counted=counted)
         if self.encoder is not None:
-            self.encoder.sync_sent()
-        for module in self.io.modules.values():
-            module.sync_sent()
-        self.bus.synchronise()
+            self.encoder.sync_sent(now, counted=counted)
+        if counted:
+            for module in self.io.modules.values():
+                module.sync_sent()

@@ -1,4 +1,4 @@
-"""Objects of CiA 301, 401, 402 and 406 that are used, a PVT queue after maxon's EPOS2, states of CiA 402."""
+"""Objects of CiA 301, 401, 402 and 406 that are used, dictionaries of them, states of CiA 402."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ from canopen.objectdictionary import ODArray, ODRecord, ODVariable
 from canopen.objectdictionary import datatypes as kind
 
 from core.ports import DriverError
+from drivers.canopen.canopen_table import CanNode
+from drivers.canopen.drive_profiles import CIA402, DriveProfile, profile_of
 
 U8, U16, U32, U64 = kind.UNSIGNED8, kind.UNSIGNED16, kind.UNSIGNED32, kind.UNSIGNED64
 I8, I16, I32 = kind.INTEGER8, kind.INTEGER16, kind.INTEGER32
 
-DEVICE_TYPE, ERROR_REGISTER = 0x1000, 0x1001
+DEVICE_TYPE, ERROR_REGISTER, SYNC_PERIOD, COMMANDED = 0x1000, 0x1001, 0x1006, 0x1400
 WATCHED, HEARTBEAT, IDENTITY, ON_ERROR = 0x1016, 0x1017, 0x1018, 0x1029
 ABORT_OPTION, QUICK_OPTION, FAULT_OPTION = 0x6007, 0x605A, 0x605E
 CONTROL, STATUS, MODE, MODE_SHOWN = 0x6040, 0x6041, 0x6060, 0x6061
@@ -23,18 +25,15 @@ POSITION, WINDOW, WINDOW_TIME, VELOCITY = 0x6064, 0x6065, 0x6066, 0x606C
 TARGET, HOME_OFFSET, LIMITS = 0x607A, 0x607C, 0x607D
 PROFILE_SPEED, PROFILE_ACCEL, PROFILE_DECEL, QUICK_DECEL = 0x6081, 0x6083, 0x6084, 0x6085
 HOME_METHOD, HOME_SPEEDS, HOME_ACCEL = 0x6098, 0x6099, 0x609A
-IP_SUBMODE, BUFFER, FOLLOWING = 0x60C0, 0x60C4, 0x60F4
-INPUTS_402, TARGET_SPEED, SUPPORTED = 0x60FD, 0x60FF, 0x6502
-PVT_RECORD, PVT_STATUS = 0x20C1, 0x20C4  # vendor's: one record, and state of the queue
+IP_SUBMODE, IP_RECORD, IP_TIME, BUFFER = 0x60C0, 0x60C1, 0x60C2, 0x60C4
+INPUTS_402, FOLLOWING, TARGET_SPEED, SUPPORTED = 0x60FD, 0x60F4, 0x60FF, 0x6502
+HOME_METHODS, MOTOR_TURN, GEAR, FEED = 0x60E3, 0x608F, 0x6091, 0x6092
 DIGITAL_IN, DIGITAL_OUT, ERROR_MODE, ERROR_VALUE = 0x6000, 0x6200, 0x6206, 0x6207
 ENCODER_MODE, ENCODER_STEPS, ENCODER_RANGE, ENCODER_POSITION = 0x6000, 0x6001, 0x6002, 0x6004
 ENCODER_RESOLUTION, ENCODER_TURNS, SECOND_POSITION = 0x6501, 0x6502, 0x60E4
 ANALOG_IN, ANALOG_EVENTS, ANALOG_DELTA = 0x6401, 0x6423, 0x6426
 
-MAY_LACK = {WINDOW_TIME: "no 6066, time-out of the following error: it faults as soon as the window is left"}
-"""Written where a node has them, and what it means where it has not: nothing that is less safe."""
-
-_VARIABLES_301 = ((DEVICE_TYPE, U32), (ERROR_REGISTER, U8), (HEARTBEAT, U16))
+_VARIABLES_301 = ((DEVICE_TYPE, U32), (ERROR_REGISTER, U8), (SYNC_PERIOD, U32), (HEARTBEAT, U16))
 _ARRAYS_301 = ((WATCHED, U32, 2), (ON_ERROR, U8, 1))
 _VARIABLES_402 = (
     *((ABORT_OPTION, I16), (QUICK_OPTION, I16), (FAULT_OPTION, I16)),
@@ -42,26 +41,52 @@ _VARIABLES_402 = (
     *((POSITION, I32), (WINDOW, U32), (WINDOW_TIME, U16), (VELOCITY, I32)),
     *((TARGET, I32), (HOME_OFFSET, I32), (PROFILE_SPEED, U32), (PROFILE_ACCEL, U32)),
     *((PROFILE_DECEL, U32), (QUICK_DECEL, U32), (HOME_METHOD, I8), (HOME_ACCEL, U32)),
-    *((IP_SUBMODE, I16), (FOLLOWING, I32), (INPUTS_402, U32), (TARGET_SPEED, I32)),
-    *((SUPPORTED, U32), (PVT_RECORD, U64)),
+    *((IP_SUBMODE, I16), (FOLLOWING, I32), (INPUTS_402, U32), (TARGET_SPEED, I32), (SUPPORTED, U32)),
 )
 _VARIABLES_406 = (
     *((ENCODER_MODE, U16), (ENCODER_STEPS, U32), (ENCODER_RANGE, U32), (ENCODER_POSITION, U32)),
     *((ENCODER_RESOLUTION, U32), (ENCODER_TURNS, U16)),
 )
 _ARRAYS_402 = (
-    *((LIMITS, I32, 2), (HOME_SPEEDS, U32, 2), (BUFFER, U32, 6), (PVT_STATUS, U16, 3)),
-    (SECOND_POSITION, I32, 2),
+    *((LIMITS, I32, 2), (HOME_SPEEDS, U32, 2), (IP_RECORD, I32, 1), (SECOND_POSITION, I32, 2)),
+    *((HOME_METHODS, I8, 16), (MOTOR_TURN, U32, 2), (GEAR, U32, 2), (FEED, U32, 2)),
 )
+_TIME_PERIOD = ((1, U8, "rw"), (2, I8, "rw"))
+_BUFFER = ((1, U32, "rw"), (2, U32, "rw"), (3, U8, "rw"), (4, U16, "rw"), (5, U8, "wo"), (6, U8, "wo"))
 _ARRAYS_401 = (
     *((DIGITAL_IN, U8, 8), (DIGITAL_OUT, U8, 8), (ERROR_MODE, U8, 8), (ERROR_VALUE, U8, 8)),
     *((ANALOG_IN, I16, 4), (ANALOG_DELTA, U32, 4)),
 )
+_EPOS2_HAS_NOT = (
+    *(SYNC_PERIOD, ON_ERROR, QUICK_OPTION, WINDOW_TIME, IP_RECORD, FOLLOWING, INPUTS_402),
+    *(HOME_METHODS, MOTOR_TURN, GEAR, FEED),
+)
+_EPOS4_HAS_NOT = (SYNC_PERIOD, HOME_OFFSET, IP_SUBMODE, IP_RECORD, BUFFER, MOTOR_TURN, GEAR, FEED)
 
 
-def drive_objects() -> ObjectDictionary:
-    """The dictionary of a drive without an EDS file."""
-    return _dictionary((*_VARIABLES_301, *_VARIABLES_402), (*_ARRAYS_301, *_ARRAYS_402))
+def drive_objects(profile: DriveProfile = CIA402) -> ObjectDictionary:
+    """The dictionary of a drive without an EDS file: what the profile's family has of the standard."""
+    found = _dictionary((*_VARIABLES_301, *_VARIABLES_402), (*_ARRAYS_301, *_ARRAYS_402))
+    found.add_object(_record(IP_TIME, _TIME_PERIOD))
+    found.add_object(_record(BUFFER, _BUFFER))
+    for index in {"epos2": _EPOS2_HAS_NOT, "epos4": _EPOS4_HAS_NOT}.get(profile.name, ()):
+        del found[index]
+    if profile.words:  # neither of maxon's has a time-out for what it receives
+        for number in range(4):
+            record = found[COMMANDED + number]
+            assert isinstance(record, ODRecord)
+            del record.subindices[5]
+    for index, _, _ in profile.units:
+        found.add_object(_variable(index, 0, U32))
+    if profile.home_place not in found:
+        found.add_object(_variable(profile.home_place, 0, I32))
+    if profile.inputs.object not in found:
+        found.add_object(_record(profile.inputs.object, ((profile.inputs.sub, U16, "ro"),)))
+    if profile.queue is not None:
+        order = _variable(profile.queue.object, 0, U64)
+        order.access_type = "wo"
+        found.add_object(order)
+    return found
 
 
 def module_objects() -> ObjectDictionary:
@@ -74,6 +99,16 @@ def encoder_objects() -> ObjectDictionary:
     return _dictionary((*_VARIABLES_301, *_VARIABLES_406), _ARRAYS_301)
 
 
+def drive_dictionary(node: CanNode) -> tuple[ObjectDictionary, DriveProfile]:
+    """What a drive has, and of which family it is. Raises DriverError."""
+    if not node.eds:
+        profile = profile_of(node.drive, None, None)
+        return drive_objects(profile), profile
+    found = dictionary(node.name, node.eds, drive_objects)
+    told = found.device_information
+    return found, profile_of(node.drive, told.vendor_number, told.product_name)
+
+
 def dictionary(name: str, eds: str, standard: Callable[[], ObjectDictionary]) -> ObjectDictionary:
     """That of the EDS file, or the standard one. Raises DriverError naming the node and the file."""
     if not eds:
@@ -83,6 +118,8 @@ def dictionary(name: str, eds: str, standard: Callable[[], ObjectDictionary]) ->
     except (OSError, ValueError, KeyError, configparser.Error) as error:
         reason = str(error).splitlines()[0]
         raise DriverError(f"{name}: the EDS file {eds} cannot be read: {reason}") from error
+    if DEVICE_TYPE not in found:
+        raise DriverError(f"{name}: the EDS file {eds} has no object 1000h, which every device has")
     return found
 
 
@@ -112,6 +149,16 @@ def _variable(index: int, sub: int, data_type: int, value: int = 0) -> ODVariabl
     variable.access_type = "rw"
     variable.default = value
     return variable
+
+
+def _record(index: int, members: tuple[tuple[int, int, str], ...]) -> ODRecord:
+    record = ODRecord(f"{index:04X}", index)
+    record.add_member(_variable(index, 0, U8, max(sub for sub, _, _ in members)))
+    for sub, data_type, access in members:
+        member = _variable(index, sub, data_type)
+        member.access_type = access
+        record.add_member(member)
+    return record
 
 
 def _communication(index: int) -> ODRecord:

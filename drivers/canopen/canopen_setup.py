@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TypeVar
 
 import canopen
@@ -15,14 +15,17 @@ from drivers.canopen.canopen_bus import Bus, Node
 from drivers.canopen.canopen_config import AxisConfig
 from drivers.canopen.canopen_objects import MODE_BITS
 from drivers.canopen.canopen_table import BusConfig, Objects
+from drivers.canopen.drive_profiles import WITHOUT, Entry
 
 _Answer = TypeVar("_Answer")
 
 _PROFILE = 0xFFFF
-_ON_SYNC, _AT_ONCE = 1, 255
-_INVALID = 1 << 31  # a PDO that is being mapped
-_NO_SUCH_OBJECT = 0x06020000  # abort code of SDO
+_AT_ONCE = 255
+_INVALID, _NO_REMOTE = 1 << 31, 1 << 30  # a PDO that is being mapped; one that cannot be asked for
+_NO_SUCH_OBJECT = frozenset((0x06020000, 0x06090011))  # abort codes of SDO: the object, its sub-index
+_NO_VALUE = frozenset((0x060A0023, 0x08000024))  # it has the object, and nothing was ever put in
 _MAPS = 0x200  # from the communication record of a PDO to its mapping
+_SYNCS_AWAY, _LEAST_AWAY = 5, 20  # SYNCs, and ms, that setpoints may be away before the node is to stop
 _NAMES = {1: "profile position", 3: "profile velocity", 6: "homing", 7: "interpolated position", 8: "CSP"}
 
 
@@ -34,7 +37,15 @@ class Setup:
         self._name = name
         self.node = Node(number, objects)
         bus.add_node(self.node)
-        self.warnings: tuple[str, ...] = ()
+        self.lacks: dict[int, str] = {}  # objects that it has not, and what it means
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """One sentence with everything that this node has to do without."""
+        if not self.lacks:
+            return ()
+        told = "; ".join(f"{index:04X}h {what}" for index, what in sorted(self.lacks.items()))
+        return (f"{self._name}: node {self.node.id} has not: {told}",)
 
     def pre_operational(self) -> None:
         """PDO mapping may only change there."""
@@ -47,10 +58,14 @@ class Setup:
 
     def write(self, index: int, sub: int, value: int) -> None:
         """Write one object and read it back. Raises DriverError when the node keeps something else."""
-        size = len(self._sdo(index, sub, lambda: self.node.sdo.upload(index, sub)))
+        variable = self.node.object_dictionary.get_variable(index, sub)
+        blind = variable is not None and not variable.readable  # such as the order to empty a queue
+        size = self._size(index, sub, blind=blind)
         data = (value % (1 << 8 * size)).to_bytes(size, "little")
-        self._sdo(index, sub, lambda: self.node.sdo.download(index, sub, data))
-        kept = self._sdo(index, sub, lambda: self.node.sdo.upload(index, sub))
+        self.write_bytes(index, sub, data)
+        if blind:
+            return
+        kept = self._upload(index, sub)
         if kept != data:
             shown = int.from_bytes(kept, "little")
             raise DriverError(
@@ -59,13 +74,52 @@ class Setup:
                 "drive-setup",
             )
 
-    def write_all(self, values: tuple[tuple[int, int, int], ...]) -> None:
-        """One after the other; a later value of the same object wins. ``warnings``: what it did without."""
-        for index, sub, value in values:
-            if index in od.MAY_LACK and self._lacks(index, sub):
-                self.warnings = (f"{self._name}: {od.MAY_LACK[index]}",)
-            else:
+    def write_bytes(self, index: int, sub: int, data: bytes) -> None:
+        """Write what cannot be read back. Raises DriverError."""
+        self._sdo(index, sub, lambda: self.node.sdo.download(index, sub, data))
+
+    def configure(self, standing: Objects, own: Objects = (), needed: Iterable[int] = ()) -> None:
+        """What this control writes, then what the machine file says. Only what the node has is written.
+
+        ``lacks`` is what it does without. Raises DriverError where one of ``needed`` is lacking, or what the
+        machine file names and nobody can do without: one sentence with all of them.
+        """
+        self.lacks = {}
+        named = {(index, sub) for index, sub, _ in own}
+        absent = []
+        for index, sub, value in (*(each for each in standing if each[:2] not in named), *own):
+            if not self.try_write(index, sub, value) and (index, sub) in named and index not in WITHOUT:
+                absent.append(f"{index:04X}:{sub}")
+        missing = [f"{index:04X}h {self.lacks[index]}" for index in needed if index in self.lacks]
+        if missing:
+            raise DriverError(
+                f"{self._name}: node {self.node.id} cannot be used here, it has not: {'; '.join(missing)}",
+                "drive-setup",
+            )
+        if absent:
+            where = "; take them out of [canopen.sdo], or check the EDS file"
+            raise DriverError(
+                f"{self._name}: node {self.node.id} has no object {', '.join(absent)}{where}", "drive-setup"
+            )
+
+    def try_write(self, index: int, sub: int, value: int) -> bool:
+        """Write an object that the node may lack; whether it has it. Raises DriverError."""
+        if self.has(index, sub):
+            self.write(index, sub, value)
+            return True
+        self.lacks[index] = WITHOUT.get(index, "")
+        return False
+
+    def watch_setpoints(self, period: float) -> None:
+        """Let the node notice a SYNC or a setpoint that does not come, by whatever it has for that."""
+        longest = max(round(1000 * _SYNCS_AWAY * period), _LEAST_AWAY)
+        watched = False
+        for index, sub, value in ((od.SYNC_PERIOD, 0, round(1e6 * period)), (od.COMMANDED, 5, longest)):
+            if self.has(index, sub):
                 self.write(index, sub, value)
+                watched = True
+        if not watched:
+            self.lacks[od.COMMANDED] = WITHOUT[od.COMMANDED]
 
     def demand_profile(self, profile: int) -> None:
         """Is it the kind of device that the machine file says? Raises DriverError."""
@@ -77,38 +131,87 @@ class Setup:
                 "drive-setup",
             )
 
-    def demand_modes(self, modes: int) -> None:
-        """Does it offer what is needed? Raises DriverError naming what is not."""
-        offered = self.read(od.SUPPORTED)
+    def demand_modes(self, modes: int, known: int = 0) -> None:
+        """Does it offer what is needed, by 0x6502 or as ``known``? Raises DriverError naming what is not."""
+        offered = known | (self.read(od.SUPPORTED) if self.has(od.SUPPORTED, 0) else modes)
         lacking = [_NAMES[mode] for mode, bit in MODE_BITS.items() if modes & bit and not offered & bit]
         if lacking:
             raise DriverError(
                 f"{self._name}: the drive has no mode {', '.join(lacking)}; see [canopen] mode", "drive-setup"
             )
 
+    def demand(self, *entries: Entry) -> None:
+        """Objects that nothing goes without. Raises DriverError naming all that are not there."""
+        missing = [
+            f"{entry.object:04X}:{entry.sub}" for entry in entries if not self.has(entry.object, entry.sub)
+        ]
+        if missing:
+            raise DriverError(
+                f"{self._name}: node {self.node.id} cannot be used in this mode, it has not:"
+                f" {', '.join(missing)}; see [canopen] mode and its EDS file",
+                "drive-setup",
+            )
+
+    def demand_homing(self, method: int) -> None:
+        """Is it one of the methods that the drive lists (0x60E3)? Raises DriverError with the list."""
+        listed = [self.read(od.HOME_METHODS, sub + 1) for sub in range(self.entries(od.HOME_METHODS))]
+        offered = sorted({each for each in listed if each})
+        if offered and method not in offered:
+            known = ", ".join(map(str, offered))
+            raise DriverError(
+                f"{self._name}: the drive has no homing method {method} (60E3h: {known});"
+                f" see axis.{self._name}.home",
+                "drive-setup",
+            )
+
     def entries(self, index: int) -> int:
         """How many entries an array of the node has; 0 where the node has no such object."""
-        return 0 if self._lacks(index, 0) else self.read(index, 0)
+        return self.read(index, 0) if self.has(index, 0) else 0
 
-    def _lacks(self, index: int, sub: int) -> bool:
+    def has(self, index: int, sub: int) -> bool:
+        """By its dictionary, and by its own word: an EDS file may be younger than the device."""
+        variable = self.node.object_dictionary.get_variable(index, sub)
+        if variable is None:
+            return False
+        return not variable.readable or not self._refused(index, sub)
+
+    def _size(self, index: int, sub: int, *, blind: bool) -> int:
+        """Bytes of an object: the node's own word, or its dictionary's where it tells nothing yet."""
+        variable = self.node.object_dictionary.get_variable(index, sub)
+        try:
+            if not blind:
+                return len(self._upload(index, sub))
+        except DriverError as error:
+            if variable is None or _abort(error) not in _NO_VALUE:
+                raise
+        assert variable is not None
+        return len(variable) // 8
+
+    def _refused(self, index: int, sub: int) -> bool:
         """Whether the node says that it has no such object."""
         try:
-            self.read(index, sub)
+            self._upload(index, sub)
         except DriverError as error:
-            refusal = error.__cause__
-            if isinstance(refusal, SdoAbortedError) and refusal.code == _NO_SUCH_OBJECT:
+            if _abort(error) in _NO_SUCH_OBJECT:
                 return True
-            raise
+            if _abort(error) not in _NO_VALUE:
+                raise
         return False
 
-    def receive(self, number: int, *entries: tuple[int, int], at_once: bool = False) -> None:
-        """Map what the node receives in PDO ``number``: (object, bits)."""
-        self._map(self._pdo(self.node.rpdo, number), entries, _AT_ONCE if at_once else _ON_SYNC)
+    def _upload(self, index: int, sub: int) -> bytes:
+        data: bytes = self._sdo(index, sub, lambda: self.node.sdo.upload(index, sub))
+        return data
 
-    def transmit(self, number: int, heard: Callable[[PdoMap], None], *entries: tuple[int, int]) -> None:
-        """Map what the node sends in PDO ``number`` at each SYNC: (object + sub · 65536, bits)."""
+    def receive(self, number: int, *entries: tuple[int, int], at_once: bool = False) -> None:
+        """Map what the node receives in PDO ``number``: (object + sub · 65536, bits)."""
+        self._map(self._pdo(self.node.rpdo, number), entries, _AT_ONCE if at_once else 1)
+
+    def transmit(
+        self, number: int, heard: Callable[[PdoMap], None], *entries: tuple[int, int], every: int = 1
+    ) -> None:
+        """Map what the node sends in PDO ``number`` at each SYNC, or ``every`` so many of them."""
         pdo = self._pdo(self.node.tpdo, number)
-        self._map(pdo, entries, _ON_SYNC)
+        self._map(pdo, entries, every)
         pdo.callbacks[:] = [heard]
 
     def _pdo(self, pdos: PdoBase, number: int) -> PdoMap:
@@ -132,6 +235,7 @@ class Setup:
         cob = pdo.predefined_cob_id
         pdo.cob_id, pdo.trans_type, pdo.enabled = cob, kind, True
         assert cob is not None
+        cob |= self.read(base, 1) & _NO_REMOTE  # where it cannot be asked for, that bit cannot be changed
         self._put(base, 1, cob | _INVALID, 4)
         self._put(base, 2, kind, 1)
         wanted = [(index & 0xFFFF) << 16 | (index >> 16) << 8 | bits for index, bits in entries]
@@ -172,16 +276,23 @@ class Setup:
             ) from error
 
 
+def _abort(error: DriverError) -> int:
+    """The abort code of SDO behind it; 0 where there is none."""
+    cause = error.__cause__
+    return cause.code if isinstance(cause, SdoAbortedError) else 0
+
+
 # --- What every drive is told at each start unless the machine file says otherwise: stops, limits, watching.
 
 
 def axis_objects(config: AxisConfig, bus: BusConfig) -> Objects:
-    """For one axis drive."""
+    """For one axis drive, in its own units."""
     return (
+        *config.profile.units,
         *stopping(bus),
         (od.WINDOW, 0, round(config.following_window / config.count)),
         (od.WINDOW_TIME, 0, round(1000 * config.following_time)),
-        (od.QUICK_DECEL, 0, round(config.amax / config.count)),
+        (od.QUICK_DECEL, 0, config.acceleration(config.amax)),
         *(limits(config) if config.absolute else ()),
     )
 

@@ -8,9 +8,10 @@ from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import SpindleConfig
 from drivers.canopen.canopen_objects import HM, IP, MODE_BITS, PV, DriveState
 from drivers.canopen.canopen_setup import stopping
-from drivers.canopen.cia402_drives import Drive402
+from drivers.canopen.cia402_drives import SPEED, SPEED_TARGET, Drive402, DriveWork
 
 _STANDS = 2.0  # rpm
+_KEPT_TURNING = (od.ABORT_OPTION, od.WATCHED)  # without these it turns on when this computer falls silent
 _POWER = 1.0  # s in which the drive must come on
 
 
@@ -26,23 +27,31 @@ class CanopenSpindle:
         self.lent = False  # to C: it does not turn as the spindle
         self.kept = False  # and shall stay so
         self.blind = False  # its counter leaps by homing: that is no turning
-        self.drive = Drive402(bus, config.node, od.TARGET_SPEED, od.VELOCITY)
+        self.drive = Drive402(bus, config.node, SPEED_TARGET, (SPEED,))
 
     def connect(self) -> None:
         """Configure it. Raises DriverError."""
         config = self._config
+        queue = self.drive.profile.queue if config.is_c else None
         standing = (
+            *self.drive.profile.units,
             *stopping(self._bus.config),
             (od.PROFILE_ACCEL, 0, round(config.accel)),
             (od.PROFILE_DECEL, 0, round(config.decel)),
             (od.QUICK_DECEL, 0, round(config.decel)),
         )
-        if config.is_c:
-            modes = MODE_BITS[PV] | MODE_BITS[HM] | MODE_BITS[IP]
-            objects = (*standing, (od.IP_SUBMODE, 0, -1), *config.node.sdo)
-            self.drive.connect((od.PVT_RECORD,), modes, objects)
-        else:
-            self.drive.connect((), MODE_BITS[PV], (*standing, *config.node.sdo))
+        if queue is not None:
+            standing = (*standing, (od.IP_SUBMODE, 0, queue.submode))
+        self.drive.connect(
+            DriveWork(
+                modes=MODE_BITS[PV] | (MODE_BITS[HM] | MODE_BITS[IP] if config.is_c else 0),
+                standing=standing,
+                own=config.node.sdo,
+                needed=_KEPT_TURNING,
+                records=queue.object if queue is not None else 0,
+                axis=False,
+            )
+        )
         self.drive.mode, self.drive.target = PV, 0
 
     def tick(self) -> None:
@@ -67,7 +76,7 @@ class CanopenSpindle:
             drive.trouble = Fault(
                 "spindle: the drive does not come on; is E-stop pressed, is power there?", "spindle"
             )
-        elif drive.target == 0 and abs(drive.more) < _STANDS:
+        elif drive.target == 0 and abs(drive.speed) < _STANDS:
             drive.goal = DriveState.OFF
 
     def run(self, rpm: float) -> None:
@@ -118,7 +127,7 @@ class CanopenSpindle:
 
     def speed(self) -> float:
         """Measured rpm, signed; as C it does not turn as the spindle."""
-        return 0.0 if self.lent else float(self.drive.more)
+        return 0.0 if self.lent else float(self.drive.speed)
 
     def angle(self) -> tuple[float, float] | None:
         """(time, turns) by the drive's encoder, of the last answer; None without counts a turn."""

@@ -23,6 +23,8 @@ from core.table_schema import (
     unknown_keys,
     written,
 )
+from drivers.canopen.bus_load import cyclic_load
+from drivers.canopen.drive_profiles import IN_RPM, PROFILES, QUEUED
 
 PLAIN_MODULE = "401"  # means the first I/O module
 ENCODER, POSITION = "spindle.encoder", "6004:0"  # the table, and where a node of CiA 406 has its counts
@@ -34,10 +36,14 @@ _ANALOG, _INPUT, _OUTPUT, _DRIVE_INPUT = 0x6401, 0x6000, 0x6200, 0x60FD
 _LIMITS, _WATCH, _WINDOW, _OFF = 0x607D, 0x1016, 0x6065, 0xFFFFFFFF
 _BYTES, _WORDS, _BITS = 8, 4, 8  # of a module: what one PDO of each kind carries; bits of a byte
 _LOW, _HIGH, _MOST = -(2**31), 2**32 - 1, 2**31 - 1  # of an object, of a count of 32 bits with a sign
+_CYCLES, _CYCLIC_LEAST = 4, 0.02  # SYNCs, and s, that setpoints of a cyclic mode are on their way
 _RESTART = 0.04  # s that a drive needs between the end of one PVT motion and the start of the next
 _RECORDS = 3  # a FIFO with fewer than two records is empty to the drive
+_SELDOM = 0.01  # s
 _LEAST = 16  # counts a turn of an encoder
 
+MODES = ("pvt", "csp", "ip", "pp")
+CYCLIC = ("csp", "ip")  # a setpoint each SYNC
 _BUS = (
     Field("interface", Kind.TEXT, default="socketcan"),
     Field("channel", Kind.TEXT),
@@ -45,13 +51,14 @@ _BUS = (
     Field("sync_ms", Kind.NUMBER, Unit.MILLISECONDS, 0.001, 0.1, default=0.01),
     Field("host_id", Kind.WHOLE, low=1, high=127, default=127),
     Field("heartbeat_ms", Kind.NUMBER, Unit.MILLISECONDS, 0.02, 2.0, default=0.1),
-    Field("mode", Kind.CHOICE, choices=("pvt", "pp", "csp")),
-    Field("experimental", Kind.FLAG, default=False),
+    Field("mode", Kind.CHOICE, choices=MODES),
+    Field("drive", Kind.CHOICE, choices=tuple(PROFILES), default=""),
     Field("record_ms", Kind.NUMBER, Unit.MILLISECONDS, 0.002, 0.05, default=0.02),
 )
 _NODE = (
     Field("id", Kind.WHOLE, low=1, high=127),
     Field("profile", Kind.WHOLE, low=401, high=406, default=402),
+    Field("drive", Kind.CHOICE, choices=tuple(PROFILES), default=""),
     Field("eds", Kind.TEXT, default=""),
     Field("counts_per_rev", Kind.WHOLE, low=0, high=100_000_000, default=0),
 )
@@ -76,6 +83,11 @@ class BusConfig:
     heartbeat: float = 0.1
 
     @property
+    def seldom(self) -> int:
+        """SYNCs from one answer to the next of what need not be known at each: about 10 ms."""
+        return max(1, round(_SELDOM / self.sync))
+
+    @property
     def own_process(self) -> bool:
         """Whether another process can own it; python-can's virtual bus lives in one."""
         return self.interface != "virtual"
@@ -88,6 +100,7 @@ class CanNode:
     name: str
     id: int
     profile: int  # 402, 401 or 406
+    drive: str = ""  # family as it is sold, of drive_profiles; empty: as its EDS file says, or CiA 402 alone
     eds: str = ""  # file of the object dictionary, beside the machine file; empty: the standard objects
     counts_per_rev: int = 0  # the drive counts velocities in rpm of this many counts; 0: in counts/s
     sdo: Objects = ()  # those for all nodes of its profile, then its own
@@ -98,7 +111,7 @@ class CanopenTable:
     """The CAN bus and what hangs on it."""
 
     bus: BusConfig
-    mode: str  # pvt, pp or csp
+    mode: str  # one of MODES
     record: float  # s, length of a PVT record
     nodes: tuple[CanNode, ...]
 
@@ -223,7 +236,25 @@ def _bus_table(file: FileReading) -> CanopenTable:
 
 def _node(file: FileReading, name: str) -> CanNode:
     shared = _objects(file, "all") if _profile(file, name) == _DRIVE else ()
-    return file.values.model(CanNode, f"{_NODES}.{name}", name=name, sdo=(*shared, *_objects(file, name)))
+    return file.values.model(
+        CanNode,
+        f"{_NODES}.{name}",
+        name=name,
+        drive=_family(file, name),
+        sdo=(*shared, *_objects(file, name)),
+    )
+
+
+def _family(file: FileReading, name: str) -> str:
+    """Of the node, or that of all drives."""
+    if _profile(file, name) != _DRIVE:
+        return ""
+    paths = (f"{_NODES}.{name}.drive", "canopen.drive")
+    return next((found for path in paths if (found := _said(file, path))), "")
+
+
+def _said(file: FileReading, path: str) -> str:
+    return file.values.text(path) if file.values.has(path) else ""
 
 
 def _encoder_table(file: FileReading) -> EncoderTable:
@@ -245,6 +276,8 @@ def _bus_rules(file: FileReading) -> Iterator[Finding]:
     yield from _heartbeat(file)
     if file.values.says("machine.backend", "canopen"):
         yield from _drives(file)
+        yield from _families(file)
+        yield from _cyclic(file)
         yield from _wired(file)
 
 
@@ -253,11 +286,6 @@ def _times(values: Values) -> Iterator[Finding]:
         beat, sync = values.number("canopen.heartbeat_ms"), values.number("canopen.sync_ms")
         if beat < 2 * sync:
             yield Finding("canopen.heartbeat_ms", f"{1000 * beat:g}", "expected two times sync_ms or more")
-    if values.says("canopen.mode", "csp") and not values.flag("canopen.experimental"):
-        why = (
-            "cyclic setpoints from this computer are not proven on any drive; experimental = true allows them"
-        )
-        yield Finding("canopen.mode", '"csp"', why)
     if values.says("canopen.mode", "pvt") and values.has("canopen.record_ms", "machine.commit_ms"):
         yield from _queue(values.number("canopen.record_ms"), values.number("machine.commit_ms"), values)
 
@@ -271,6 +299,57 @@ def _queue(record: float, commit: float, values: Values) -> Iterator[Finding]:
     if values.says("machine.backend", "canopen") and commit < least - 1e-9:
         expected = f"expected {1000 * least:g} or more: {_RECORDS} records in the drives and a restart"
         yield Finding("machine.commit_ms", f"{1000 * commit:g}", expected)
+
+
+def _families(file: FileReading) -> Iterator[Finding]:
+    """Queues and counts a turn that the families of the drives need."""
+    values, moved = file.values, file.axes
+    queued = " or ".join(written(name) for name in QUEUED)
+    for name in file.names(_NODES):
+        family, path = _family(file, name), f"{_NODES}.{name}"
+        unknown = {f"{path}.drive", "canopen.drive"} & values.wrong
+        if name not in moved or _profile(file, name) != _DRIVE or unknown:
+            continue
+        known = family or _said(file, f"{path}.eds")
+        if values.says("canopen.mode", "pvt") and (not known or (family and family not in QUEUED)):
+            why = f'expected {queued}: mode "pvt" needs a queue in the drive; others take "csp", "ip" or "pp"'
+            yield Finding(f"{path}.drive", written(family) if family else "", why)
+        counts = f"{path}.counts_per_rev"
+        if family in IN_RPM and values.has(counts) and values.number(counts) == 0:
+            title = PROFILES[family].title
+            why = f"missing; {title} counts speeds in rpm: 4 × the pulses a turn of its encoder"
+            yield Finding(counts, "", why)
+
+
+def _cyclic(file: FileReading) -> Iterator[Finding]:
+    """Setpoints at each SYNC: whole milliseconds, ahead in time, and with room on the bus."""
+    values = file.values
+    if _said(file, "canopen.mode") not in CYCLIC or not values.has("canopen.sync_ms", "canopen.bitrate"):
+        return
+    sync, bitrate = values.number("canopen.sync_ms"), values.whole("canopen.bitrate")
+    if abs(1000 * sync - round(1000 * sync)) > 1e-6:
+        yield Finding(
+            "canopen.sync_ms", f"{1000 * sync:g}", "expected whole milliseconds: 60C2 counts in them"
+        )
+    if values.has("machine.commit_ms"):
+        commit, least = values.number("machine.commit_ms"), max(_CYCLES * sync, _CYCLIC_LEAST)
+        if commit < least - 1e-9:
+            expected = f"expected {1000 * least:g} or more: what is on its way to the drives"
+            yield Finding("machine.commit_ms", f"{1000 * commit:g}", expected)
+    nodes = file.names(_NODES)
+    slides = sum(name in file.axes for name in nodes)
+    seldom = BusConfig("", "", sync=sync).seldom
+    load = cyclic_load(slides, len(nodes) - slides, bitrate, sync, seldom)
+    if not load.fits:
+        fits = next((ms for ms in range(1, 101) if _fits(slides, len(nodes) - slides, bitrate, ms)), 0)
+        expected = f"{slides} drives take {load.share:.0%} of {bitrate:g} bit/s, more than has room"
+        best = f"; expected {fits} or more" if fits else ""
+        yield Finding("canopen.sync_ms", f"{1000 * sync:g}", expected + best)
+
+
+def _fits(slides: int, others: int, bitrate: int, ms: int) -> bool:
+    seldom = BusConfig("", "", sync=0.001 * ms).seldom
+    return cyclic_load(slides, others, bitrate, 0.001 * ms, seldom).fits
 
 
 def _numbers(file: FileReading) -> Iterator[Finding]:

@@ -68,13 +68,14 @@ class Module401:
             self.setup.write(od.ANALOG_EVENTS, 0, 1)
         for i in range(words):
             self.setup.write(od.ANALOG_DELTA, i + 1, 1 if i + 1 in self.counting else _DELTA)
-        self.setup.write_all((*watching(self._bus.config), *self.config.sdo))
+        self.setup.configure(watching(self._bus.config), self.config.sdo, (od.HEARTBEAT, od.WATCHED))
         if outputs:
             self.setup.receive(1, *_entries(od.DIGITAL_OUT, outputs, 8), at_once=True)
+        every = self._bus.config.seldom
         if inputs:
-            self.setup.transmit(1, self._digital, *_entries(od.DIGITAL_IN, inputs, 8))
+            self.setup.transmit(1, self._digital, *_entries(od.DIGITAL_IN, inputs, 8), every=every)
         if words:
-            self.setup.transmit(2, self._words, *_entries(od.ANALOG_IN, words, 16))
+            self.setup.transmit(2, self._words, *_entries(od.ANALOG_IN, words, 16), every=every)
         self.node.nmt.add_heartbeat_callback(self._heartbeat)
         self.outputs[:outputs] = bytes(self.setup.read(od.DIGITAL_OUT, i + 1) for i in range(outputs))
         # A pot stands somewhere before its first PDO comes; at 0 a cycle that begins at once would hold.
@@ -160,6 +161,13 @@ class CanopenIO:
 
     def connect(self) -> None:
         """Configure every module with the safe states of its outputs. Raises DriverError."""
+        for where in self._needed():
+            drive = self._drives.get(where.node)
+            if drive is not None and not drive.tells_inputs:
+                raise DriverError(
+                    f"{where.node}: the drive tells no digital inputs; its terminals of the machine file have"
+                    " to go to an I/O module"
+                )
         for name, module in self.modules.items():
             module.measure(where for where in self._needed() if where.node == name)
             safe, keep = bytearray(BYTES), bytearray(BYTES)

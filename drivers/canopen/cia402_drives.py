@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import canopen
 from canopen.emcy import EmcyError
@@ -24,27 +24,42 @@ from drivers.canopen.canopen_objects import (
 )
 from drivers.canopen.canopen_setup import Setup, axis_objects
 from drivers.canopen.canopen_table import CanNode, Objects
+from drivers.canopen.drive_profiles import Entry
+from drivers.canopen.pvt_records import RecordQueue
 
 _FOLLOWING = 0x8611  # EMCY
 SYNCS = 3  # answers that may be missing before a drive counts as silent
 _COMMAND = struct.Struct("<Hbi")  # control word, mode, target
 _SHOWN = struct.Struct("<Hbi")  # status word, mode, position
-_MORE = struct.Struct("<iI")  # following error of an axis or speed of a spindle, digital inputs
+POSITION_TARGET, POINT_TARGET = Entry(od.TARGET, 0, 32), Entry(od.IP_RECORD, 1, 32)
+SPEED_TARGET, SPEED = Entry(od.TARGET_SPEED, 0, 32), Entry(od.VELOCITY, 0, 32, signed=True)
+_NEEDED = (
+    Entry(od.CONTROL, 0, 16),
+    Entry(od.MODE, 0, 8),
+    Entry(od.STATUS, 0, 16),
+    Entry(od.MODE_SHOWN, 0, 8),
+)
 
 
 class Drive402:
     """``word`` and ``goal`` are what is wanted; ``exchange`` sends it, the answers come with the bus's pump.
 
-    ``target`` is the object that the command carries: a position, or a speed for a spindle.
+    ``target`` is the object that the command carries: a position, or a speed for a spindle. ``told`` is what
+    the drive tells besides, as far as it has it.
     """
 
-    def __init__(self, bus: Bus, config: CanNode, target: int, more: int) -> None:
+    def __init__(self, bus: Bus, config: CanNode, target: Entry, told: tuple[Entry, ...]) -> None:
         self.bus = bus
         self.name = config.name
         self.id = config.id
-        self.setup = Setup(bus, self.name, self.id, od.dictionary(self.name, config.eds, od.drive_objects))
+        objects, self.profile = od.drive_dictionary(config)
+        self.setup = Setup(bus, self.name, self.id, objects)
         self.node = self.setup.node
-        self._target_object, self._more_object = target, more
+        self._target_object = target
+        self._asked_for = (*told, self.profile.inputs)
+        self._told_as: tuple[Entry, ...] = ()  # what of it the drive has
+        self.told: dict[int, int] = {}  # by object
+        self.tracks: int | None = None  # in any mode but this one its target is the place where it stands
         self.goal = DriveState.OFF
         self.extra = 0  # bits 4, 5, 6, 8 of the control word, while enabled
         self.mode = 0
@@ -53,13 +68,12 @@ class Drive402:
         self.status = 0
         self.shown_mode = 0
         self.position = 0  # counts
-        self.more = 0
-        self.inputs = 0  # 0x60FD
         self.missing = 0  # SYNCs without an answer
         self.heard = self.asked = self.answered = bus.clock.now()  # answered: the SYNC that it shows
         self.trouble: Fault | str = ""
         self.rebooted = False
         self._resetting = False
+        self._beats = True  # it has a heartbeat that can be watched
 
     @property
     def state(self) -> DriveState:
@@ -76,26 +90,45 @@ class Drive402:
         """Whether it has left too many SYNCs unanswered: what it shows is of before."""
         return self.missing > SYNCS
 
-    def connect(
-        self, mappings: tuple[int, ...], modes: int, values: tuple[tuple[int, int, int], ...]
-    ) -> None:
-        """Check, configure and map it in PRE-OPERATIONAL. Raises DriverError with what does not fit.
+    @property
+    def tells_inputs(self) -> bool:
+        """Whether it has digital inputs that can be read."""
+        return self.profile.inputs in self._told_as
 
-        ``modes``: bits of 0x6502 that are needed. ``mappings``: objects received beside the command.
-        """
-        self.setup.pre_operational()
-        self.setup.demand_profile(402)
-        self.setup.demand_modes(modes)
-        self.setup.write_all(values)
-        self.setup.receive(1, (od.CONTROL, 16), (od.MODE, 8), (self._target_object, 32))
-        if mappings:
-            self.setup.receive(2, *((index, 64) for index in mappings), at_once=True)
-        self.setup.transmit(1, self._shown, (od.STATUS, 16), (od.MODE_SHOWN, 8), (od.POSITION, 32))
-        self.setup.transmit(2, self._told, (self._more_object, 32), (od.INPUTS_402, 32))
+    @property
+    def inputs(self) -> int:
+        """Its digital inputs; none are on where it tells none."""
+        return self.told.get(self.profile.inputs.object, 0)
+
+    @property
+    def speed(self) -> int:
+        """What it turns at, in its unit, where it was asked for that."""
+        return self.told.get(od.VELOCITY, 0)
+
+    def connect(self, work: DriveWork) -> None:
+        """Check, configure and map it in PRE-OPERATIONAL. Raises DriverError with what does not fit."""
+        setup, records = self.setup, work.records
+        setup.pre_operational()
+        setup.demand_profile(402)
+        setup.demand_modes(work.modes, self.profile.modes)
+        setup.configure(work.standing, work.own, work.needed)
+        setup.demand(*_NEEDED, self._target_object)
+        if work.period:
+            setup.watch_setpoints(work.period)
+        setup.receive(1, (od.CONTROL, 16), (od.MODE, 8), _mapped(self._target_object))
+        if records:
+            setup.receive(2, (records, 64), at_once=True)
+        shown = ((od.STATUS, 16), (od.MODE_SHOWN, 8), (od.POSITION, 32))
+        setup.transmit(1, self._shown, *shown, every=1 if work.axis else self.bus.config.seldom)
+        self._told_as = tuple(each for each in self._asked_for if setup.has(each.object, each.sub))
+        if self._told_as:
+            more = [_mapped(entry) for entry in self._told_as]
+            setup.transmit(2, self._told, *more, every=self.bus.config.seldom)
+        self._beats = od.HEARTBEAT not in setup.lacks
         self.node.nmt.add_heartbeat_callback(self._heartbeat)
         self.node.emcy.add_callback(self._emergency)
-        self.status = self.setup.read(od.STATUS)
-        self.position = self.target = self.setup.read(od.POSITION)
+        self.status = setup.read(od.STATUS)
+        self.position = self.target = setup.read(od.POSITION)
         self.heard, self.missing, self.rebooted, self.trouble = self.bus.clock.now(), 0, False, ""
 
     def operational(self) -> None:
@@ -104,10 +137,15 @@ class Drive402:
 
     def command(self) -> None:
         """Send what is wanted; the drive applies it at the next SYNC."""
+        if self.tracks is not None and not (self.enabled and self.shown_mode == self.tracks):
+            self.target = self.position  # it begins where it stands, whatever moved it meanwhile
         self.word = self._next_word()
         data = _COMMAND.pack(self.word, self.mode, self.target)
         self.bus.send_message(0x200 + self.id, data)
-        self.missing, self.asked = self.missing + 1, self.bus.clock.now()
+
+    def sync_sent(self, now: float, *, counted: bool = True) -> None:
+        """A SYNC goes out; ``counted``: an answer to it is waited for."""
+        self.missing, self.asked = self.missing + counted, now
 
     def push(self, record: bytes) -> None:
         """One more record for the queue in the drive."""
@@ -120,7 +158,7 @@ class Drive402:
     def look(self, patience: float) -> None:
         """Supervise: heartbeat, answers, status. ``trouble`` stays until ``forget``."""
         now = self.bus.clock.now()
-        if now - self.heard > patience:
+        if self._beats and now - self.heard > patience:
             self._wrong(
                 f"{self.name}: no heartbeat for {now - self.heard:.2f} s; check cable and power",
                 "drive-silent",
@@ -154,7 +192,13 @@ class Drive402:
         self.missing, self.answered = 0, self.asked
 
     def _told(self, map_: canopen.pdo.PdoMap) -> None:
-        self.more, self.inputs = _MORE.unpack(map_.data)
+        if len(map_.data) != sum(entry.bits for entry in self._told_as) // 8:
+            raise ValueError(f"{len(map_.data)} bytes")
+        at = 0
+        for index, _, bits, signed in self._told_as:
+            size = bits // 8
+            self.told[index] = int.from_bytes(map_.data[at : at + size], "little", signed=signed)
+            at += size
 
     def _heartbeat(self, state: int) -> None:
         self.heard = self.bus.clock.now()
@@ -170,14 +214,43 @@ class Drive402:
             self._wrong(f"{self.name}: {what}", "following" if error.code == _FOLLOWING else "axis")
 
 
+def _mapped(entry: Entry) -> tuple[int, int]:
+    """As a PDO's entries are written: object + sub · 65536, bits."""
+    return entry.object | entry.sub << 16, entry.bits
+
+
 # --- The axis drives together: configured, powered and stopped as one, at one SYNC.
 
 
+@dataclass(frozen=True, slots=True)
+class DriveWork:
+    """What a drive is configured for: bits of 0x6502, what is written, and the object of its queue.
+
+    ``needed`` are objects without which it cannot be used; ``period`` of setpoints that it has to watch.
+    """
+
+    modes: int
+    standing: Objects
+    own: Objects = ()
+    needed: tuple[int, ...] = ()
+    records: int = 0
+    period: float = 0.0
+    axis: bool = True  # it answers each SYNC; a spindle every 10 ms
+
+
 _POWER = 1.5  # s in which the drives must come on, or leave their faults
-_CUBIC = -1  # 0x60C0: position, velocity and time
-_REST = 2  # counts from one answer to the next; less is axis_objects
+_REST, _LOOKS = 2, 0.0095  # counts in so many s at least; less is standing
 _REACTION = 1.0  # s in which a drive that has lost its host is at rest: three heartbeats and its ramp
 _FAULTS = frozenset((DriveState.FAULT, DriveState.REACTING))
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """How the drives follow: mode of CiA 402, object of the setpoints, and whether one comes each SYNC."""
+
+    mode: int
+    target: Entry = POSITION_TARGET
+    cyclic: bool = False
 
 
 @dataclass(slots=True)
@@ -189,6 +262,12 @@ class DrivenAxis:
     homed: bool = False
     last: int = 0  # counts at the answer before
     moving: bool = False
+    records: RecordQueue | None = None  # its queue, where its family has one
+
+    def __post_init__(self) -> None:
+        """The queue of its drive."""
+        queue = self.config.profile.queue
+        self.records = RecordQueue(self.config, self.drive, queue) if queue is not None else None
 
     @property
     def ready(self) -> bool:
@@ -199,16 +278,17 @@ class DrivenAxis:
 class DriveSet:
     """``mode`` is the one in which they follow setpoints."""
 
-    def __init__(self, axes: tuple[AxisConfig, ...], bus: Bus, mode: int) -> None:
+    def __init__(self, axes: tuple[AxisConfig, ...], bus: Bus, how: Motion) -> None:
         self._bus = bus
-        self._mode = mode
+        self._how = how
         self.indices = [i for i, axis in enumerate(axes) if axis.node is not None]
         self.axes = [
-            DrivenAxis(axis, Drive402(bus, axis.node, od.TARGET, od.FOLLOWING))
-            for axis in axes
-            if axis.node is not None
+            _driven(axis, Drive402(bus, axis.node, how.target, ())) for axis in axes if axis.node is not None
         ]
+        for axis in self.axes:
+            axis.drive.tracks = how.mode if how.cyclic else None
         self.seen = self._sent = bus.clock.now()  # the SYNC of the last answers, of the last exchange
+        self._compared = self.seen  # when positions were last compared
 
     @property
     def drives(self) -> list[Drive402]:
@@ -240,14 +320,22 @@ class DriveSet:
         for axis in self.axes:
             axis.drive.command()
 
+    def sync_sent(self, now: float) -> None:
+        """A SYNC goes out, and every drive is to answer it."""
+        for axis in self.axes:
+            axis.drive.sync_sent(now)
+
     def exchange(self) -> None:
         """Command and SYNC, whatever was answered."""
         self._sent = self._bus.clock.now()
         self.command()
+        self.sync_sent(self._sent)
         self._bus.synchronise()
 
     def answered(self) -> list[DrivenAxis]:
         """For waiting: one exchange, not before the last was answered or its time is over."""
+        if self._how.cyclic and not self._bus.stepped:
+            return self.axes  # the SYNC goes on meanwhile, by the bus's own wait
         waiting = any(axis.drive.missing for axis in self.axes)
         if not waiting or self._bus.clock.now() - self._sent >= 2 * self._bus.config.sync:
             self.exchange()
@@ -262,7 +350,7 @@ class DriveSet:
     def power_on(self) -> None:
         """Walk up, and wait. Raises DriverError naming the drive that does not come; then all are off."""
         for axis in self.axes:
-            axis.drive.mode, axis.drive.goal = self._mode, DriveState.ENABLED
+            axis.drive.mode, axis.drive.goal = self._how.mode, DriveState.ENABLED
         if not self._bus.wait(lambda: all(axis.ready for axis in self.answered()), _POWER):
             slow = [f"{axis.config.name} is {axis.drive.state}" for axis in self.axes if not axis.ready]
             self.aim(DriveState.OFF)
@@ -314,18 +402,50 @@ class DriveSet:
         seen = min((axis.drive.answered for axis in speaking), default=now)
         if seen <= self.seen:
             return
+        self.seen = seen
+        if seen - self._compared < _LOOKS:
+            return
+        self._compared = seen
         for axis in speaking:
             axis.moving = abs(axis.drive.position - axis.last) > _REST
             axis.last = axis.drive.position
-        self.seen = seen
 
     def _connect(self, axis: DrivenAxis) -> None:
-        config = axis.config
-        needed = MODE_BITS[self._mode] | (0 if config.absolute else MODE_BITS[HM])
-        queued = self._mode == IP
-        cubic: Objects = ((od.IP_SUBMODE, 0, _CUBIC),) if queued else ()
+        config, how = axis.config, self._how
         own = config.node.sdo if config.node is not None else ()
-        values = (*axis_objects(config, self._bus.config), *cubic, *own)
-        axis.drive.connect((od.PVT_RECORD,) if queued else (), needed, values)
+        queue = config.profile.queue if how.mode == IP and not how.cyclic else None
+        submode: Objects = ((od.IP_SUBMODE, 0, queue.submode if queue is not None else 0),)
+        work = DriveWork(
+            modes=MODE_BITS[how.mode] | (0 if config.absolute else MODE_BITS[HM]),
+            standing=(
+                *axis_objects(config, self._bus.config),
+                *(submode if how.mode == IP else ()),
+                *(every(self._bus.config.sync) if how.cyclic else ()),
+            ),
+            own=own,
+            records=queue.object if queue is not None else 0,
+            period=self._bus.config.sync if how.cyclic else 0.0,
+        )
+        axis.drive.connect(work)
+        if not config.absolute:
+            axis.drive.setup.demand_homing(config.home_method)
         axis.homed, axis.last = config.absolute, axis.drive.position
-        axis.drive.mode = self._mode
+        axis.drive.mode = how.mode
+
+
+def _driven(config: AxisConfig, drive: Drive402) -> DrivenAxis:
+    """The axis with the figures of its drive's family. Raises DriverError where one of them is missing."""
+    profile = drive.profile
+    if profile.rpm and not config.counts_per_rev:
+        where = f"canopen.nodes.{config.name}.counts_per_rev"
+        raise DriverError(
+            f"{config.name}: {profile.title} counts speeds in rpm; {where} is missing: 4 × the pulses a turn"
+            " of its encoder",
+            "drive-setup",
+        )
+    return DrivenAxis(replace(config, profile=profile), drive)
+
+
+def every(period: float) -> Objects:
+    """0x60C2: the time from setpoint to setpoint."""
+    return ((od.IP_TIME, 1, round(1000 * period)), (od.IP_TIME, 2, -3))

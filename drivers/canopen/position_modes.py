@@ -1,4 +1,4 @@
-"""How setpoints reach the drives: the common shape, profile position (PP), and cyclic positions (CSP)."""
+"""How setpoints reach the drives: the common shape, and profile position (PP)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from core.ports import DriverError, Fault, Segments
 from drivers.canopen import canopen_objects as od
-from drivers.canopen.canopen_objects import AT_ONCE, BIT_12, CSP, NEW, PP
+from drivers.canopen.canopen_objects import AT_ONCE, BIT_12, NEW, PP
 from drivers.canopen.cia402_drives import DrivenAxis
 from drivers.setpoint_queue import SetpointQueue
 
@@ -32,6 +32,10 @@ class Follower:
         """The drives still have something of it to do."""
         return False
 
+    def path_time(self, t: float) -> float:
+        """The place in the queue that the drives had reached at ``t``: what is late is not leapt over."""
+        return t
+
     def check(self, segments: Segments) -> None:
         """Refuse, by DriverError, what these drives cannot follow; most follow any path."""
 
@@ -50,24 +54,6 @@ class Follower:
     def abort(self) -> None:
         """The drives stop by themselves: nothing is fed any more."""
         self.trouble = ""
-
-
-class CspFollower(Follower):
-    """One setpoint a SYNC, straight from this process: experimental, good for a bench."""
-
-    mode = CSP
-
-    def __init__(
-        self, axes: Sequence[DrivenAxis], indices: Sequence[int], queue: SetpointQueue, period: float
-    ) -> None:
-        super().__init__(axes, indices, queue)
-        self._period = period
-
-    def feed(self, now: float) -> None:
-        """What shall be reached at the SYNC after the next."""
-        p, _ = self._queue.demand_at(now + self._period)
-        for axis, index in zip(self._axes, self._indices, strict=True):
-            axis.drive.target = round(p[index] / axis.config.count)
 
 
 # --- Profile position: the drive plans. For jogging and single moves where a drive has no queue for paths.
@@ -106,7 +92,8 @@ class ProfiledFollower(Follower):
         limit = max(axis.config.count for axis in self._axes)
         if float(np.abs(off).max()) > limit:
             raise DriverError(
-                'the drives plan single straight moves only ([canopen] mode = "pp"); programs need "pvt"',
+                'the drives plan single straight moves only ([canopen] mode = "pp"); programs need "csp" or'
+                ' "ip", or "pvt" and a queue',
                 "drive-limits",
             )
         self._pending = (float(segments.t[0]), segments)
@@ -139,15 +126,15 @@ class ProfiledFollower(Follower):
         rest, _ = self._queue.demand_at(float("inf"))
         self.urgent = True
         for axis, i in zip(self._axes, self._indices, strict=True):
-            count, drive = axis.config.count, axis.drive
-            accel = axis.config.amax / count
+            config, drive = axis.config, axis.drive
+            accel = config.amax
             if segments is not None:
-                speed = max(float(np.abs(segments.v[:, i]).max()) / count, 1.0)
-                accel = max(float(np.abs(segments.a[:, i]).max()) / count, 1.0)
-                drive.setup.write(od.PROFILE_SPEED, 0, round(speed))
-            drive.setup.write(od.PROFILE_ACCEL, 0, round(accel))
-            drive.setup.write(od.PROFILE_DECEL, 0, round(accel))
-            drive.target = round(rest[i] / count)
+                speed = config.velocity(float(np.abs(segments.v[:, i]).max()))
+                accel = float(np.abs(segments.a[:, i]).max())
+                drive.setup.write(od.PROFILE_SPEED, 0, max(round(speed), 1))
+            drive.setup.try_write(od.PROFILE_ACCEL, 0, config.acceleration(accel))
+            drive.setup.try_write(od.PROFILE_DECEL, 0, config.acceleration(accel))
+            drive.target = round(rest[i] / config.count)
             drive.extra |= NEW | AT_ONCE
 
     def _finish(self, now: float) -> None:

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import logging
-import struct
 from collections import deque
 from collections.abc import Callable, Sequence
 from enum import Enum
 from typing import NamedTuple
 
-from core.ports import Fault, at_rest
+from core.ports import DriverError, Fault, at_rest
 from drivers.canopen.canopen_objects import BIT_12, IP, NEW
 from drivers.canopen.cia402_drives import DrivenAxis
+from drivers.canopen.drive_profiles import QUEUED
 from drivers.canopen.position_modes import Follower
+from drivers.canopen.pvt_records import RecordQueue
 from drivers.setpoint_queue import SetpointQueue
 
 # --- From setpoints to PVT records: points of the path in counts, times in whole milliseconds.
@@ -24,8 +25,6 @@ Demand = Callable[[float], tuple[tuple[float, ...], tuple[float, ...]]]  # t →
 
 SHORTEST = 2  # ms; shorter ones would fill queue and bus
 _LOOKS = (0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875)
-_RECORD = struct.Struct("<i")
-_VELOCITY_TOP = 2**23 - 1
 
 
 class Span(NamedTuple):
@@ -67,28 +66,11 @@ def hermite(p0: float, v0: float, p1: float, v1: float, dt: float, s: float) -> 
     return r * r * (p0 + s * (2.0 * p0 + v0 * dt)) + s * s * (p1 + r * (2.0 * p1 - v1 * dt))
 
 
-def packed(ms: int, velocity: float, position: float) -> bytes:
-    """One record of EPOS2: position in the low 32 bits, then velocity in 24, then the time in 8.
-
-    Raises ValueError for what does not fit.
-    """
-    speed, place = round(velocity), round(position)
-    if abs(speed) > _VELOCITY_TOP or not 0 <= ms <= 255:
-        raise ValueError(f"a record of {ms} ms and {speed} counts/s does not fit the drive")
-    return _RECORD.pack(place) + (speed & 0xFFFFFF).to_bytes(3, "little") + bytes([ms])
-
-
-def unpacked(data: bytes) -> tuple[int, int, int]:
-    """Milliseconds, velocity and position of a record."""
-    speed = int.from_bytes(data[4:7], "little")
-    return data[7], speed - 0x1000000 if speed & 0x800000 else speed, _RECORD.unpack(data[:4])[0]
-
-
 _log = logging.getLogger(__name__)
 
+_BY_NAME = " or ".join(f'"{name}"' for name in QUEUED)
 _DRY = "the drives' queues ran dry: this computer was away for too long"
 LOW_WATER = 2  # records; with fewer a drive faults
-MOST = 56  # records in a drive that takes 64
 RESTART = 0.04  # s between the last point of one PVT motion and the first of the next
 _LINGER = 0.5  # s at rest after which the drives' queues are ended; until then points of rest are fed
 _BEGIN = 0.3  # s in which a drive must have begun
@@ -131,8 +113,7 @@ class PvtFollower(Follower):
     def prepare(self) -> None:
         """Empty queues, so that nothing old is played."""
         for axis in self._axes:
-            for clear in (0, 1):
-                axis.drive.setup.write(0x60C4, 6, clear)
+            _records(axis).clear()
         self.abort()
 
     def abort(self) -> None:
@@ -186,7 +167,8 @@ class PvtFollower(Follower):
             self._push(0)
             self._phase = _Phase.ENDING
             return
-        while self._in_drives(now) < MOST:
+        most = min(_records(axis).queue.most for axis in self._axes)
+        while self._in_drives(now) < most:
             piece = span(self._demand, self.front, self._longest, self._counts())
             if self.front + 0.001 * piece.ms > now + self._ahead:
                 return
@@ -202,10 +184,10 @@ class PvtFollower(Follower):
     def _push(self, ms: int) -> None:
         positions, velocities = self._demand(self.front)
         for axis, p, v in zip(self._axes, positions, velocities, strict=True):
-            speed = v / axis.config.count
-            if axis.config.counts_per_rev:
-                speed *= 60.0 / axis.config.counts_per_rev
-            axis.drive.push(packed(ms, speed, p / axis.config.count))
+            try:
+                _records(axis).push(ms, v, p)
+            except ValueError as error:
+                self.trouble = self.trouble or Fault(f"{axis.config.name}: {error}", "drive-limits")
         self.front += 0.001 * ms
         self._sent.append(self.front)
 
@@ -220,3 +202,14 @@ class PvtFollower(Follower):
     def _active(self, some: object) -> bool:
         active = [bool(axis.drive.status & BIT_12) for axis in self._axes]
         return all(active) if some is all else any(active)
+
+
+def _records(axis: DrivenAxis) -> RecordQueue:
+    """The queue in its drive. Raises DriverError where its family has none."""
+    if axis.records is None:
+        raise DriverError(
+            f'{axis.config.name}: {axis.config.profile.title} has no queue for [canopen] mode = "pvt": choose'
+            f' "csp" or "ip", or say drive = {_BY_NAME}',
+            "drive-setup",
+        )
+    return axis.records

@@ -12,7 +12,6 @@ from dataclasses import replace
 from enum import Enum
 
 from core.ports import DriverError, Fault, Stop, at_rest
-from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_axes import CanopenAxes
 from drivers.canopen.canopen_homing import SEARCH_RPM, Phase, Referencing
 from drivers.canopen.canopen_objects import IP, PV, DriveState
@@ -47,7 +46,9 @@ class SpindleC:
         self._number = axes.axes.index(name)
         config = axes.config.axes[self._number]
         per_turn = spindle.counts_per_rev
-        config = replace(config, count=_TURN / per_turn, counts_per_rev=per_turn)
+        config = replace(
+            config, count=_TURN / per_turn, counts_per_rev=per_turn, profile=spindle.drive.profile
+        )
         self._axis = DrivenAxis(config, spindle.drive, homed=True)
         self.step = Step.FREE
         self.trouble: Fault | str = ""
@@ -69,7 +70,7 @@ class SpindleC:
                 raise DriverError(
                     "C is the spindle's drive, and the drives are off; switch them on first", "c-coupling"
                 )
-            if self.step is Step.FREE and (self._spindle.commanded or abs(self._drive.more) >= _STANDS):
+            if self.step is Step.FREE and (self._spindle.commanded or abs(self._drive.speed) >= _STANDS):
                 raise DriverError(
                     "C is the spindle's drive, and the spindle turns; stop it first", "c-coupling"
                 )
@@ -145,8 +146,9 @@ class SpindleC:
         if self._referenced(now):
             self._spindle.leapt()
             self._drive.mode = IP
-            for clear in (0, 1):
-                self._drive.setup.write(od.BUFFER, 6, clear)
+            if self._axis.records is None:
+                raise DriverError(f"C: {self._drive.profile.title} has no queue for positions", "c-coupling")
+            self._axis.records.clear()
             self._enter(Step.POWER, now)
 
     def _referenced(self, now: float) -> bool:

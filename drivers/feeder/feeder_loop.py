@@ -10,7 +10,7 @@ import select
 import socket
 from collections.abc import Mapping
 
-from core.ports import Clock, DriverError
+from core.ports import DriverError
 from drivers.feeder.feeder_messages import Inbox, packed
 from drivers.feeder.feeder_server import Driven, Feeder
 
@@ -63,12 +63,13 @@ def serve(
     """Until the control has gone and the slides are at rest."""
     feeder = Feeder(driven, warnings, refresh)
     try:
-        _rounds(sock, feeder, driven.ports.clock)
+        _rounds(sock, feeder, driven)
     finally:  # whatever happens here: slides stopped, power off, bus closed
         driven.close()
 
 
-def _rounds(sock: socket.socket, feeder: Feeder, clock: Clock) -> None:
+def _rounds(sock: socket.socket, feeder: Feeder, driven: Driven) -> None:
+    clock = driven.ports.clock
     inbox = Inbox()
     sock.setblocking(False)
     due = clock.now()
@@ -76,15 +77,18 @@ def _rounds(sock: socket.socket, feeder: Feeder, clock: Clock) -> None:
     while not feeder.done:
         feeder.late(clock.now() - due)
         feeder.tick()
-        due = max(due + PERIOD, clock.now())
-        while (left := due - clock.now()) > 0.0:
+        woken, set_by_driver = due, driven.wake()
+        due = max(due + PERIOD, clock.now()) if set_by_driver is None else set_by_driver
+        heard = False  # who is always late still listens, once a round
+        while (left := due - clock.now()) > 0.0 or not heard:
+            heard = True
             if feeder.orphaned:
                 clock.sleep_until(due)
-            elif select.select([sock], [], [], left)[0]:
+            elif select.select([sock], [], [], max(left, 0.0))[0]:
                 feeder.orphaned = not _talk(sock, inbox, feeder)
         if feeder.orphaned:
             sock.close()
-            gone += PERIOD
+            gone += max(due - woken, 0.0)
             if gone > _LAST:
                 break
 

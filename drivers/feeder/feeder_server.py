@@ -149,6 +149,8 @@ class Driven:
     tick: Callable[[], object]
     close: Callable[[], None]
     hands: object | None = None
+    wake: Callable[[], float | None] = lambda: None  # when the next tick is due; None: every few milliseconds
+    notes: Callable[[], Sequence[str]] = tuple  # what the drivers have to tell the control
 
 
 class Feeder:
@@ -206,6 +208,8 @@ class Feeder:
     def tick(self) -> None:
         """Drivers first, then whether the control still speaks."""
         self._driven.tick()
+        for note in self._driven.notes():
+            self._note(note)
         silent = self._ports.clock.now() - self._heard
         self._let_fall(silent)
         if self.orphaned or silent > SILENT:

@@ -8,7 +8,9 @@ from collections.abc import Callable
 
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_objects import BIT_12, CSP, HM, IP, NEW, PP, REACHED, DriveState
-from drivers.canopen.pvt_mode import hermite, unpacked
+from drivers.canopen.drive_profiles import CIA402, DriveProfile, Records
+from drivers.canopen.pvt_mode import hermite
+from drivers.canopen.pvt_records import unpacked, unpacked_segment
 from drivers.lookalikes.servo_axis import Servo
 
 # --- The power states of a CiA 402 drive as the drive keeps them, with the transitions of the profile.
@@ -110,9 +112,20 @@ _HOME_SETTLE = 0.1  # s
 class AxisDrive:
     """``step`` once a millisecond of the plant; objects come by ``read`` and ``write``."""
 
-    def __init__(self, servo: Servo, emergency: Callable[[int], None]) -> None:
+    def __init__(
+        self,
+        servo: Servo,
+        emergency: Callable[[int], None],
+        profile: DriveProfile = CIA402,
+        counts_per_rev: int = 0,
+    ) -> None:
         self.servo = servo
         self.emergency = emergency
+        self.profile = profile
+        self.unit = counts_per_rev / 60.0 if counts_per_rev else 1.0  # counts/s of one unit of its velocities
+        self.interpolates = False  # from 60C1 to 60C1, let begin by bit 4
+        self._left = 0.0  # s to its target, in a mode that takes one each SYNC
+        self._next = 0  # count of the next segment
         self.power = PowerStates(self._hold)
         self.mode = 0
         self.target = 0
@@ -128,7 +141,6 @@ class AxisDrive:
         self._pending = False  # a new target, to be acknowledged
         self._going = False
         self.values: dict[tuple[int, int], int] = {}
-        self.unit = 1.0  # counts/s of one unit of its velocities
         self.second: Callable[[], int] | None = None  # counts of a second encoder input
 
     # --- objects ------------------------------------------------------------------------------------------
@@ -155,9 +167,9 @@ class AxisDrive:
             self._control(value)
         elif index == od.MODE and not self.playing and not self._homing:
             self.mode = value
-        elif index == od.TARGET:
-            self.target = value
-        elif index == od.PVT_RECORD:
+        elif index in {od.TARGET, od.IP_RECORD}:
+            self.target, self._left = value, self._period()
+        elif self.profile.queue is not None and index == self.profile.queue.object:
             self._push(value)
         elif index == od.BUFFER and sub == 6 and value == 0:
             self.queue.clear()
@@ -173,6 +185,7 @@ class AxisDrive:
         """Volatile things are gone; so is the reference of an encoder that only counts."""
         self.power.off()
         self.mode, self.playing, self._homing, self._going = 0, False, False, False
+        self.interpolates = False
         self.queue.clear()
         self.values.clear()
         self.servo.power_lost()
@@ -180,7 +193,12 @@ class AxisDrive:
     def status(self) -> int:
         """0x6041."""
         word = self.power.word
-        if self.playing or (self._pending and self.mode == PP) or (self.homed and self.mode == HM):
+        if (
+            self.playing
+            or self.interpolates
+            or (self._pending and self.mode == PP)
+            or (self.homed and self.mode == HM)
+        ):
             word |= BIT_12
         if not self.playing and not self._homing and not self._going and self.v == 0.0:
             word |= REACHED
@@ -191,7 +209,7 @@ class AxisDrive:
     def step(self, dt: float) -> None:
         """One step of drive and slide."""
         if not self.power.powered:
-            self.playing = self._homing = self._going = False
+            self.playing = self._homing = self._going = self.interpolates = False
             self.servo.roll(dt)
             self.p, self.v = self.servo.reading, 0.0
             return
@@ -203,9 +221,8 @@ class AxisDrive:
             self._look_for_home(dt)
         elif self._going:
             self._towards(self.target * self.servo.axis.count, dt)
-        elif self.mode == CSP:
-            goal = self.target * self.servo.axis.count
-            self.p, self.v = goal, 0.0
+        elif self.mode == CSP or self.interpolates:
+            self._step_to_target(dt)
         if self.servo.follow(self.p, self.v, dt):
             self._fail(EMCY_FOLLOWING)
         if self.v == 0.0:
@@ -217,6 +234,7 @@ class AxisDrive:
         rising = word & NEW and not before & NEW
         if self.power.state is not DriveState.ENABLED:
             return
+        self.interpolates = self.mode == IP and self._cyclic() and bool(word & NEW)
         if self.mode == IP:
             if rising and not self.playing and self.queue:
                 self._now, self._in, self.playing = self.queue.popleft(), 0.0, True
@@ -230,11 +248,46 @@ class AxisDrive:
                 self._going = True
             self._pending = bool(word & NEW)
 
+    def _cyclic(self) -> bool:
+        """A setpoint each SYNC, not records."""
+        return self.values.get((od.IP_SUBMODE, 0), 0) == 0
+
+    def _period(self) -> float:
+        """Time from setpoint to setpoint."""
+        return float(self.values.get((od.IP_TIME, 1), 0) * 10.0 ** self.values.get((od.IP_TIME, 2), -3))
+
+    def _step_to_target(self, dt: float) -> None:
+        """In a straight line, so that it is there when the next is due; then it stays."""
+        goal, before = self.target * self.servo.axis.count, self.p
+        self.p += (goal - self.p) * min(dt / max(self._left, dt), 1.0)
+        self._left = max(self._left - dt, 0.0)
+        self.v = (self.p - before) / dt
+
     def _push(self, value: int) -> None:
+        data, queue = value.to_bytes(8, "little"), self.profile.queue
+        if queue is None or queue.records is Records.EPOS2:
+            self._queue(unpacked(data))
+        elif data[0] & 0x80:
+            self._order(data[0])
+        else:
+            number, ms, speed, place = unpacked_segment(data)
+            if number != self._next % 8:
+                self._fail(EMCY_OVERFLOW)
+            self._next += 1
+            self._queue((ms, round(speed), place))
+
+    def _order(self, code: int) -> None:
+        """To a queue of Copley."""
+        if code == 0x80:
+            self.queue.clear()
+        elif code == 0x83:
+            self._next = 0
+
+    def _queue(self, record: tuple[int, int, int]) -> None:
         if len(self.queue) >= QUEUE:
             self._fail(EMCY_OVERFLOW)
         else:
-            self.queue.append(unpacked(value.to_bytes(8, "little")))
+            self.queue.append(record)
 
     def _play(self, dt: float) -> None:
         count = self.servo.axis.count
@@ -254,7 +307,8 @@ class AxisDrive:
             return
         ms, v0, p0 = self._now
         _, v1, p1 = self.queue[0]
-        unit = self.unit
+        copley = self.profile.queue is not None and self.profile.queue.records is Records.COPLEY
+        unit = 1.0 if copley else self.unit
         before = self.p
         self.p = count * hermite(p0, unit * v0, p1, unit * v1, 0.001 * ms, self._in / (0.001 * ms))
         self.v = (self.p - before) / dt
@@ -263,7 +317,8 @@ class AxisDrive:
         """Profile position: up and down with the profile's acceleration, no faster than its speed."""
         count = self.servo.axis.count
         accel = max(self.values.get((od.PROFILE_ACCEL, 0), 0), 1) * count
-        top = max(self.values.get((od.PROFILE_SPEED, 0), 0), 1) * count
+        accel *= self.unit if self.profile.rpm else 1.0
+        top = max(self.values.get((od.PROFILE_SPEED, 0), 0), 1) * count * self.unit
         left = goal - self.p
         wanted = math.copysign(min(top, math.sqrt(2.0 * accel * abs(left))), left)
         self.v += min(max(wanted - self.v, -accel * dt * 1.05), accel * dt * 1.05)
@@ -290,7 +345,7 @@ class AxisDrive:
         drop = self.servo.axis.amax * dt
         self.v = 0.0 if abs(self.v) <= drop else self.v - math.copysign(drop, self.v)
         self.p += self.v * dt
-        self.playing = self._homing = self._going = False
+        self.playing = self._homing = self._going = self.interpolates = False
         if self.v == 0.0 and abs(self.servo.v) < 0.1:
             self.power.stopped()
 

@@ -6,11 +6,15 @@ from collections.abc import Callable
 from functools import partial
 
 import can
+from canopen import ObjectDictionary
+from canopen.objectdictionary import ODVariable
 
 from core.ports import Clock
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import opened
 from drivers.canopen.canopen_config import CanopenConfig
+from drivers.canopen.canopen_table import CanNode
+from drivers.canopen.drive_profiles import DriveProfile
 from drivers.lookalikes.canopen_axis_drive import AxisDrive
 from drivers.lookalikes.canopen_modules import EncoderDevice, TerminalBoard
 from drivers.lookalikes.canopen_node import Device, DeviceNetwork, DeviceNode
@@ -125,28 +129,29 @@ class CanopenDevices:
         for axis in config.axes:
             if axis.node is not None:
                 servo = plant.servos[plant.names.index(axis.name)]
-                drive = AxisDrive(servo, partial(self._emergency, axis.name))
+                objects, profile = _played(axis.node)
+                counts = axis.counts_per_rev
+                drive = AxisDrive(servo, partial(self._emergency, axis.name), profile, counts)
                 plant.drives[axis.name] = drive
-                self._add(axis.name, axis.node.id, drive)
+                self._add(axis.name, axis.node.id, drive, objects)
         if config.spindle is not None:
             counts = config.spindle.node.counts_per_rev
             as_c = plant.config.axes[plant.names.index("C")] if config.spindle.is_c else None
-            spindle = SpindleDrive(plant.spindle, counts, partial(self._emergency, "spindle"), as_c)
+            objects, profile = _played(config.spindle.node)
+            spindle = SpindleDrive(plant.spindle, counts, partial(self._emergency, "spindle"), as_c, profile)
             plant.spindle_drive = spindle
-            self._add("spindle", config.spindle.node.id, spindle)
+            self._add("spindle", config.spindle.node.id, spindle, objects)
         if config.encoder is not None:
             self.encoder = encoder = EncoderDevice(plant, config.encoder.counts_per_rev)
             if config.encoder.node is not None:
-                self._add(config.encoder.name, config.encoder.node.id, encoder)
+                self._add(config.encoder.name, config.encoder.node.id, encoder, od.encoder_objects())
             else:
                 plant.drives[config.encoder.name].second = lambda: encoder.position
         for module in config.modules:
-            self._add(module.name, module.id, TerminalBoard(module.name, config, plant), module=True)
+            board = TerminalBoard(module.name, config, plant)
+            self._add(module.name, module.id, board, od.module_objects())
 
-    def _add(self, name: str, number: int, device: Device, *, module: bool = False) -> None:
-        objects = od.module_objects() if module else od.drive_objects()
-        if isinstance(device, EncoderDevice):
-            objects = od.encoder_objects()
+    def _add(self, name: str, number: int, device: Device, objects: ObjectDictionary) -> None:
         self.nodes[name] = DeviceNode(self.network, number, objects, device)
 
     def _emergency(self, name: str, code: int) -> None:
@@ -157,3 +162,13 @@ class CanopenDevices:
             drive.power.sto = False
         if self.plant.spindle_drive is not None:
             self.plant.spindle_drive.power.sto = False
+
+
+def _played(node: CanNode) -> tuple[ObjectDictionary, DriveProfile]:
+    """The dictionary of a drive, as its EDS file or its family has it; what it says no value of is 0."""
+    objects, profile = od.drive_dictionary(node)
+    for entry in objects.values():
+        for variable in [entry] if isinstance(entry, ODVariable) else entry.values():
+            if variable.default is None and variable.data_type in ODVariable.STRUCT_TYPES:
+                variable.default = 0
+    return objects, profile

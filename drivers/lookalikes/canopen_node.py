@@ -16,6 +16,7 @@ _OPERATIONAL, _PRE_OPERATIONAL, _STOPPED = 5, 127, 4
 _START, _STOP, _PRE, _RESET, _RESET_COMMUNICATION = 1, 2, 128, 129, 130
 _STATES = {_START: _OPERATIONAL, _STOP: _STOPPED, _PRE: _PRE_OPERATIONAL}
 _SYNCHRONOUS = 240
+_PATIENT = 10  # periods without a SYNC
 _OFF = 1 << 31
 
 
@@ -84,6 +85,9 @@ class DeviceNode:
         self.now = 0.0
         self._next_beat = 0.0
         self._host_heard: float | None = None
+        self._syncs = 0
+        self._sync_at: float | None = None  # of the last SYNC, and of the last of its first PDO
+        self._told_at: float | None = None
         self._waiting: dict[int, bytes] = {}  # RPDO number → data until the next SYNC
         self.boot()
 
@@ -92,7 +96,7 @@ class DeviceNode:
         self.state = _PRE_OPERATIONAL
         self.local.data_store.clear()
         self._waiting.clear()
-        self._host_heard = None
+        self._host_heard = self._sync_at = self._told_at = None
         self.device.reset()
         self.network.send_message(0x700 + self.id, b"\x00")
 
@@ -121,6 +125,21 @@ class DeviceNode:
             self._host_heard = None
             self.emergency(0x8130)
             self.device.host_lost()
+        self._miss_setpoints(now)
+
+    def _miss_setpoints(self, now: float) -> None:
+        """A SYNC, or a first PDO, that stays away for longer than this device was told."""
+        if self.state != _OPERATIONAL:
+            self._sync_at = self._told_at = None
+        period, longest = 1e-6 * self._stored(od.SYNC_PERIOD, 0), 0.001 * self._stored(od.COMMANDED, 5)
+        if period and self._sync_at is not None and now - self._sync_at > _PATIENT * period:
+            self._sync_at = None
+            self.emergency(0x8700)
+            self.device.host_lost()
+        elif longest and self._told_at is not None and now - self._told_at > longest:
+            self._told_at = None
+            self.emergency(0x8250)
+            self.device.host_lost()
 
     def emergency(self, code: int, register: int = 1) -> None:
         """An EMCY, unless the node is silent."""
@@ -135,12 +154,14 @@ class DeviceNode:
 
     def _process_data(self, can_id: int, data: bytes) -> None:
         if can_id == 0x80:
+            self._syncs, self._sync_at = self._syncs + 1, self.now
             for number, waiting in sorted(self._waiting.items()):
                 self._apply(number, waiting)
             self._waiting.clear()
             self._answer()
         for number in range(4):
             if can_id == self._stored(0x1400 + number, 1) and can_id:
+                self._told_at = self._told_at if number else self.now
                 if self._stored(0x1400 + number, 2) <= _SYNCHRONOUS:
                     self._waiting[number] = data
                 else:
@@ -157,7 +178,8 @@ class DeviceNode:
     def _answer(self) -> None:
         for number in range(4):
             cob, kind = self._stored(0x1800 + number, 1), self._stored(0x1800 + number, 2)
-            if cob and not cob & _OFF and 1 <= kind <= _SYNCHRONOUS:
+            due = 1 <= kind <= _SYNCHRONOUS and self._syncs % kind == 0
+            if cob and not cob & _OFF and due:
                 parts = [self.local.get_data(index, sub) for index, sub, _ in self._mapped(0x1A00 + number)]
                 self.network.send_message(cob & 0x7FF, b"".join(parts))
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_objects import HM, IP, NEW, PV, REACHED, DriveState
+from drivers.canopen.drive_profiles import CIA402, DriveProfile
 from drivers.lookalikes.canopen_axis_drive import AxisDrive
 from drivers.lookalikes.plant_config import SimAxis
 from drivers.lookalikes.servo_axis import Servo
@@ -60,7 +61,12 @@ class SpindleDrive:
     """``step`` with the plant's time."""
 
     def __init__(
-        self, motor: SpindleMotor, counts: int, emergency: Callable[[int], None], axis: SimAxis | None = None
+        self,
+        motor: SpindleMotor,
+        counts: int,
+        emergency: Callable[[int], None],
+        axis: SimAxis | None = None,
+        profile: DriveProfile = CIA402,
     ) -> None:
         self.motor = motor
         self.emergency = emergency
@@ -68,8 +74,7 @@ class SpindleDrive:
         made = axis or SimAxis("C", 1.0, 1.0, 1.0, 1.0, 1.0)
         made = replace(made, count=_TURN / max(counts, 1))
         self.slide = SpindleSlide(made, motor)
-        self.axis = AxisDrive(self.slide, emergency)
-        self.axis.unit = counts / 60.0
+        self.axis = AxisDrive(self.slide, emergency, profile, counts)
         self.power = self.axis.power
         self.mode = 0
         self.target = 0

@@ -30,6 +30,20 @@ def can_machine(*changes: tuple[str, str], absolute: bool = True) -> Machine:
     return parse_machine(text, "bench.toml")
 
 
+def cyclic(mode: str = "csp", *changes: tuple[str, str], drive: str = "cia402", **how: bool) -> Machine:
+    """The same with a setpoint every 4 ms, in ``mode``."""
+    return can_machine(
+        ('mode = "pvt"', f'mode = "{mode}"'),
+        ('drive = "epos2"', f'drive = "{drive}"'),
+        ("sync_ms = 10 ", "sync_ms = 4 "),
+        ("commit_ms = 140", "commit_ms = 30"),
+        ("low_water_ms = 200", "low_water_ms = 80"),
+        *(() if drive == "epos4" else ((", counts_per_rev = 4000", ""),)),
+        *changes,
+        **how,
+    )
+
+
 class CanBench:
     """Both ends of the bus; ``tick`` lets time pass on both."""
 

@@ -12,17 +12,18 @@ from app.compose.canopen_backend import canopen_config
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen.canopen_objects import drive_objects
+from drivers.canopen.drive_profiles import PROFILES
 from tests.drivers.canopen.bench import CanBench, can_machine
 
 
 def beside(folder: Path) -> Machine:
     """A machine file in ``folder`` whose X has an EDS file there."""
-    machine = can_machine(("X = { id = 1 }", 'X = { id = 1, eds = "x.eds" }'))
+    machine = can_machine(("X = { id = 1, counts", 'X = { id = 1, eds = "x.eds", counts'))
     return dataclasses.replace(machine, source=str(folder / "machine.toml"))
 
 
 def test_an_eds_lies_beside_the_machine_file(tmp_path: Path) -> None:
-    canopen.export_od(drive_objects(), str(tmp_path / "x.eds"), "eds")
+    canopen.export_od(drive_objects(PROFILES["epos2"]), str(tmp_path / "x.eds"), "eds")
     assert canopen_config(beside(tmp_path)).axes[0].node.eds == str(tmp_path / "x.eds")
     bench = CanBench(beside(tmp_path))
     bench.machine.axes.enable(True)

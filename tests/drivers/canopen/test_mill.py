@@ -18,6 +18,7 @@ BUS = """
 interface = "virtual"
 channel = "mill"
 mode = "pvt"
+drive = "copley"
 [canopen.nodes]
 X = { id = 1 }
 Y = { id = 2 }

@@ -1,4 +1,4 @@
-"""Drives that plan single moves, and setpoints one at a time: the modes beside PVT."""
+"""Drives that plan single moves: the mode for single moves."""
 
 from __future__ import annotations
 
@@ -50,17 +50,6 @@ def test_profile_position_refuses_a_corner() -> None:
     bent[1:, 1] = 1.0
     with pytest.raises(DriverError, match="single straight moves only"):
         axes.splice(segments._replace(p=bent))
-    bench.close()
-
-
-def test_csp_follows_where_the_machine_file_dares() -> None:
-    bench = CanBench(can_machine(('mode = "pvt"', 'mode = "csp"\nexperimental = true')))
-    axes = bench.machine.axes
-    axes.enable(True)
-    axes.splice(ramp(bench.clock.now() + 0.14, ZERO, 60.0, 0.3))
-    bench.run(1.0)
-    assert axes.sample().fault == ""
-    assert axes.sample().actual[0] == pytest.approx(60.0 * 0.32, abs=0.003)
     bench.close()
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from drivers.canopen.pvt_mode import deviation, hermite, packed, span, unpacked
+from drivers.canopen.pvt_mode import deviation, hermite, span
+from drivers.canopen.pvt_records import packed, unpacked
 
 Point = tuple[tuple[float, ...], tuple[float, ...]]
 

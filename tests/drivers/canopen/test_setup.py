@@ -13,7 +13,7 @@ from drivers.canopen import canopen_objects as od
 from drivers.clocks import StepClock
 from drivers.lookalikes.canopen_axis_drive import AxisDrive
 from drivers.lookalikes.canopen_devices import CanopenDevices
-from tests.drivers.canopen.bench import CanBench, can_machine
+from tests.drivers.canopen.bench import CanBench, can_machine, cyclic
 from tests.drivers.machines import ramp
 
 
@@ -21,14 +21,27 @@ def test_every_drive_is_told_how_to_stop_and_what_to_watch(bench: CanBench) -> N
     for name in ("X", "Z"):
         values = bench.peers.plant.drives[name].values
         assert values[od.ABORT_OPTION, 0] == 3
-        assert values[od.QUICK_OPTION, 0] == 2
         assert values[od.FAULT_OPTION, 0] == 2
         assert values[od.WINDOW, 0] == round(2.032 / 0.00127)  # .08 in
-        assert values[od.WINDOW_TIME, 0] == 20
+        assert values[od.QUICK_DECEL, 0] == 36000  # 120 in/s² and .2 in a turn are 600 turns/s²
         assert values[od.LIMITS, 2] == round((101.6 if name == "X" else 152.4) / 0.00127)
         assert values[od.IP_SUBMODE, 0] == -1
         assert values[od.HEARTBEAT, 0] == 100
         assert values[od.WATCHED, 1] == 127 << 16 | 300
+        assert (od.QUICK_OPTION, 0) not in values  # an EPOS2 has none
+
+
+def test_in_a_cyclic_mode_they_watch_setpoints_and_know_their_interval() -> None:
+    bench = CanBench(cyclic())
+    values = bench.peers.plant.drives["X"].values
+    assert values[od.QUICK_OPTION, 0] == 2
+    assert values[od.WINDOW_TIME, 0] == 20
+    assert (values[od.IP_TIME, 1], values[od.IP_TIME, 2]) == (4, -3)
+    assert values[od.SYNC_PERIOD, 0] == 4000
+    assert values[od.COMMANDED, 5] == 20
+    assert values[od.QUICK_DECEL, 0] == 2400000  # 3048 mm/s², .00127 mm
+    assert bench.machine.ports.warnings == ()
+    bench.close()
 
 
 def test_a_value_of_the_machine_file_wins() -> None:
@@ -46,23 +59,38 @@ def test_outputs_have_their_safe_state_in_the_module(bench: CanBench) -> None:
     assert values[od.ANALOG_EVENTS, 0] == 1
 
 
-def test_a_drive_without_a_time_for_its_window_is_stricter_and_that_is_told() -> None:
-    model, clock = can_machine(), StepClock()
-    peers = canopen_peers(model, clock)
-    del peers.nodes["X"].local.object_dictionary[od.WINDOW_TIME]
-    machine = canopen_machine(model, clock, peers.pump)
-    (warning,) = machine.ports.warnings
-    assert warning.startswith("X: no 6066")
-    assert peers.plant.drives["X"].values[od.WINDOW, 0] == round(2.032 / 0.00127)
-    machine.bus.close()
+def connected_without(machine: Machine, *lacking: int) -> tuple[str, ...]:
+    """What is told of X, whose firmware has not these objects."""
+    clock = StepClock()
+    peers = canopen_peers(machine, clock)
+    for index in lacking:
+        del peers.nodes["X"].local.object_dictionary[index]
+    connected = canopen_machine(machine, clock, peers.pump)
+    connected.bus.close()
     peers.close()
+    return tuple(connected.ports.warnings)
 
 
-def test_a_drive_that_cannot_be_told_what_to_do_without_us_is_refused() -> None:
+def test_all_that_a_drive_has_not_is_told_in_one_sentence_with_what_it_means() -> None:
+    (told,) = connected_without(cyclic(), od.WINDOW, od.WINDOW_TIME, od.ABORT_OPTION, od.QUICK_DECEL)
+    assert told.startswith("X: node 1 has not: 6007h what it does without this computer")
+    assert "6065h following error window: the window of this control alone watches" in told
+    assert "6066h time-out of the following error: it faults as soon as" in told
+    assert "6085h quick stop deceleration" in told
+
+
+def test_a_family_without_a_time_out_for_setpoints_says_so_of_each_drive() -> None:
+    told = connected_without(cyclic(drive="epos4"))
+    assert [each.split(":")[0] for each in told] == ["X", "Z"]
+    assert all("1400h time-out of setpoints: it stays at the last one" in each for each in told)
+
+
+def test_a_spindle_that_would_turn_on_without_us_is_refused() -> None:
     def spoil(peers: CanopenDevices) -> None:
-        del peers.nodes["X"].local.object_dictionary[od.ABORT_OPTION]
+        del peers.nodes["spindle"].local.object_dictionary[od.ABORT_OPTION]
 
-    assert "X: node 1, object 6007:0: refused by the node" in refused(spoil)
+    why = refused(spoil)
+    assert why.startswith("spindle: node 3 cannot be used here, it has not: 6007h")
 
 
 def refused(spoil: Callable[[CanopenDevices], None], machine: Machine | None = None) -> str:
@@ -120,7 +148,8 @@ def test_a_drive_that_keeps_another_value() -> None:
 
 def test_an_object_that_the_drive_does_not_have() -> None:
     machine = can_machine(('"6007:0" = 3', '"5FFF:0" = 3'))
-    assert "object 5FFF:0: refused by the node" in refused(lambda _: None, machine)
+    why = refused(lambda _: None, machine)
+    assert why.startswith("X: node 1 has no object 5FFF:0; take them out of [canopen.sdo]")
 
 
 def test_a_drive_that_does_not_come_on_is_named(bench: CanBench) -> None:

@@ -54,7 +54,7 @@ def test_one_that_is_silent_hides_no_other() -> None:
 
 
 def test_a_node_of_another_kind_is_named_with_both_profiles() -> None:
-    found = surveyed(("Z = { id = 2 }", "Z = { id = 10 }"), ("io = { id = 10,", "io = { id = 2,"))
+    found = surveyed(("Z = { id = 2,", "Z = { id = 10,"), ("io = { id = 10,", "io = { id = 2,"))
     assert "node 10 is a device of profile 401, expected 402" in found["Z"].trouble
     assert "node 2 is a device of profile 402, expected 401" in found["io"].trouble
     assert not found["X"].trouble

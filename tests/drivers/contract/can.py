@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar
 
 import can
 
+from core.machine.machine_model import Machine
 from core.ports import ALL_UNKNOWN, MachinePorts, Unknown
 from drivers.canopen.canopen_machine import CanopenMachine
 from drivers.feeder.feeder_client import Line, feeder_ports
 from drivers.feeder.feeder_server import Feeder
 from drivers.lookalikes.plant_hands import PlantHands
-from tests.drivers.canopen.bench import CanBench, can_machine
+from tests.drivers.canopen.bench import CanBench, can_machine, cyclic
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.simulated import FEEDER_FAULTS, FEEDER_WORDS, BrokenLink
 from tests.drivers.contract.world import SimWorld
@@ -24,7 +25,6 @@ _SILENT = Fault(told=0.35, rests=0.45, says="check cable and power")
 # The drives miss our heartbeat.
 _DEAF = Fault(told=0.05, rests=0.45, says="", final=True, unknown=ALL_UNKNOWN)
 _SLIDES, _TERMINALS = frozenset({Unknown.SLIDES}), frozenset({Unknown.OUTPUTS, Unknown.INPUTS})
-_ROUNDS = 2  # of the bus in a tick of the executor
 
 
 class Canopen(Rig):
@@ -52,21 +52,27 @@ class Canopen(Rig):
     }
     hold = 0.25
     runs_on = 0.14  # what is in the drives' queues
+    rounds: ClassVar[int] = 2  # of the bus in a tick of the executor
 
     def __init__(self, *, homing: bool = False, turns: bool = False) -> None:
         """``turns``: the spindle's drive counts them."""
         counted = ("spindle = { id = 3 }", "spindle = { id = 3, counts_per_rev = 4096 }")
         changes = (counted, ("encoder_ppr = 0 ", "encoder_ppr = 1024 ")) if turns else ()
-        self.bench = CanBench(can_machine(*changes, absolute=not homing))
+        self.bench = CanBench(self.made(*changes, absolute=not homing))
         self.peers, self.clock, self.machine = self.bench.peers, self.bench.clock, self.bench.model
         self.ports = self.bench.machine.ports
         self._answered, self._count = 1, 0  # the peers answer every so many rounds
         self.world = SimWorld(self.peers.machine, lambda: self.peers.plant.terminals.outputs)
 
+    @staticmethod
+    def made(*changes: tuple[str, str], absolute: bool) -> Machine:
+        """The machine file."""
+        return can_machine(*changes, absolute=absolute)
+
     def alone(self, dt: float) -> None:
         """Rounds of the bus, by the loop that owns it."""
-        for _ in range(_ROUNDS):
-            self.clock.advance(dt / _ROUNDS)
+        for _ in range(self.rounds):
+            self.clock.advance(dt / self.rounds)
             self.round()
             self._count += 1
             if self._count % self._answered == 0:
@@ -126,6 +132,28 @@ class Canopen(Rig):
         self.bench.machine.bus.bus.shutdown()
 
 
+class Csp(Canopen):
+    """Told a position at each SYNC: cyclic synchronous position."""
+
+    hold = 0.15
+    runs_on = 0.03
+    rounds = 5  # a SYNC every 4 ms, and a look between two of them
+
+    @staticmethod
+    def made(*changes: tuple[str, str], absolute: bool) -> Machine:
+        """Drives of CiA 402 alone."""
+        return cyclic("csp", *changes, absolute=absolute)
+
+
+class Interpolated(Csp):
+    """Told a position at each SYNC by 60C1h: interpolated position, as Schunk's and Pilz's drives have it."""
+
+    @staticmethod
+    def made(*changes: tuple[str, str], absolute: bool) -> Machine:
+        """Drives of CiA 402 alone."""
+        return cyclic("ip", *changes, absolute=absolute)
+
+
 @dataclass
 class CanDriven:
     """The bus as the feeder owns it."""
@@ -139,6 +167,12 @@ class CanDriven:
 
     def tick(self) -> None:
         self.machine.tick()
+
+    def wake(self) -> float | None:
+        return self.machine.wake()
+
+    def notes(self) -> Sequence[str]:
+        return self.machine.notes()
 
     def close(self) -> None:
         """The bench does."""
@@ -190,3 +224,14 @@ class FedCanopen(Canopen):
     def _gone(self, why: str) -> None:
         self.link.why = why
         self.feeder.orphaned = True
+
+
+class FedCsp(FedCanopen):
+    """Through the feeder, a setpoint each SYNC to EPOS4 drives, by their own objects."""
+
+    hold, runs_on, rounds = Csp.hold, Csp.runs_on, Csp.rounds
+
+    @staticmethod
+    def made(*changes: tuple[str, str], absolute: bool) -> Machine:
+        """Slides and spindle of one family."""
+        return cyclic("csp", *changes, drive="epos4", absolute=absolute)

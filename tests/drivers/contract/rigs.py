@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.drivers.contract.can import Canopen, FedCanopen
+from tests.drivers.contract.can import Canopen, Csp, FedCanopen, FedCsp, Interpolated
 from tests.drivers.contract.grbl import Grblhal
 from tests.drivers.contract.inverters import DeltaVfdB, HitachiWj200, HuanyangHy
 from tests.drivers.contract.rig import Rig
@@ -13,6 +13,9 @@ RIGS: dict[str, type[Simulated | Fed | Canopen | FedCanopen | Grblhal]] = {
     "fed": Fed,
     "canopen": Canopen,
     "fed canopen": FedCanopen,
+    "csp": Csp,
+    "fed csp": FedCsp,
+    "interpolated": Interpolated,
     "grblhal": Grblhal,
     "delta": DeltaVfdB,
     "hitachi": HitachiWj200,

@@ -118,6 +118,12 @@ class SimDriven:
     def tick(self) -> None:
         self.ports.axes.sample()
 
+    def wake(self) -> None:
+        """Every few milliseconds."""
+
+    def notes(self) -> tuple[str, ...]:
+        return ()
+
     def close(self) -> None:
         """Nothing to let go."""
 

@@ -1,0 +1,131 @@
+"""Drives as they are sold: the few facts of each family that its EDS does not say.
+
+Objects and data types are those of the vendors' EDS files and manuals: maxon EPOS2 and EPOS4, Copley Accelnet
+and Xenus; everything else is a drive of CiA 402 alone, as Schunk's and Pilz's are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple
+
+
+class Entry(NamedTuple):
+    """An object that a PDO carries."""
+
+    object: int
+    sub: int
+    bits: int
+    signed: bool = False
+
+
+class Records(Enum):
+    """How a queue of position, velocity and time takes its records."""
+
+    EPOS2 = "20C1"
+    COPLEY = "2010"
+
+
+INPUTS = Entry(0x60FD, 0, 32)
+
+
+class Queue(NamedTuple):
+    """A queue in the drive: the object its records go to, sub-mode in 0x60C0, records it may be given."""
+
+    records: Records
+    object: int
+    submode: int
+    most: int
+
+
+@dataclass(frozen=True, slots=True)
+class DriveProfile:
+    """``rpm``: it counts speeds in rpm and accelerations in rpm/s, and so needs its counts a turn."""
+
+    name: str
+    title: str
+    rpm: bool = False
+    modes: int = 0  # bits of 0x6502 that it has whatever it says there
+    inputs: Entry = INPUTS  # digital inputs
+    home_place: int = 0x607C  # what it shall count at home
+    queue: Queue | None = None
+    units: tuple[tuple[int, int, int], ...] = ()  # written first, so that it counts as is said here
+    vendor: int = 0  # of its EDS, with words of the product's name
+    words: tuple[str, ...] = ()
+
+
+_MAXON, _COPLEY = 0x000000FB, 0x000000AB
+CIA402 = DriveProfile("cia402", "a drive of CiA 402")
+PROFILES = {
+    profile.name: profile
+    for profile in (
+        CIA402,
+        DriveProfile(
+            "epos2",
+            "maxon EPOS2",
+            rpm=True,
+            inputs=Entry(0x2071, 1, 16),
+            queue=Queue(Records.EPOS2, 0x20C1, -1, 56),  # it takes 64
+            vendor=_MAXON,
+            words=("EPOS2",),
+        ),
+        DriveProfile(
+            "epos4",
+            "maxon EPOS4",
+            rpm=True,
+            modes=0x01 | 0x04 | 0x20 | 0x80,  # PP, PV, homing, CSP
+            home_place=0x30B0,
+            # positions in increments, speeds in rpm, accelerations in rpm/s: their SI units
+            units=((0x60A8, 0, 0x00B50000), (0x60A9, 0, 0x00B44700), (0x60AA, 0, 0x00C00300)),
+            vendor=_MAXON,
+            words=("EPOS4",),
+        ),
+        DriveProfile(
+            "copley",
+            "Copley Accelnet or Xenus",
+            queue=Queue(Records.COPLEY, 0x2010, -2, 26),  # it takes 32
+            vendor=_COPLEY,
+        ),
+    )
+}
+QUEUED = tuple(name for name, profile in PROFILES.items() if profile.queue is not None)
+IN_RPM = tuple(name for name, profile in PROFILES.items() if profile.rpm)
+
+
+def profile_of(name: str, vendor: int | None, product: str | None) -> DriveProfile:
+    """By the name in the machine file; without one, by what the EDS file says of itself."""
+    if name:
+        return PROFILES[name]
+    for profile in PROFILES.values():
+        named = not profile.words or any(word in (product or "").upper() for word in profile.words)
+        if profile.vendor and profile.vendor == vendor and named:
+            return profile
+    return CIA402
+
+
+WITHOUT = {
+    0x1006: "SYNC period: it does not notice a SYNC that is missing",
+    0x1016: "watched heartbeat: it does not notice that this computer is silent",
+    0x1017: "heartbeat: only its missing answers to SYNC tell that it is gone",
+    0x1029: "what it does on an error of the bus: the drive's own setting",
+    0x1400: "time-out of setpoints: it stays at the last one until it misses our third heartbeat",
+    0x605A: "quick stop option: it stops as it is set itself",
+    0x605E: "fault reaction: it reacts as it is set itself",
+    0x6007: "what it does without this computer: nothing is said, so its enable needs a watchdog relay",
+    0x6065: "following error window: the window of this control alone watches",
+    0x6066: "time-out of the following error: it faults as soon as the window is left",
+    0x607C: "home offset: home is where the drive counts 0",
+    0x607D: "software limits: those of this control alone hold",
+    0x6083: "profile acceleration: the drive's own setting",
+    0x6084: "profile deceleration: it brakes as it accelerates",
+    0x6085: "quick stop deceleration: it brakes as it is set itself",
+    0x6099: "homing speeds: the drive's own setting",
+    0x609A: "homing acceleration: the drive's own setting",
+    0x60A8: "unit of positions: the drive's own setting",
+    0x60A9: "unit of speeds: the drive's own setting",
+    0x60AA: "unit of accelerations: the drive's own setting",
+    0x60C0: "sub-mode of interpolation: the drive's own setting",
+    0x60C2: "interpolation time: it must be set to sync_ms by the vendor's tool",
+}
+"""What it means that a drive has no such object, where it can be done without."""

@@ -1,0 +1,243 @@
+"""A setpoint each SYNC: CSP and interpolated position by 60C1h, on time, late, missing, and between modes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from core.ports import Stop
+from drivers.canopen import canopen_objects as od
+from drivers.canopen.cyclic_mode import SyncSchedule
+from tests.drivers.canopen.bench import CanBench, cyclic
+from tests.drivers.machines import ramp
+
+ZERO = (0.0, 0.0, 0.0)
+TICK = 0.002
+
+
+@pytest.fixture(params=["csp", "ip", "epos4"])
+def bench(request: pytest.FixtureRequest) -> Iterator[CanBench]:
+    """CiA 402 drives in both modes, and EPOS4 by its own objects."""
+    family = "epos4" if request.param == "epos4" else "cia402"
+    found = CanBench(cyclic("csp" if family == "epos4" else request.param, drive=family))
+    yield found
+    found.close()
+
+
+def run(bench: CanBench, seconds: float) -> None:
+    for _ in range(round(seconds / TICK)):
+        bench.tick(TICK)
+
+
+def test_a_path_is_followed_to_a_count_and_arrives(bench: CanBench) -> None:
+    """The drive's own demand against the path, one SYNC of 4 ms and one of the wire behind."""
+    axes, drive = bench.machine.axes, bench.peers.plant.drives["X"]
+    axes.enable(True)
+    start = bench.clock.now() + 0.05
+    axes.splice(ramp(start, ZERO, 60.0, 0.3))  # up in .02 s at 3000 mm/s²
+    worst = 0.0
+    for _ in range(300):
+        bench.tick(TICK)
+        t = bench.clock.now() - start
+        if 0.05 < t < 0.25:
+            worst = max(worst, abs(drive.p - (0.6 + 60.0 * (t - 0.02))))
+    assert worst < 60.0 * TICK + 0.00127
+    run(bench, 0.3)
+    sample = axes.sample()
+    assert sample.fault == ""
+    assert not sample.moving
+    assert sample.actual[0] == pytest.approx(60.0 * 0.32, abs=0.0013)
+    assert abs(sample.following_error[0]) < 0.0013
+
+
+def test_following_error_is_the_lag_of_the_slide_alone(bench: CanBench) -> None:
+    """2(1 - .9) v/wn with wn = 2 pi 40 is .048 mm at 60 mm/s; a SYNC more or less of it would be .24 mm."""
+    axes = bench.machine.axes
+    axes.enable(True)
+    axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 60.0, 0.5))
+    run(bench, 0.3)
+    assert abs(axes.sample().following_error[0]) == pytest.approx(0.048, abs=0.13)
+
+
+def test_hold_brakes_on_the_path(bench: CanBench) -> None:
+    axes = bench.machine.axes
+    axes.enable(True)
+    axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 120.0, 0.5))
+    run(bench, 0.3)
+    asked = bench.clock.now()
+    axes.stop(Stop.RAMP_HOLD)
+    while axes.sample().moving:
+        bench.tick(TICK)
+    # 30 ms of commit, 120/3048 s of braking, two SYNCs, the slide's own lag, 10 ms to see that it stands
+    assert bench.clock.now() - asked < 0.125
+    assert axes.sample().fault == ""
+    assert axes.sample().enabled
+
+
+def test_a_late_sync_is_made_good_without_a_leap(bench: CanBench) -> None:
+    axes, drive = bench.machine.axes, bench.peers.plant.drives["X"]
+    axes.enable(True)
+    axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 60.0, 0.6))
+    run(bench, 0.3)
+    for _ in range(4):  # nobody feeds for 8 ms, two SYNCs
+        bench.clock.advance(TICK)
+        bench.peers.pump()
+    fastest = 0.0
+    for _ in range(200):
+        bench.tick(TICK)
+        fastest = max(fastest, abs(drive.v))
+    assert fastest < 60.0 * 1.03  # a leap over what was missed would be 180
+    assert bench.machine.notes() or bench.machine.axes.follower.lag == 0.0  # type: ignore[attr-defined]
+    run(bench, 0.5)
+    sample = axes.sample()
+    assert sample.fault == ""
+    assert sample.actual[0] == pytest.approx(60.0 * 0.62, abs=0.0013)
+
+
+def test_setpoints_away_for_longer_are_a_fault_that_stops_all(bench: CanBench) -> None:
+    axes, plant = bench.machine.axes, bench.peers.plant
+    axes.enable(True)
+    axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 60.0, 0.6))
+    run(bench, 0.3)
+    for _ in range(8):  # 16 ms; the drives themselves would wait for 20
+        bench.clock.advance(TICK)
+        bench.peers.pump()
+    run(bench, 0.3)
+    assert "ms late" in axes.sample().fault
+    assert not any(drive.power.powered for drive in plant.drives.values())
+    assert plant.servos[0].v == 0.0
+
+
+def test_away_at_rest_is_nothing(bench: CanBench) -> None:
+    axes = bench.machine.axes
+    axes.enable(True)
+    run(bench, 0.2)
+    for _ in range(8):
+        bench.clock.advance(TICK)
+        bench.peers.pump()
+    run(bench, 0.3)
+    assert axes.sample().fault == ""
+    assert axes.sample().enabled
+
+
+def test_a_silent_computer_stops_the_drives_by_their_own_time_out() -> None:
+    bench = CanBench(cyclic())
+    axes, plant = bench.machine.axes, bench.peers.plant
+    axes.enable(True)
+    axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 60.0, 0.6))
+    run(bench, 0.3)
+    silent = bench.clock.now()
+    while any(drive.power.powered for drive in plant.drives.values()):
+        bench.clock.advance(TICK)
+        bench.peers.pump()
+    assert bench.clock.now() - silent < 0.2  # 20 ms of time-out and the ramp: our third heartbeat is at 300
+    bench.close()
+
+
+def test_without_a_time_out_they_stay_at_the_last_setpoint_until_the_heartbeat_is_missed() -> None:
+    bench = CanBench(cyclic(drive="epos4"))
+    axes, plant = bench.machine.axes, bench.peers.plant
+    axes.enable(True)
+    axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 60.0, 0.6))
+    run(bench, 0.3)
+    before = bench.peers.machine.true_position()[0]
+    for _ in range(300):
+        bench.clock.advance(TICK)
+        bench.peers.pump()
+    assert bench.peers.machine.true_position()[0] - before < 60.0 * 0.02  # two setpoints and the braking
+    assert not any(drive.power.powered for drive in plant.drives.values())
+    bench.close()
+
+
+def test_homing_leaves_no_old_target_behind() -> None:
+    """Its count leaps at home; a setpoint of before would send it back over the whole way."""
+    bench = CanBench(cyclic("csp", drive="epos4", absolute=False))
+    axes, drive = bench.machine.axes, bench.peers.plant.drives["Z"]
+    axes.enable(True)
+    run(bench, 0.1)
+    axes.home("Z")
+    fastest, fault = 0.0, ""
+    for _ in range(20000):
+        bench.tick(TICK)
+        fastest = max(fastest, abs(drive.v))
+        fault = axes.sample().fault
+        if axes.sample().homed[1] or fault:
+            break
+    run(bench, 0.3)
+    assert axes.sample().homed[1], fault
+    assert fastest < 26.0  # 60 in/min are 25.4 mm/s
+    assert axes.sample().actual[1] == pytest.approx(0.0, abs=0.002)
+    assert drive.values[0x6099, 1] == 300  # rpm: 60 in/min, .2 in a turn
+    bench.close()
+
+
+def test_a_slide_that_was_moved_without_power_stays_where_it_is(bench: CanBench) -> None:
+    axes, plant = bench.machine.axes, bench.peers.plant
+    axes.enable(True)
+    run(bench, 0.1)
+    axes.enable(False)
+    run(bench, 0.1)
+    plant.servos[0].push(3.0)
+    run(bench, 0.1)
+    axes.enable(True)
+    run(bench, 0.2)
+    assert bench.peers.machine.true_position()[0] == pytest.approx(3.0, abs=0.002)
+    assert axes.sample().fault == ""
+
+
+def test_a_drive_that_does_not_interpolate_is_told() -> None:
+    bench = CanBench(cyclic("ip"))
+    drive = bench.peers.plant.drives["X"]
+    drive._cyclic = lambda: False  # type: ignore[method-assign]
+    bench.machine.axes.enable(True)
+    run(bench, 0.5)
+    assert bench.machine.axes.sample().fault == "X: the drive does not interpolate"
+    bench.close()
+
+
+def test_a_setpoint_goes_out_before_its_sync_and_none_twice(bench: CanBench) -> None:
+    """On the wire: SYNC, then each drive's command once, every 4 ms."""
+    frames: list[int] = []
+    pump = bench.peers.network.bus
+    assert pump is not None
+    receive = pump.recv
+
+    def heard(timeout: float) -> object:
+        message = receive(timeout)
+        if message is not None and message.arbitration_id in {0x80, 0x201, 0x202}:
+            frames.append(message.arbitration_id)
+        return message
+
+    pump.recv = heard  # type: ignore[method-assign, assignment]
+    bench.machine.axes.enable(True)
+    run(bench, 0.1)
+    frames.clear()
+    run(bench, 0.4)
+    assert frames.count(0x80) == 100
+    start = frames.index(0x80)
+    rounds = [frames[i : i + 3] for i in range(start, len(frames) - 2, 3)]
+    assert all(each == [0x80, 0x201, 0x202] for each in rounds)
+
+
+def test_the_beat_is_kept_whatever_came_late() -> None:
+    schedule = SyncSchedule(0.002, 10.0)
+    assert schedule.sent(10.0) == 0.0
+    assert schedule.sent(10.0024) == 0.0  # a fifth of a period late
+    assert schedule.due == pytest.approx(10.004)
+    assert schedule.sent(10.0101) == pytest.approx(0.0057)
+    assert schedule.due == pytest.approx(10.012)
+    assert schedule.worst == pytest.approx(0.0061)
+    assert schedule.sent(10.0121) == 0.0  # as late as the last: an interval of a period
+
+
+def test_a_beat_that_is_always_late_by_the_same_keeps_nobody_waiting() -> None:
+    schedule = SyncSchedule(0.002, 0.0)
+    assert schedule.sent(0.001) == pytest.approx(0.001)
+    assert all(schedule.sent(0.001 + 0.002 * n) == pytest.approx(0.0, abs=1e-12) for n in range(1, 50))
+
+
+def test_drive_time_outs_are_written_where_they_are() -> None:
+    bench = CanBench(cyclic())
+    assert bench.peers.plant.drives["Z"].values[od.SYNC_PERIOD, 0] == 4000
+    bench.close()
