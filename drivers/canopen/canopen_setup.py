@@ -164,6 +164,22 @@ class Setup:
                 "drive-setup",
             )
 
+    def demand_turn(self, counts: int) -> None:
+        """Are there so many counts in a turn of its motor, by its gear and feed? Raises DriverError."""
+        places = [(od.GEAR, 1), (od.GEAR, 2), (od.FEED, 1), (od.FEED, 2)]
+        if not all(self.has(*place) for place in places):
+            return
+        motor, shaft, feed, turns = [self.read(*place) for place in places]
+        if not (motor and shaft and feed and turns):
+            return
+        found = feed * shaft / (turns * motor)
+        if abs(found - counts) > 0.5:
+            raise DriverError(
+                f"{self._name}: a turn of the motor is {found:g} counts by the drive (6091h, 6092h),"
+                f" canopen.nodes.{self._name}.counts_per_rev says {counts}",
+                "drive-setup",
+            )
+
     def entries(self, index: int) -> int:
         """How many entries an array of the node has; 0 where the node has no such object."""
         return self.read(index, 0) if self.has(index, 0) else 0

@@ -267,7 +267,9 @@ class DrivenAxis:
     def __post_init__(self) -> None:
         """The queue of its drive."""
         queue = self.config.profile.queue
-        self.records = RecordQueue(self.config, self.drive, queue) if queue is not None else None
+        self.records = None
+        if queue is not None:
+            self.records = RecordQueue(self.config, queue, self.drive.setup, self.drive.push)
 
     @property
     def ready(self) -> bool:
@@ -427,6 +429,8 @@ class DriveSet:
             period=self._bus.config.sync if how.cyclic else 0.0,
         )
         axis.drive.connect(work)
+        if config.counts_per_rev:
+            axis.drive.setup.demand_turn(config.counts_per_rev)
         if not config.absolute:
             axis.drive.setup.demand_homing(config.home_method)
         axis.homed, axis.last = config.absolute, axis.drive.position

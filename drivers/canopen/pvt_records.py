@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import struct
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_config import AxisConfig
+from drivers.canopen.canopen_setup import Setup
 from drivers.canopen.drive_profiles import Queue, Records
-
-if TYPE_CHECKING:
-    from drivers.canopen.cia402_drives import Drive402
 
 _RECORD = struct.Struct("<i")
 _TOP = 2**23 - 1  # of 24 bits with a sign
@@ -54,30 +52,30 @@ def unpacked_segment(data: bytes) -> tuple[int, int, float, int]:
 class RecordQueue:
     """The queue of one drive. ``push`` raises ValueError for what its records cannot carry."""
 
-    def __init__(self, config: AxisConfig, drive: Drive402, queue: Queue) -> None:
-        self._config, self._drive = config, drive
+    def __init__(self, config: AxisConfig, queue: Queue, setup: Setup, send: Callable[[bytes], None]) -> None:
+        """``send`` brings a record to the drive at once."""
+        self._config, self._setup, self._send = config, setup, send
         self.queue = queue
         self._pushed = 0
 
     def clear(self) -> None:
         """Nothing old is played. Raises DriverError."""
-        setup = self._drive.setup
         self._pushed = 0
         if self.queue.records is Records.COPLEY:
             for order in (_CLEAR, _COUNT_ANEW):
-                setup.write_bytes(self.queue.object, 0, bytes([order]) + bytes(7))
+                self._setup.write_bytes(self.queue.object, 0, bytes([order]) + bytes(7))
         else:
             for clear in (0, 1):
-                setup.write(od.BUFFER, 6, clear)
+                self._setup.write(od.BUFFER, 6, clear)
 
     def push(self, ms: int, velocity: float, position: float) -> None:
         """One more record; mm or degrees, and their speed."""
-        config, drive = self._config, self._drive
+        config = self._config
         place = position / config.count
         if self.queue.records is Records.COPLEY:
-            drive.push(segment(self._pushed, ms, velocity / config.count, place))
+            self._send(segment(self._pushed, ms, velocity / config.count, place))
         else:
-            drive.push(packed(ms, config.velocity(velocity), place))
+            self._send(packed(ms, config.velocity(velocity), place))
         self._pushed += 1
 
 

@@ -233,3 +233,28 @@ def test_a_fault_of_one_drive_stops_the_other_within_a_round_of_the_bus(bench: C
     bench.run(0.3)
     assert "X: drive fault" in axes.sample().fault
     assert plant.servos[1].v == 0.0
+
+
+def told_by(machine: Machine, values: dict[tuple[int, int], int]) -> str:
+    """Why a machine is refused whose X says these values."""
+
+    def spoil(peers: CanopenDevices) -> None:
+        read = drive(peers, "X").read
+        peers.nodes["X"].device.read = (  # type: ignore[method-assign]
+            lambda index, sub: values.get((index, sub), read(index, sub))
+        )
+
+    return refused(spoil, machine)
+
+
+def test_a_turn_of_the_motor_is_what_gear_and_feed_say() -> None:
+    geared = {(od.GEAR, 1): 3, (od.GEAR, 2): 1, (od.FEED, 1): 30000, (od.FEED, 2): 1}
+    machine = cyclic("csp", ("X = { id = 1 }", "X = { id = 1, counts_per_rev = 4000 }"))
+    why = told_by(machine, geared)
+    assert "a turn of the motor is 10000 counts by the drive (6091h, 6092h)" in why
+
+
+def test_a_homing_method_that_the_drive_does_not_list() -> None:
+    listed = {(od.HOME_METHODS, 0): 2, (od.HOME_METHODS, 1): 37, (od.HOME_METHODS, 2): 18}
+    why = told_by(cyclic("csp", absolute=False), listed)
+    assert "the drive has no homing method 1 (60E3h: 18, 37); see axis.X.home" in why

@@ -1,0 +1,141 @@
+"""Families of drives: found by name or EDS, units, records, and the load of the bus, by hand."""
+
+from __future__ import annotations
+
+import pytest
+
+import resources
+from app.compose.machine_files import parse_machine
+from core.ports import Segments
+from core.table_schema import MachineFileError
+from drivers.canopen.bus_load import cyclic_load, frame_bits
+from drivers.canopen.canopen_config import AxisConfig
+from drivers.canopen.canopen_objects import drive_objects
+from drivers.canopen.drive_profiles import CIA402, PROFILES, profile_of
+from drivers.canopen.pvt_records import segment, unpacked_segment
+from tests.drivers.canopen.bench import CanBench, can_machine, cyclic
+from tests.drivers.machines import ramp
+
+
+@pytest.mark.parametrize(
+    ("name", "vendor", "product", "family"),
+    [
+        ("", 0xFB, "EPOS4 Module 50/15", "epos4"),
+        ("", 0xFB, "EPOS2 50/5", "epos2"),
+        ("", 0xFB, "EPOS 70/10", "cia402"),  # the first EPOS is neither
+        ("", 0xAB, None, "copley"),
+        ("", None, None, "cia402"),
+        ("epos2", 0xFB, "EPOS4 70/15", "epos2"),  # the machine file decides
+    ],
+)
+def test_family_by_name_or_by_eds(name: str, vendor: int | None, product: str | None, family: str) -> None:
+    assert profile_of(name, vendor, product).name == family
+
+
+@pytest.mark.parametrize(
+    ("family", "has", "has_not"),
+    [
+        ("cia402", {0x6007, 0x6065, 0x60C1, 0x60E3}, {0x20C1, 0x2010}),
+        ("epos2", {0x20C1, 0x2071, 0x6007, 0x6065}, {0x60F4, 0x60FD, 0x605A, 0x6066, 0x60C1}),
+        ("epos4", {0x60A9, 0x30B0, 0x60C2, 0x60FD}, {0x607C, 0x60C1, 0x1006}),
+        ("copley", {0x2010, 0x60C1}, {0x20C1}),
+    ],
+)
+def test_what_a_family_has(family: str, has: set[int], has_not: set[int]) -> None:
+    objects = drive_objects(PROFILES[family])
+    assert has <= set(objects)
+    assert not has_not & set(objects)
+
+
+def axis(family: str, counts_per_rev: int) -> AxisConfig:
+    return AxisConfig(
+        "X", 127.0, 3048.0, 0.00127, 2.0, 0.02, profile=PROFILES[family], counts_per_rev=counts_per_rev
+    )
+
+
+def test_speeds_go_out_in_the_drives_units() -> None:
+    """25.4 mm/s are 20 000 counts/s, five turns of 4000 a second; 3048 mm/s² are 2.4 million counts/s²."""
+    assert axis("cia402", 0).velocity(25.4) == pytest.approx(20000.0)
+    assert axis("epos4", 4000).velocity(25.4) == pytest.approx(300.0)
+    assert axis("cia402", 0).acceleration(3048.0) == 2_400_000
+    assert axis("epos4", 4000).acceleration(3048.0) == 36_000
+    assert axis("cia402", 4000).acceleration(3048.0) == 2_400_000
+    assert axis("epos4", 4000).acceleration(0.0) == 1
+
+
+def test_a_segment_of_copley_by_its_bytes() -> None:
+    data = segment(11, 20, -1234.5, -5)
+    # count 11 goes round at 8; 20 ms; -5 and -12345 tenths in 24 bits, low byte first
+    assert data == bytes([3, 20, 0xFB, 0xFF, 0xFF, 0xC7, 0xCF, 0xFF])
+    assert unpacked_segment(data) == (3, 20, -1234.5, -5)
+    with pytest.raises(ValueError, match="does not fit"):
+        segment(0, 20, 0.0, 2**23)
+    with pytest.raises(ValueError, match="does not fit"):
+        segment(0, 20, 838_861.0, 0)
+
+
+def test_copleys_queue_goes_the_same_path() -> None:
+    bench = CanBench(can_machine(('drive = "epos2"', 'drive = "copley"'), (", counts_per_rev = 4000", "")))
+    axes = bench.machine.axes
+    axes.enable(True)
+    axes.splice(ramp(bench.clock.now() + 0.14, (0.0, 0.0, 0.0), 60.0, 0.4))
+    bench.run(1.2)
+    sample = axes.sample()
+    assert sample.fault == ""
+    assert sample.actual[0] == pytest.approx(60.0 * 0.42, abs=0.0013)
+    segments: Segments = ramp(bench.clock.now() + 0.14, (60.0 * 0.42, 0.0, 0.0), -60.0, 0.4)
+    bench.run(1.0)
+    axes.splice(segments._replace(t=segments.t + 1.0))
+    bench.run(1.5)
+    assert axes.sample().fault == ""
+    assert axes.sample().actual[0] == pytest.approx(0.0, abs=0.0013)
+    bench.close()
+
+
+def test_load_of_the_bus_by_hand() -> None:
+    # 47 + 8n + floor((34 + 8n - 1)/4): 55, 125 and 135 bits
+    assert [frame_bits(n) for n in (0, 7, 8)] == [55, 125, 135]
+    load = cyclic_load(2, 2, 1_000_000, 0.001, 10)
+    assert load.each == 55 + 2 * 250
+    assert load.seldom == (2 * 135 + 4 * 135) / 10
+    assert load.share == pytest.approx(0.636)
+    assert load.fits
+    assert not cyclic_load(3, 0, 1_000_000, 0.001, 10).fits  # 80 % and the seldom ones
+    assert cyclic_load(3, 0, 1_000_000, 0.002, 5).fits
+
+
+def refused(*changes: tuple[str, str]) -> str:
+    text = resources.machine_file("gt75-canopen.toml")
+    for old, new in (('mode = "pvt"', 'mode = "csp"'), ('drive = "epos2"', 'drive = "epos4"'), *changes):
+        assert old in text
+        text = text.replace(old, new)
+    with pytest.raises(MachineFileError) as caught:
+        parse_machine(text, "m.toml")
+    return str(caught.value)
+
+
+def test_a_bus_without_room_is_refused_with_the_interval_that_fits() -> None:
+    slow = refused(("sync_ms = 10 ", "sync_ms = 1 "), ("bitrate = 1000000\n", "bitrate = 500000\n"))
+    assert "canopen.sync_ms" in slow
+    assert "2 drives take 127% of 500000 bit/s" in slow
+    assert "expected 2 or more" in slow
+
+
+def test_setpoints_come_in_whole_milliseconds_and_ahead_of_their_time() -> None:
+    assert "whole milliseconds: 60C2" in refused(("sync_ms = 10 ", "sync_ms = 2.5 "))
+    assert "machine.commit_ms = 19: expected 20 or more" in refused(
+        ("sync_ms = 10 ", "sync_ms = 2 "),
+        ("commit_ms = 140", "commit_ms = 19"),
+        ("lease_ms = 200", "lease_ms = 90"),
+    )
+
+
+def test_a_family_is_that_of_the_node_before_that_of_all() -> None:
+    bench = CanBench(
+        cyclic("csp", ("Z = { id = 2 }", 'Z = { id = 2, drive = "epos4", counts_per_rev = 4000 }'))
+    )
+    drives = bench.machine.axes.drives.axes
+    assert [axis.drive.profile.name for axis in drives] == ["cia402", "epos4"]
+    assert bench.peers.plant.drives["Z"].values[0x60A9, 0] == 0x00B44700
+    assert CIA402.units == ()
+    bench.close()
