@@ -90,8 +90,6 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
     except SourceError as error:
         # The screen calls a program by its name; a script that proves many needs the folder too.
         raise CommandError(str(error).replace(path.name, str(path), 1)) from error
-    if dialect is not Dialect.SINUMERIK:
-        return source
-    from core.language.sinumerik.subprogram_files import with_subprograms
+    from core.language.called_files import with_called_files
 
-    return with_subprograms(source, [path.parent])
+    return with_called_files(source, [path.parent])

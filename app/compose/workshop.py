@@ -28,7 +28,7 @@ from core.interpreter.job_setup import ToolOffset
 from core.interpreter.modal_state import Modal
 from core.interpreter.restart.restart_approach import Choices
 from core.language.diagnostics import Diagnostic
-from core.language.source import Dialect, Source, SourceError, load_source
+from core.language.source import Source, SourceError, load_source
 from core.machine.machine_model import Machine
 from core.proving.proof_report import Report
 
@@ -138,11 +138,9 @@ def _read(path: Path) -> Source:
 
 def _whole(source: Source, *folders: Path) -> Source:
     """With the subprograms that it calls: from beside it, or from where programs are kept."""
-    if source.dialect is not Dialect.SINUMERIK or source.subprograms:
-        return source
-    from core.language.sinumerik.subprogram_files import with_subprograms
+    from core.language.called_files import with_called_files
 
-    return with_subprograms(source, [*folders, data_folder() / "programs", samples()])
+    return with_called_files(source, [*folders, data_folder() / "programs", samples()])
 
 
 # --- From what proving reports to what the executor demands before it starts.

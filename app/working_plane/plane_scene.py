@@ -5,6 +5,7 @@ Points are in the workpiece's system, so that they turn with the table; mm.
 
 from __future__ import annotations
 
+import math
 from array import array
 from bisect import bisect_right
 from dataclasses import dataclass, field
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from core.geometry.plane_arcs import HelixMove
 from core.geometry.rotation_frames import applied, plus
 from core.interpreter.elementary_blocks import Kind
 
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
     from core.interpreter.working_plane import Corners, Swivel
 
 FloatArray = npt.NDArray[np.float64]
+_CHORD = 6.0  # degrees of an arc that are drawn as one line
 _EMPTY: Corners = ((-20.0, -20.0, -20.0), (20.0, 20.0, 0.0))
 
 
@@ -82,7 +85,8 @@ class SceneBuilder:
         elif block.moves:
             if not self._ink:
                 self._to(_on_part(swivel, swivel.start), Ink.LIFTED, block.n)
-            self._to(_on_part(swivel, swivel.end), Ink.RAPID if block.rapid else Ink.CUT, block.n)
+            for point in _on_the_way(block, swivel):
+                self._to(_on_part(swivel, point), Ink.RAPID if block.rapid else Ink.CUT, block.n)
 
     def scene(self) -> Scene | None:
         """What was collected; None where no block stood in a plane."""
@@ -103,6 +107,17 @@ class SceneBuilder:
         self._points.extend(point)
         self._ink.append(ink)
         self._block.append(block)
+
+
+def _on_the_way(block: Block, swivel: Swivel) -> list[Vector]:
+    """Points of the working plane up to the end of a block: of an arc as many as the eye asks for."""
+    way = None if block.travel is None else block.travel.way
+    if not isinstance(way, HelixMove):
+        return [swivel.end]
+    count = max(1, math.ceil(abs(math.degrees(way.arc.sweep)) / _CHORD))
+    share = np.arange(1, count) / count
+    between = [(x, y, z) for x, y, z in way.part(way.machine(share)).tolist()]
+    return [*between, swivel.end]
 
 
 def _on_part(swivel: Swivel, q: Vector) -> Vector:

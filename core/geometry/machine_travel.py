@@ -7,16 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from core.geometry.plane_arcs import HelixMove
 from core.geometry.rotary_axes import PivotMove
 from core.geometry.virtual_mill import PlaneMove
 
 FloatArray = npt.NDArray[np.float64]
 
 
-CurvedMove = PivotMove | PlaneMove
+CurvedMove = HelixMove | PivotMove | PlaneMove
 """A way on which the axes do not run in proportion, unless it is ``straight`` after all.
 
-Both tell ``length`` (what the feed counts: mm, or degrees where only rotary axes are meant), ``machine``
+All tell ``length`` (what the feed counts: mm, or ``in_degrees`` where rotary axes are meant), ``machine``
 positions (k, axes) at fractions (k,) from 0 to 1, without a jump, where the tool is on the ``part`` (k, 3) at
 machine positions, and the fraction ``nearest`` to where the axes turn most for the way.
 """

@@ -182,7 +182,8 @@ FloatArray = npt.NDArray[np.float64]
 @dataclass(frozen=True, slots=True)
 class PivotMove:
     """From the angles ``start`` to ``end`` in proportion; ``pivot`` stays (mm, machine-parallel system at the
-    workpiece's zero), ``distance`` mm below the tip along the tool. ``length`` in degrees.
+    workpiece's zero), ``distance`` mm below the tip along the tool, and ``length`` is in degrees. With
+    ``pivot_end`` it goes straight there, and ``length`` is in mm.
     """
 
     kinematics: Kinematics
@@ -192,6 +193,12 @@ class PivotMove:
     distance: float
     tool_length: float
     length: float
+    pivot_end: Vector | None = None
+
+    @property
+    def in_degrees(self) -> bool:
+        """Whether the feed counts degrees: the pivot stands."""
+        return self.pivot_end is None
 
     @property
     def straight(self) -> bool:
@@ -203,11 +210,18 @@ class PivotMove:
         at: dict[str, FloatArray] = {
             name: start + share * (self.end[name] - start) for name, start in self.start.items()
         }
-        slides = _carried_by_tables(self.kinematics, at, plus(self.kinematics.origin, self.pivot))
+        first, last = np.array(self.pivot), np.array(self.pivot_end or self.pivot)
+        spots = np.array(self.kinematics.origin) + first + share[:, np.newaxis] * (last - first)
+        slides = _carried_by_tables(self.kinematics, at, spots)
         slides = slides - _noses(self.kinematics, at, self.tool_length + self.distance)
         at |= {"X": slides[:, 0], "Y": slides[:, 1], "Z": slides[:, 2]}
         rows: FloatArray = np.stack([at[name] for name in self.kinematics.names], axis=1)
         return rows
+
+    def goals(self) -> dict[str, float]:
+        """Machine positions of all axes at the end, by name."""
+        there = dict(zip(self.kinematics.names, self.machine(np.ones(1))[0].tolist(), strict=True))
+        return {**there, **self.end}
 
     def part(self, points: FloatArray) -> FloatArray:
         """Where the tip is on the workpiece (k, 3), mm, at machine positions (k, axes)."""
@@ -225,9 +239,8 @@ class PivotMove:
         return 0.5
 
 
-def _carried_by_tables(machine: Kinematics, at: Mapping[str, FloatArray], spot: Vector) -> FloatArray:
-    """Where the tables at these angles (k,) bring a machine-parallel point at 0: (k, 3) or one row, mm."""
-    spots: FloatArray = np.array([spot])
+def _carried_by_tables(machine: Kinematics, at: Mapping[str, FloatArray], spots: FloatArray) -> FloatArray:
+    """Where the tables at these angles (k,) bring machine-parallel points (k, 3) at 0: (k, 3), mm."""
     for axis in machine.rotaries:
         if axis.table:
             spots = _carried(axis, -at[axis.name], spots)

@@ -120,6 +120,40 @@ def from_spatial(a: float, b: float, c: float) -> Matrix:
     return product(turned(Z_AXIS, c), turned(Y_AXIS, b), turned(X_AXIS, a))
 
 
+def from_euler(precession: float, nutation: float, rotation: float) -> Matrix:
+    """Turned about Z, then about the turned X', then about the tilted Z'."""
+    return product(turned(Z_AXIS, precession), turned(X_AXIS, nutation), turned(Z_AXIS, rotation))
+
+
+def from_vectors(base: Vector, normal: Vector) -> Matrix:
+    """Z' along ``normal``, X' along what of ``base`` is square to it.
+
+    Raises NoFrameError where one of them has no length, or both have one direction.
+    """
+    long, wide = math.hypot(*normal), math.hypot(*base)
+    if long < SHORTEST or wide < SHORTEST:
+        raise NoFrameError("a vector has no length")
+    z = scaled(normal, 1.0 / long)
+    y = cross(z, scaled(base, 1.0 / wide))
+    sine = math.hypot(*y)
+    if sine < SMALLEST_SINE:
+        raise NoFrameError("both vectors have one direction")
+    y = scaled(y, 1.0 / sine)
+    return transposed((cross(y, z), y, z))
+
+
+def from_projections(first: float, second: float, rotation: float) -> Matrix:
+    """The plane that shows the angle ``first`` in Z X and ``second`` in Y Z, turned by ``rotation`` about Z'.
+
+    X' lies in Z X before that. Angles count upwards from X and from Y. Raises NoFrameError at 90 degrees.
+    """
+    (c1, s1), (c2, s2) = cos_sin(first), cos_sin(second)
+    if min(abs(c1), abs(c2)) < SMALLEST_SINE:
+        raise NoFrameError("a projection angle is 90 degrees")
+    along, aside = (c1, 0.0, s1), (0.0, c2, s2)
+    return product(from_vectors(along, cross(along, aside)), turned(Z_AXIS, rotation))
+
+
 def about_z(frame: Matrix) -> float:
     """The angle of a frame that is turned about Z alone, in degrees, -180 to 180."""
     return math.degrees(math.atan2(frame[1][0] - frame[0][1], frame[0][0] + frame[1][1]))

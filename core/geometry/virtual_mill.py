@@ -102,6 +102,11 @@ class PlaneMove:
         return self.radius * abs(sweep)
 
     @property
+    def in_degrees(self) -> bool:
+        """Whether the feed counts degrees: it counts mm."""
+        return False
+
+    @property
     def radius(self) -> float:
         """Radius of the arc, 0 for a line."""
         return 0.0 if self.centre is None else math.dist(self.start[:2], self._settled())

@@ -138,7 +138,9 @@ class Block:
     def swivels(self) -> bool:
         """Whether a mill's block counts degrees: its rotary axes turn alone, or lead the slides."""
         travel = self.travel
-        return travel is not None and self.moves and (travel.way is not None or not travel.slides)
+        if travel is None or not self.moves:
+            return False
+        return not travel.slides if travel.way is None else travel.way.in_degrees
 
     @property
     def moves(self) -> bool:

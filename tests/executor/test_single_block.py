@@ -12,7 +12,7 @@ from app.compose.stored_offsets import read_offsets
 from core.executor.commands import CycleStart, FeedHold, SetSwitch
 from core.executor.snapshot import State
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset
-from core.language.sinumerik.subprogram_files import with_subprograms
+from core.language.called_files import with_called_files
 from core.language.source import Source, load_source
 from core.machine.machine_model import Machine
 from tests.executor.rig import INCH, Rig
@@ -76,7 +76,7 @@ def test_a_sample_is_stepped_through_to_its_end(name: str) -> None:
 def test_a_sample_of_another_dialect_is_stepped_through_to_its_end(name: str, machine: str) -> None:
     tools, secondary, _ = read_offsets(SAMPLES / "offsets.toml")
     model = shipped_machine(machine)
-    source = with_subprograms(load_source(SAMPLES / name), [SAMPLES])
+    source = with_called_files(load_source(SAMPLES / name), [SAMPLES])
     check(source, setup_for(model, tools=tools, secondary=secondary), model)
 
 

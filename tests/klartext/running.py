@@ -61,8 +61,13 @@ def run(text: str, machine: Kinematics = AC, *, unit: str = "MM", tool: str = TO
 
 def run_file(text: str, machine: Kinematics = AC, **setup: Any) -> Ran:
     """Interpret a whole program."""
+    return run_source(Source("T.H", text), machine, **setup)
+
+
+def run_source(source: Source, machine: Kinematics = AC, **setup: Any) -> Ran:
+    """Interpret a program with the programs that it calls."""
     around: dict[str, Any] = {"start": HOME[: len(machine.names)], "limits": ControlLimits(max_rpm=12000.0)}
     around |= {"tools": {1: ToolOffset()}, **setup}
-    interpreter = Interpreter(read_program(Source("T.H", text)), Setup(kinematics=machine, **around), machine)
+    interpreter = Interpreter(read_program(source), Setup(kinematics=machine, **around), machine)
     blocks = list(interpreter.blocks())
     return Ran(blocks, interpreter.diagnostics, interpreter.state)

@@ -46,7 +46,7 @@ def test_parts(text: str, wanted: list[tuple[str, Ink]]) -> None:
 
 def test_what_cannot_be_read_is_marked_last() -> None:
     assert parts("PLANE AXIAL A+45 A+30 STAY")[-1] == ("A+30", Ink.FAULT)
-    assert parts("CC X+0")[-1] == ("CC", Ink.FAULT)
+    assert parts("FL X+0")[-1] == ("FL", Ink.FAULT)
 
 
 @given(st.text(max_size=40))

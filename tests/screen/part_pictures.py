@@ -23,7 +23,7 @@ from app.compose.workshop import samples
 from app.path.solid_pane_view import quarter
 from app.screen.look import FAMILY, load_fonts
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset
-from core.language.sinumerik.subprogram_files import with_subprograms
+from core.language.called_files import with_called_files
 from core.language.source import Dialect, Source, load_source
 from core.part.solid_picture import SolidPicture
 from core.part.solid_view import SolidView, fitted
@@ -85,7 +85,7 @@ def part_of(path: Path) -> Solid:
     """What was parted off last, else what is held at the end."""
     source = load_source(path)
     if source.dialect is Dialect.SINUMERIK:
-        source = with_subprograms(source, [path.parent])
+        source = with_called_files(source, [path.parent])
     setup, machine = _setup(path, source), load_machine(None)
     setting = PartSetting(nose_radii={n: tool.nose_radius for n, tool in setup.tools.items()})
     gathered = PartGathering(setting)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from core.interpreter.actions import ProgramEnd
-from core.language.sinumerik.subprogram_files import with_subprograms
+from core.language.called_files import with_called_files
 from core.language.source import Dialect, Source, load_source
 from tests.sinumerik.lathe import good, refused, run, setup, source
 
@@ -90,12 +90,12 @@ def test_files_beside_the_program_are_found_in_any_case(tmp_path: Path) -> None:
     (tmp_path / "loch.spf").write_text("G0 Z3\nM17\n")
     (tmp_path / "other.spf").write_text("G0 Z99\nM17\n")
     (tmp_path / "part.mpf").write_text("N5 NUT P2 ; twice\nM30\n")
-    found = with_subprograms(load_source(tmp_path / "part.mpf"), [tmp_path])
+    found = with_called_files(load_source(tmp_path / "part.mpf"), [tmp_path])
     assert [each.name.lower() for each in found.subprograms] == ["loch.spf", "nut.spf"]
     assert len(good(found)) == 2
 
 
 def test_a_file_that_is_no_text_is_missing(tmp_path: Path) -> None:
     (tmp_path / "nut.spf").write_bytes(b"\0\0")
-    found = with_subprograms(source("NUT"), [tmp_path])
+    found = with_called_files(source("NUT"), [tmp_path])
     assert refused(found).code == "subprogram-missing"

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 
 from core.geometry.rotation_frames import Vector
 from core.interpreter.diagnostic_log import MOST_OF_A_KIND
@@ -11,9 +11,21 @@ from core.interpreter.units import MM_PER_INCH
 from core.interpreter.working_plane import Corners
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.klartext import read_line
+from core.language.klartext.called_programs import file_name
 from core.language.klartext.canonical_text import name_text, written
 from core.language.klartext.klartext_faults import LABEL, LABEL_TWICE, NESTING, fault, syntax
-from core.language.klartext.klartext_nodes import Begin, BlankForm, Call, End, KlartextLine, Label
+from core.language.klartext.klartext_line import CONTINUED, comment_start
+from core.language.klartext.klartext_nodes import (
+    Begin,
+    BlankForm,
+    Call,
+    End,
+    Heading,
+    Jump,
+    KlartextLine,
+    Label,
+    Node,
+)
 from core.language.source import Source
 
 Name = int | str
@@ -31,6 +43,7 @@ class Program:
     problems: list[Diagnostic] = field(default_factory=list)
     _texts: dict[int, str] = field(default_factory=dict)
     corners: Corners | None = None  # of BLK FORM, mm
+    called: dict[str, Program] = field(default_factory=dict)  # by the file's name in capitals
 
     @property
     def blocks(self) -> int:
@@ -54,15 +67,46 @@ class Program:
 
 
 def read_program(source: Source) -> Program:
-    """Read every line and look the structure over. Raises nothing: see ``problems``."""
-    lines = [read_line(number, text) for number, text in enumerate(source.lines, start=1)]
+    """Read every line, and the programs that it calls. Raises nothing: see ``problems``."""
+    lines = _lines(source)
     program = Program(source, lines, end=len(lines))
     found = [line.error for line in lines if line.error is not None]
     for look in (_frame, _labels, _calls):
         found += look(program)
     program.problems = sorted(found, key=lambda each: (each.line, each.column))[: 2 * MOST_OF_A_KIND]
     program.corners = _corners(program)
+    program.called = {file_name(each.name): read_program(each) for each in source.subprograms}
     return program
+
+
+def _lines(source: Source) -> list[KlartextLine]:
+    """One entry a line; a block that goes on over several lines (~) stands in its first."""
+    texts = source.lines
+    found: list[KlartextLine] = []
+    while len(found) < len(texts):
+        first = len(found)
+        last = first
+        while last + 1 < len(texts) and texts[last].rstrip().endswith(CONTINUED):
+            last += 1
+        if last == first:
+            found.append(read_line(first + 1, texts[first]))
+        else:
+            found += _joined(texts[first : last + 1], first + 1)
+    return found
+
+
+def _joined(texts: Sequence[str], number: int) -> Iterator[KlartextLine]:
+    """The lines of one block: what is wrong is told where it stands."""
+    pieces = [text[: comment_start(text)].rstrip().removesuffix(CONTINUED) for text in texts]
+    line = read_line(number, " ".join(pieces))
+    if (problem := line.error) is not None:
+        row, column = 0, problem.column
+        while row + 1 < len(pieces) and column > len(pieces[row]) + 1:
+            column -= len(pieces[row]) + 1
+            row += 1
+        line = line._replace(error=replace(problem, line=number + row, column=column))
+    yield line
+    yield from (KlartextLine(number + below) for below in range(1, len(pieces)))
 
 
 def _corners(program: Program) -> Corners | None:
@@ -102,7 +146,7 @@ def _frame(program: Program) -> Iterator[Diagnostic]:
     if first.node.inch != last.inch:
         text = "BEGIN PGM and END PGM name different units."
         yield _wrong(program.end + 1, text, "Write the unit of the program in both.")
-    elif first.node.name.upper() != last.name.upper():
+    elif last.name and first.node.name.upper() != last.name.upper():
         text = f"The program begins as {first.node.name} and ends as {last.name}."
         hint = "Look whether the file is whole."
         yield Diagnostic(program.end + 1, 1, Severity.WARNING, "program-name", text, hint)
@@ -126,13 +170,13 @@ def _calls(program: Program) -> Iterator[Diagnostic]:
     """Calls of labels that are not there, and of subprograms without an end."""
     for line in program.lines[: program.end]:
         node = line.node
-        if not isinstance(node, Call):
+        if not isinstance(node, (Call, Jump)):
             continue
         name, at = name_text(node.name), program.labels.get(node.name)
         if at is None:
             text, hint = f"LBL {name} is nowhere in the program.", "Correct the number, or write the label."
             yield fault(line.number, node.column, LABEL, text, hint).diagnostic
-        elif node.repeat is None and program.subprogram_end(at) is None:
+        elif isinstance(node, Call) and node.repeat is None and program.subprogram_end(at) is None:
             text = f"The subprogram LBL {name} has no LBL 0."
             yield syntax(line.number, node.column, text, "Write LBL 0 behind it.").diagnostic
 
@@ -148,40 +192,110 @@ class _Level:
     left: dict[int, int] = field(default_factory=dict)
 
 
+@dataclass(slots=True)
+class _Running:
+    """A program under way: ``at`` is the index of its next line, ``place`` the line of its call."""
+
+    program: Program
+    at: int = 0
+    place: int = 0
+    levels: list[_Level] = field(default_factory=list)
+
+
 class Flow:
-    """``at`` is the index of the line to execute next, ``end`` that of END PGM."""
+    """Where a program goes on: labels, jumps, repeats, and the programs that it calls."""
 
     def __init__(self, program: Program) -> None:
-        self.at = 0
-        self.end = program.end
-        self._labels = program.labels
-        self._levels = [_Level(back=program.end)]
+        self._running = [_Running(program, levels=[_Level(back=program.end)])]
+        self.ended_by_code = False
 
-    def call(self, line: int, node: Call) -> None:
-        """CALL LBL. Raises ProgramError for calls nested too deep."""
-        target = self._labels.get(node.name)
+    @property
+    def program(self) -> Program:
+        """The program whose line was taken last."""
+        return self._running[-1].program
+
+    def next(self) -> KlartextLine | None:
+        """The next line; None where the main program is at its END PGM."""
+        while self._running:
+            running = self._running[-1]
+            if running.at < running.program.end:
+                running.at += 1
+                return running.program.lines[running.at - 1]
+            if len(self._running) == 1:
+                return None
+            self._running.pop()
+        return None
+
+    def next_node(self) -> Node | None:
+        """What the next line with a block says, where the program goes straight on."""
+        running = self._running[-1]
+        lines = running.program.lines
+        rest = (lines[at].node for at in range(running.at, running.program.end))
+        return next((node for node in rest if node is not None and not isinstance(node, Heading)), None)
+
+    def end_all(self) -> None:
+        """M2 or M30: nothing comes any more."""
+        self.ended_by_code = True
+        del self._running[1:]
+        self._running[0].at = self._running[0].program.end
+
+    def shown_line(self, number: int) -> int:
+        """The line of the main program that stands for line ``number`` of the program under way."""
+        return self._running[1].place if len(self._running) > 1 else number
+
+    def located(self, found: Diagnostic) -> Diagnostic:
+        """A finding in a called program: told at its call, with file and line in its text."""
+        if len(self._running) == 1:
+            return found
+        message = f"{self.program.source.name} line {found.line}: {found.message}"
+        return replace(found, line=self._running[1].place, column=0, message=message)
+
+    def call(self, line: int, node: Call, times: int) -> None:
+        """CALL LBL, or ``times`` repeats of its section. Raises ProgramError for calls nested too deep."""
+        running = self._running[-1]
+        target = running.program.labels.get(node.name)
         if target is None:
             return  # told when the program was read
         if node.repeat is not None:
-            self._repeat(line, target, node.repeat)
+            self._repeat(line, target, times)
             return
-        if len(self._levels) > DEEPEST_CALL:
+        if len(running.levels) > DEEPEST_CALL:
             text = f"Calls are nested more than {DEEPEST_CALL} deep at LBL {name_text(node.name)}."
             hint = "A subprogram must not call itself."
             raise fault(line, node.column, NESTING, text, hint)
-        self._levels.append(_Level(back=self.at))
-        self.at = target + 1
+        running.levels.append(_Level(back=running.at))
+        running.at = target + 1
 
     def label(self, node: Label) -> None:
         """LBL: 0 ends the subprogram under way, others mark a place."""
-        if node.name == 0 and len(self._levels) > 1:
-            self.at = self._levels.pop().back
+        running = self._running[-1]
+        if node.name == 0 and len(running.levels) > 1:
+            running.at = running.levels.pop().back
+
+    def jump(self, node: Jump) -> None:
+        """On behind a label."""
+        running = self._running[-1]
+        target = running.program.labels.get(node.name)
+        if target is not None:  # else it was told when the program was read
+            running.at = target + 1
+
+    def call_program(self, name: str, line: int) -> Program | None:
+        """On in another program; None where there is none of this name. Raises ProgramError too deep."""
+        called = self._running[0].program.called.get(file_name(name))
+        if called is None:
+            return None
+        if len(self._running) > DEEPEST_CALL:
+            text = f"Programs call each other more than {DEEPEST_CALL} deep at {name}."
+            raise fault(line, 1, NESTING, text, "A program must not call itself.")
+        self._running.append(_Running(called, place=self.shown_line(line), levels=[_Level(back=called.end)]))
+        return called
 
     def _repeat(self, line: int, target: int, times: int) -> None:
-        left = self._levels[-1].left
+        running = self._running[-1]
+        left = running.levels[-1].left
         still = left.get(line, times)
         if still > 0:
             left[line] = still - 1
-            self.at = target + 1
+            running.at = target + 1
         else:
             left.pop(line, None)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from core.geometry.machine_travel import CurvedMove, Travel
+from core.geometry.plane_figure import Figure
 from core.geometry.rotary_axes import Kinematics, Place
 from core.geometry.rotation_frames import IDENTITY, Matrix, Vector, applied, plus, product, transposed
 from core.interpreter.actions import Action, Dwell
@@ -57,6 +58,7 @@ class State:
         self.datum = self.shift = self.origin = ORIGIN
         self.frame = IDENTITY
         self.tool_length = 0.0
+        self.m128 = False
         self._shown: Angles | None = None  # worked out again when a rotary axis has turned
         self.place = self._place()
         self.point = self.place.point(self.slides)
@@ -68,7 +70,11 @@ class State:
         self.feed: float | None = None  # F in force, as programmed
         self.tool_feed: float | None = None  # F of the last TOOL CALL
         self.q: dict[int, float] = {}
-        self.m128 = False
+        self.q_beside: dict[tuple[str, int], float] = {}  # QL and QR
+        self.figure = Figure()
+        self.pole: tuple[float, float] | None = None  # of CC, in the program's coordinates
+        self.tool_radius = 0.0
+        self.tool_defs: dict[int | str, tuple[float, float]] = {}  # length and radius of TOOL DEF, mm
         self.table_known = False  # the program has positioned it, so it no longer matters where it stood
         self.blank: Corners | None = None
         self.reported: set[object] = set()  # warnings that would otherwise repeat
@@ -78,11 +84,23 @@ class State:
 
     # --- position -----------------------------------------------------------------------------------------
 
+    @property
+    def programmed(self) -> Vector:
+        """Where the tip stands in the program's own coordinates, mm."""
+        return self.figure.program(self.point)
+
+    def machine(self, programmed: Vector) -> Vector:
+        """Machine X Y Z at which the tip stands on a point of the program, mm."""
+        return self.place.machine(self.figure.plane(programmed))
+
     def go(self, goal: dict[str, float]) -> None:
         """Stand there; ``goal`` holds every axis."""
         if any(goal[name] != self.at[name] for name in self.rotary_names):
             self._shown = None
+        turned = self._shown is None
         self.at, self.there = goal, tuple([goal[name] for name in self.names])
+        if turned and self.m128:
+            self.derive()
         self.point = self.place.point(self.slides)
 
     @property
@@ -120,6 +138,12 @@ class State:
         self.point = self.place.point(self.slides)
         self._shared = None
 
+    def preset(self) -> None:
+        """Another preset: datum shift, mirroring, rotation and scaling end."""
+        self.datum = self.shift = ORIGIN
+        self.figure = Figure()
+        self.derive()
+
     def set_plane(self, plane: WorkingPlane | None) -> None:
         """Another plane, or none. The datum's point on the workpiece stays where it is."""
         self.datum, self.shift = self.origin, ORIGIN
@@ -127,7 +151,9 @@ class State:
         self.derive()
 
     def _place(self) -> Place:
-        angles = self.plane.targets if self.plane is not None else {}
+        angles: Mapping[str, float] = self.plane.targets if self.plane is not None else {}
+        if self.m128:
+            angles = self.rotary
         frame = self.plane.frame if self.plane is not None else self.kinematics.basic
         datum = applied(self.kinematics.basic, self.origin)
         return self.kinematics.place(angles, frame, datum, self.tool_length)
@@ -153,12 +179,18 @@ class State:
         """
         before, start, goal = self.point, self.at, {**self.at, **end}
         away = math.dist((start["X"], start["Y"], start["Z"]), (goal["X"], goal["Y"], goal["Z"]))
-        linear = away > SAME_POINT and way is None
+        if way is not None and not way.in_degrees:
+            away = way.length
+        linear = away > SAME_POINT and (way is None or not way.in_degrees)
         length = away
         if not linear:
             turn = math.hypot(*(goal[name] - start[name] for name in self.rotary_names))
             length = turn if turn > SAME_POINT else 0.0
-        rate = feed if feed is not None else self._rapid(start, goal, length, slides=linear)
+        rate = (
+            feed
+            if feed is not None
+            else self._rapid(start, goal, length, slides=linear, curved=way is not None)
+        )
         from_here = self.there
         self.go(goal)
         if self.modal.rapid != (feed is None):
@@ -204,9 +236,17 @@ class State:
         return self._shared
 
     def _rapid(
-        self, start: Mapping[str, float], goal: Mapping[str, float], length: float, *, slides: bool
+        self,
+        start: Mapping[str, float],
+        goal: Mapping[str, float],
+        length: float,
+        *,
+        slides: bool,
+        curved: bool,
     ) -> float:
         """Path speed at which the slowest axis goes its fastest, mm/s or degrees/s."""
+        if curved and slides:
+            return min(slide.vmax for slide in self.kinematics.slides)
         axes = (*(self.kinematics.slides if slides else ()), *self.kinematics.rotaries)
         seconds = max((abs(goal[axis.name] - start[axis.name]) / axis.vmax for axis in axes), default=0.0)
         return length / seconds if seconds > 0.0 and length > 0.0 else self.setup.last_rapid

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from core.geometry.plane_figure import Figure
 from core.interpreter import actions
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext import word_values
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.plane_functions import retract, retract_way
+from core.interpreter.klartext.tip_control import switch
 from core.language.klartext.klartext_faults import (
     CONTRADICTION,
     NOT_WITH_M128,
@@ -18,16 +20,25 @@ from core.language.klartext.klartext_faults import (
 )
 from core.language.klartext.klartext_nodes import MCode
 
-M91 = 91
-_BEFORE = frozenset({3, 4, 8, 13, 14, 128, 129, 140})
+M89, M91, M99 = 89, 91, 99
+BEFORE = frozenset({3, 4, 8, 13, 14, 128, 129, 140})
+ENDS = frozenset({2, 30})
 _BEHIND = frozenset({0, 1, 2, 5, 6, 9, 30})
-_OF_THE_BLOCK = frozenset({M91, 126})  # 126, the short way of rotary axes, is always on
+_OF_THE_BLOCK = frozenset({M89, M91, M99, 126})  # 126, the short way of rotary axes, is always on
+
+# They steer what this control does in its own way anyhow: smoothing and look-ahead (90, 112, 113, 120, 124),
+# small contour steps and open corners (97, 98), feed at arcs (109, 110, 111), messages (107, 108), the
+# display of rotary axes (94), handwheel superimposed (118), and what machine tools do of their own (134, 135,
+# 144, 145, 148).
+UNHEEDED = frozenset(
+    {90, 94, 97, 98, 107, 108, 109, 110, 111, 112, 113, 118, 120, 124, 127, 134, 135, 138, 144, 145, 148}
+)
 _TURNS = {3: 1, 4: -1, 13: 1, 14: -1}
 
 
 def check(state: State, codes: Sequence[MCode]) -> None:
     """Raises ProgramError for codes this machine lacks, contradictions, and what M128 forbids."""
-    known = _BEFORE | _BEHIND | _OF_THE_BLOCK | state.setup.limits.m_outputs.keys()
+    known = BEFORE | _BEHIND | _OF_THE_BLOCK | UNHEEDED | state.setup.limits.m_outputs.keys()
     for code in codes:
         if code.number in {M91, 92} and state.m128:
             text = f"M{code.number} while M128 is on."
@@ -52,7 +63,7 @@ def before(state: State, codes: Sequence[MCode]) -> Iterator[Block]:
         if code.number in {8, 13, 14}:
             yield _coolant(state, on=True)
         if code.number in {128, 129}:
-            state.m128 = code.number == 128
+            switch(state, on=code.number == 128)
         if code.number == 140:
             yield from _away(state, code)
         if output is not None and output[1]:
@@ -80,6 +91,7 @@ def behind(state: State, codes: Sequence[MCode], comment: str) -> Iterator[Block
 def end(state: State) -> Block:
     """M2, M30 and END PGM: the plane ends, rotary axes stay where they are."""
     state.m128 = False
+    state.figure = Figure()
     state.set_plane(None)
     state.modal = state.modal._replace(spindle=0, coolant=False, outputs=frozenset())
     return state.action(actions.ProgramEnd(reset=True))

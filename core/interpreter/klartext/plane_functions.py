@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-
-import numpy as np
+from collections.abc import Callable, Iterator, Mapping
 
 from core.geometry.rotary_axes import PivotMove
 from core.geometry.rotation_frames import (
@@ -16,8 +14,11 @@ from core.geometry.rotation_frames import (
     Matrix,
     NoFrameError,
     Vector,
+    from_euler,
     from_points,
+    from_projections,
     from_spatial,
+    from_vectors,
     minus,
     product,
     scaled,
@@ -95,15 +96,38 @@ def _axial(state: State, node: Plane) -> WorkingPlane:
 
 
 def _points(state: State, node: Plane) -> Matrix:
-    numbers = (
-        word_values.number(state, word.value, word.axis, word_values.MOST_POINT) for word in node.words
-    )
-    x1, y1, z1, x2, y2, z2, x3, y3, z3 = (number * state.scale for number in numbers)
+    x1, y1, z1, x2, y2, z2, x3, y3, z3 = (number * state.scale for number in _lengths(state, node))
+    return _made(state, node, lambda: from_points((x1, y1, z1), (x2, y2, z2), (x3, y3, z3)))
+
+
+def _vector(state: State, node: Plane) -> Matrix:
+    bx, by, bz, nx, ny, nz = _lengths(state, node)
+    return _made(state, node, lambda: from_vectors((bx, by, bz), (nx, ny, nz)))
+
+
+def _lengths(state: State, node: Plane) -> list[float]:
+    most = word_values.MOST_POINT
+    return [word_values.number(state, word.value, word.axis, most) for word in node.words]
+
+
+def _made(state: State, node: Plane, frame: Callable[[], Matrix]) -> Matrix:
     try:
-        return product(state.kinematics.basic, from_points((x1, y1, z1), (x2, y2, z2), (x3, y3, z3)))
+        return product(state.kinematics.basic, frame())
     except NoFrameError as problem:
         text = f"{str(problem).capitalize()}."
-        raise state.refuse(node.column, PLANE_WRONG, text, "Correct the points.") from problem
+        raise state.refuse(
+            node.column, PLANE_WRONG, text, "Correct the points, vectors or angles."
+        ) from problem
+
+
+def _projected(state: State, node: Plane) -> Matrix:
+    first, second, rotation = (_angle(state, word) for word in node.words)
+    return _made(state, node, lambda: from_projections(first, second, rotation))
+
+
+def _euler(state: State, node: Plane) -> Matrix:
+    precession, nutation, rotation = (_angle(state, word) for word in node.words)
+    return product(state.kinematics.basic, from_euler(precession, nutation, rotation))
 
 
 def _spatial(state: State, node: Plane) -> Matrix:
@@ -118,7 +142,14 @@ def _relative(state: State, node: Plane) -> Matrix:
     return product(base, turned(_ABOUT[word.axis], _angle(state, word)))
 
 
-_FORMS = {"POINTS": _points, "SPATIAL": _spatial, "RELATIV": _relative}
+_FORMS = {
+    "POINTS": _points,
+    "SPATIAL": _spatial,
+    "RELATIV": _relative,
+    "EULER": _euler,
+    "VECTOR": _vector,
+    "PROJECTED": _projected,
+}
 
 
 def _angle(state: State, word: AxisWord) -> float:
@@ -214,8 +245,7 @@ def _swivel(
     if pivot is None or turn <= SAME_POINT:
         return state.move(Kind.PLANE, goal, rate)
     way = PivotMove(state.kinematics, start, goal, pivot, distance, state.tool_length, turn)
-    end = {**dict(zip(state.kinematics.names, way.machine(np.ones(1))[0].tolist(), strict=True)), **goal}
-    return state.move(Kind.PLANE, end, rate, way)
+    return state.move(Kind.PLANE, way.goals(), rate, way)
 
 
 def _warn_of_shift(state: State, made: WorkingPlane | None) -> None:

@@ -1,4 +1,4 @@
-"""TOOL CALL: tool, tool axis, speed and feed."""
+"""TOOL DEF and TOOL CALL: length and radius, tool, tool axis, speed and feed."""
 
 from __future__ import annotations
 
@@ -9,8 +9,11 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.interpretation import ToolUse
 from core.interpreter.klartext import word_values
 from core.interpreter.klartext.klartext_state import State
-from core.language.klartext.klartext_faults import NOT_WITH_M128, WRONG_RPM, unsupported
-from core.language.klartext.klartext_nodes import ToolCall
+from core.language.klartext.klartext_faults import NOT_WITH_M128, TOOL_UNKNOWN, WRONG_RPM, unsupported
+from core.language.klartext.klartext_nodes import ToolCall, ToolDef, Value
+
+NAMED_TOOLS = 32768
+"""Numbers from here on stand for tools that TOOL DEF has named."""
 
 
 def tool_call(state: State, node: ToolCall, use: ToolUse) -> Iterator[Block]:
@@ -23,51 +26,87 @@ def tool_call(state: State, node: ToolCall, use: ToolUse) -> Iterator[Block]:
         raise state.refuse(1, NOT_WITH_M128, why, "Switch it off with M129 before.")
     if node.tool_axis not in {"", "Z"}:
         raise unsupported(state.line, node.column, f"The tool axis {node.tool_axis}")
-    if isinstance(node.tool, str):
-        raise unsupported(state.line, node.column, "A tool by its name")
+    number = _number(state, node.tool, node.column)
     rpm = _speed(state, node)
     feed = _feed(state, node)
-    oversize = 0.0
-    for value, what in ((node.length, "DL"), (node.radius, "DR")):
-        delta = 0.0 if value is None else word_values.number(state, value, what, 99.999) * state.scale
-        oversize = delta if what == "DL" else oversize
+    longer, thicker = _oversize(state, node.length, "DL"), _oversize(state, node.radius, "DR")
     state.tool_axis = node.tool_axis or state.tool_axis
     if feed is not None:
         state.feed = state.tool_feed = feed
     elif node.tool is not None:
         state.tool_feed = None
-    if node.tool is not None:
-        yield from _change(state, node.tool, oversize, use, node.column)
+    if number is not None:
+        yield from _change(state, number, longer, thicker, use, node.column)
+    elif node.length is not None or node.radius is not None:
+        _measure(state, state.modal.tool, longer, thicker, use, node.column)
     if rpm is not None:
         state.modal = state.modal._replace(rpm=rpm)
         if state.modal.spindle:
             yield state.action(SpindleRun(rpm * state.modal.spindle))
 
 
-def _change(state: State, tool: int, oversize: float, use: ToolUse, column: int) -> Iterator[Block]:
+def define_tool(state: State, node: ToolDef) -> None:
+    """TOOL DEF: length and radius, which count before those of the tool table. Raises ProgramError."""
+    if node.length is None and node.radius is None:
+        return  # the tool is only to be got ready
+    length = _oversize(state, node.length, "L", word_values.MOST_COORDINATE)
+    state.tool_defs[node.tool] = length, _oversize(state, node.radius, "R", word_values.MOST_COORDINATE)
+
+
+def _number(state: State, tool: int | str | None, column: int) -> int | None:
+    """The number of a tool that is called; one by name has to be defined in the program."""
+    if not isinstance(tool, str):
+        return tool
+    names = [each for each in state.tool_defs if isinstance(each, str)]
+    if tool not in names:
+        text = f'No tool is called "{tool}".'
+        raise state.refuse(column, TOOL_UNKNOWN, text, "Call it by its number, or write TOOL DEF before.")
+    return NAMED_TOOLS + names.index(tool)
+
+
+def _oversize(state: State, value: Value | None, what: str, most: float = 99.999) -> float:
+    return 0.0 if value is None else word_values.number(state, value, what, most) * state.scale
+
+
+def _change(
+    state: State, tool: int, longer: float, thicker: float, use: ToolUse, column: int
+) -> Iterator[Block]:
     """Another tool: the spindle stops, and where one was in it before, somebody has to change it."""
     before = state.modal.tool
     if state.modal.spindle:
         state.modal = state.modal._replace(spindle=0)
         yield state.action(SpindleStop())
-    state.tool_length = _length(state, tool, use, column) + oversize
+    _measure(state, tool, longer, thicker, use, column)
     state.modal = state.modal._replace(tool=tool)
-    state.derive()
     yield state.action(ToolChange(tool))
     if tool and before not in {0, tool}:
         yield state.action(ProgramStop(optional=False, message=f"TOOL {tool}"))
 
 
-def _length(state: State, tool: int, use: ToolUse, column: int) -> float:
-    """The length of the tool: its offset in Z; 0 with a warning where nobody has measured it."""
-    if tool == 0:
-        return 0.0
-    offset = use.offset(tool, state.setup.tools)
-    if offset is not None:
-        return offset.z
-    text = f"Tool {tool} has no offset; 0 is used, and the machine will refuse to start."
-    state.log.warn(state.line, column, "tool-offset-missing", text, "Set the tool's offset.")
-    return 0.0
+def _measure(state: State, tool: int, longer: float, thicker: float, use: ToolUse, column: int) -> None:
+    """Length and radius of the tool: as TOOL DEF tells them, else its offset.
+
+    0 with a warning where nobody has measured it.
+    """
+    length, radius = 0.0, 0.0
+    defined = state.tool_defs.get(tool) or state.tool_defs.get(_name_of(state, tool))
+    if defined is not None:
+        length, radius = defined
+    elif tool:
+        offset = use.offset(tool, state.setup.tools)
+        if offset is not None:
+            length, radius = offset.z, offset.nose_radius
+        else:
+            text = f"Tool {tool} has no offset; 0 is used, and the machine will refuse to start."
+            state.log.warn(state.line, column, "tool-offset-missing", text, "Set the tool's offset.")
+    state.tool_length, state.tool_radius = length + longer, radius + thicker
+    state.derive()
+
+
+def _name_of(state: State, tool: int) -> str:
+    names = [each for each in state.tool_defs if isinstance(each, str)]
+    at = tool - NAMED_TOOLS
+    return names[at] if 0 <= at < len(names) else ""
 
 
 def _speed(state: State, node: ToolCall) -> float | None:

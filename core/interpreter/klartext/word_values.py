@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from core.interpreter.klartext.klartext_state import State
+from core.interpreter.klartext.q_functions import content
 from core.language.diagnostics import ProgramError
-from core.language.klartext.klartext_faults import FEED_MISSING, INPUT_VALUE, Q_UNDEFINED
+from core.language.klartext.klartext_faults import FEED_MISSING, INPUT_VALUE
 from core.language.klartext.klartext_nodes import AxisWord, Feed, Value
 
 # Input ranges of the control's manuals.
@@ -20,10 +21,8 @@ def number(state: State, value: Value, what: str, most: float, least: float | No
     """The number, or the content of its Q parameter. Raises ProgramError outside ±most or below ``least``."""
     found = value.number
     if value.q is not None:
-        if value.q not in state.q:
-            text = f"Q{value.q} has no value yet."
-            raise state.refuse(value.column, Q_UNDEFINED, text, f"Write Q{value.q} = … before.")
-        found = -state.q[value.q] if value.negative else state.q[value.q]
+        found = content(state, value.kind, value.q, value.column)
+        found = -found if value.negative else found
     low = -most if least is None else least
     if not low <= found <= most:
         text = f"{what} {found:+.12g} is not between {low:.15g} and {most:.15g}."

@@ -9,14 +9,13 @@ _FEEDS = {"max": "FMAX", "auto": "F AUTO"}
 
 def written(line: nodes.KlartextLine) -> str:
     """The block of a line without its number and comment; empty where there is none."""
-    return "" if line.node is None else _block(line.node)
+    return "" if line.node is None else _block(line.node) or line.code
 
 
 def _block(node: nodes.Node) -> str:
     match node:
         case nodes.Move():
-            r0 = "R0" if node.r0 else ""
-            return _joined("L", _axes(node.axes), r0, _feed(node.feed), _codes(node.codes))
+            return _path(node)
         case nodes.Plane():
             return _joined("PLANE", node.form, _axes(node.words), _positioning(node.positioning))
         case nodes.Codes():
@@ -33,21 +32,25 @@ def _short(node: nodes.Node) -> str:
     made = ""
     match node:
         case nodes.Begin() | nodes.End():
-            made = f"{type(node).__name__.upper()} PGM {node.name} {'INCH' if node.inch else 'MM'}"
+            unit = "INCH" if node.inch else "MM"
+            made = _joined(f"{type(node).__name__.upper()} PGM", node.name, unit)
         case nodes.BlankForm():
             made = _joined(f"BLK FORM 0.{node.part}", node.tool_axis, _axes(node.corner))
         case nodes.Label():
             made = f"LBL {name_text(node.name)}"
         case nodes.Call():
-            repeat = "" if node.repeat is None else f"REP {node.repeat}"
+            repeat = "" if node.repeat is None else f"REP {_value(node.repeat, plus=False)}"
             made = _joined("CALL LBL", name_text(node.name), repeat)
-        case nodes.Assign():
-            made = _joined("FN 0:" if node.spelled else "", f"Q{node.q} = {_value(node.value)}")
-        case nodes.Stop():
-            made = "STOP"
         case nodes.Heading():
             made = f"* - {node.text}"
     return made
+
+
+def _path(node: nodes.Move) -> str:
+    turn = f"DR{node.turn}" if node.turn else ""
+    compensation = f"R{node.compensation}" if node.compensation else ""
+    words = (node.form, _axes(node.axes), _axes(node.words), turn, compensation)
+    return _joined(*words, _feed(node.feed), _codes(node.codes))
 
 
 def _tool_call(node: nodes.ToolCall) -> str:
@@ -90,7 +93,7 @@ def _retract(way: nodes.Retract | None) -> str:
 
 def _value(value: nodes.Value, *, plus: bool = True) -> str:
     if value.q is not None:
-        return f"{'-' if value.negative else '+' if plus else ''}Q{value.q}"
+        return f"{'-' if value.negative else '+' if plus else ''}{value.kind}{value.q}"
     return f"{value.number:{'+' if plus else ''}.9f}".rstrip("0").rstrip(".")
 
 

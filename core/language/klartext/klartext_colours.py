@@ -7,20 +7,23 @@ import re
 from core.language.klartext.klartext_line import comment_start, read_line
 from core.language.syntax_colours import Ink, Span
 
-_VALUE = r"\s*[+-]?\s*(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+|Q\s*[0-9]+)"
+_VALUE = r"\s*[+-]?\s*(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+|Q[LR]?\s*[0-9]+)"
 _PATTERNS = (
     (Ink.COMMENT, r"\*.*"),
-    (Ink.CALL, r'(?:CALL\s+)?LBL\s*(?:[0-9]+|"[^"]*")|REP\s*[0-9]+|TOOL\s+CALL(?:\s*(?:[0-9]+|"[^"]*"))?'),
+    (Ink.CALL, r'(?:(?:CALL|GOTO)\s+)?LBL\s*(?:[0-9]+|"[^"]*")|REP\s*[0-9]+(?:/[0-9]+)?|CALL\s+PGM\s.*'),
+    (Ink.CALL, r'TOOL\s+(?:CALL|DEF)(?:\s*(?:[0-9]+|"[^"]*"))?|CYCL\s+CALL(?:\s+POS)?'),
     (Ink.CODE, r"(?:BEGIN|END)\s+PGM|PLANE(?:\s+(?:AXIAL|POINTS|SPATIAL|RELATIV|RESET))?|STOP|M\s*[0-9]+"),
-    (
-        Ink.CODE,
-        r"TRANS\s+DATUM(?:\s+(?:AXIS|RESET))?|CYCL\s+DEF\s*[0-9.]*|BLK\s+FORM\s*[0-9.]*|FN\s*[0-9]+\s*:?",
-    ),
+    (Ink.CODE, r"TRANS\s+(?:DATUM|MIRROR|ROTATION|SCALE)(?:\s+(?:AXIS|RESET))?|BLK\s+FORM\s*[0-9.]*"),
+    (Ink.CODE, r"CYCL\s+DEF\s*[0-9.]*|FN\s*[0-9]+\s*:?|FUNCTION(?:\s+RESET)?\s+TCPM"),
+    (Ink.CODE, r"(?:APPR|DEP)\s+P?L?[CLNT]+(?![A-Z])|(?:CTP|CC|CR|CT|CP|LP|C|L|RND|CHF)(?![A-Z0-9+\-])"),
     (Ink.RUN, rf"F\s*(?:MAX|AUTO)|F{_VALUE}|S{_VALUE}"),
     (Ink.KEY, rf"MOVE|TURN|STAY|MB\s*MAX|(?:MB|DIST){_VALUE}|(?:SYM|SEQ)\s*[+-]|(?:COORD|TABLE)\s+ROT"),
-    (Ink.POSITION, rf"(?:P[123][XYZ]|SP[ABC]|D[LR]|I?[XYZABC]){_VALUE}"),
-    (Ink.KEY, r"Q\s*[0-9]+"),
-    (Ink.CODE, r"L(?![A-Z0-9])|R[0LR](?![A-Z0-9])"),
+    (Ink.CODE, r"R[0LR](?![A-Z0-9])"),
+    (Ink.KEY, r"DR\s*[+-](?![0-9Q])|Q[LR]?\s*[0-9]+"),
+    (
+        Ink.POSITION,
+        rf"(?:P[123][XYZ]|SP[ABC]|D[LR]2?|I?P[RA]|I?[XYZABC]|CCA|LEN|ROT|SCL|R|L|RND|CHF){_VALUE}",
+    ),
 )
 _WORDS = [(ink, re.compile(pattern, re.IGNORECASE)) for ink, pattern in _PATTERNS]
 _HEAD = re.compile(r"\s*(/?\s*[0-9]*\s*/?)")

@@ -20,6 +20,18 @@ NOT_WITH_M128 = "Not permitted with M128"
 LABEL = "Label not found"
 LABEL_TWICE = "Label defined twice"
 Q_UNDEFINED = "Q parameter not defined"
+ARC_END = "Circle end point incorrect"
+DIRECTION = "Direction of rotation not defined"
+NO_POLE = "CC missing"
+PREVIOUS = "Path function not possible here"
+RADIUS_TOO_LARGE = "Tool radius too large"
+COMPENSATION = "Radius compensation not permitted here"
+ROUNDING = "Rounding not possible"
+ARITHMETIC = "Arithmetical error"
+CYCLE_MISSING = "Cycle incomplete"
+OWN_ERROR = "Error of the program"
+TOOL_UNKNOWN = "Tool not defined"
+FILE_MISSING = "Program not found"
 
 
 def fault(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 
 from core.language.diagnostics import ProgramError
-from core.language.klartext import l_block, plane_block, structure_blocks
+from core.language.klartext import cycle_blocks, path_block, plane_block, q_parameters, structure_blocks
 from core.language.klartext.klartext_faults import syntax, unsupported
 from core.language.klartext.klartext_nodes import (
     AxisWord,
@@ -25,7 +25,8 @@ from core.language.klartext.line_cursor import Cursor
 
 _NUMBER = r"[+-]?[0-9]{1,6}(?:\.[0-9]{1,9})?"
 _MOVE = re.compile(
-    rf"([0-9]{{1,9}} )?L((?: I?[XYZABC]{_NUMBER}){{1,6}})( R0)?(?: F(MAX|[0-9]{{1,6}}(?:\.[0-9]{{1,6}})?))?"
+    rf"([0-9]{{1,9}} )?L((?: I?[XYZABC]{_NUMBER}){{1,6}})(?: R([0LR]))?"
+    r"(?: F(MAX|[0-9]{1,6}(?:\.[0-9]{1,6})?))?"
 )
 _WORD = re.compile(rf"(I?)([XYZABC])({_NUMBER})")
 
@@ -35,7 +36,7 @@ def read_plain(number: int, text: str) -> KlartextLine | None:
     match = _MOVE.fullmatch(text)
     if match is None:
         return None
-    block, _, r0, speed = match.groups()
+    block, _, radius, speed = match.groups()
     axes = []
     seen = set()
     for word in _WORD.finditer(text, match.start(2), match.end(2)):
@@ -46,7 +47,7 @@ def read_plain(number: int, text: str) -> KlartextLine | None:
     if len(seen) < len(axes):
         return None
     feed = None if speed is None else _feed(speed, match.start(4))
-    move = Move(tuple(axes), r0 is not None, feed)
+    move = Move(tuple(axes), radius or "", feed, column=match.start(2))
     return KlartextLine(number, move, None if block is None else int(block))
 
 
@@ -58,19 +59,17 @@ def _feed(speed: str, at: int) -> Feed:
 
 LONGEST_LINE = 8192
 _HEAD = re.compile(r"\s*(/?)\s*([0-9]+)?\s*(/?)\s*")
-_L = re.compile(r"L(?![A-Z0-9])")
 _M = re.compile(r"M(?=\s*[0-9])")
-_Q = re.compile(r"Q(?=\s*[0-9])")
-_FN = re.compile(r"FN\s*([0-9]+)\s*:?")
-_FN_0 = re.compile(r"FN\s*0\s*:\s*Q(?=\s*[0-9])")
+_Q = re.compile(r"Q[LR]?(?=\s*[0-9])")
+_FN = re.compile(r"FN\s*([0-9]+)\s*")
+_LONGEST_FIRST = sorted(path_block.FORMS, key=len, reverse=True)
+_PATHS = re.compile("|".join(r"\s+".join(form.split()) + r"(?![A-Z0-9])" for form in _LONGEST_FIRST))
 
-# Blocks of the control that are outside the subset: the longest name first where one begins another.
+# Blocks of the control that are not read here: the longest name first where one begins another.
 _OUTSIDE = (
-    *("CYCL CALL", "CALL PGM", "CALL SELECTED", "SEL PGM", "SEL TABLE", "SEL PATTERN", "SEL CONTOUR"),
-    *("CONTOUR DEF", "PATTERN DEF", "TOOL DEF", "TCH PROBE", "FUNCTION", "POLARKIN", "DECLARE", "STRING"),
-    *("TRANS MIRROR", "TRANS ROTATION", "TRANS SCALE", "APPR", "DEP", "CHF", "RND", "CTP", "CP", "CR", "CT"),
-    *("CC", "LP", "LN", "LT", "FPOL", "FSELECT", "FLT", "FCT", "FL", "FC", "C", "SPL", "QL", "QR", "QS"),
-    *("WHILE", "IF", "STRAIGHT"),
+    *("CALL SELECTED", "SEL PGM", "SEL TABLE", "SEL PATTERN", "SEL CONTOUR", "CONTOUR DEF", "PATTERN DEF"),
+    *("TCH PROBE", "POLARKIN", "DECLARE", "STRING", "LN", "LT", "FPOL", "FSELECT", "FLT", "FCT", "FL", "FC"),
+    *("SPL", "QS", "WHILE", "IF", "STRAIGHT"),
 )
 _OUTSIDE_PATTERNS = tuple((name, re.compile(r"\s+".join(name.split()) + r"(?![A-Z])")) for name in _OUTSIDE)
 
@@ -88,11 +87,20 @@ def read_line(number: int, text: str) -> KlartextLine:
     assert head is not None  # every part of it may be missing
     block, skip = head.group(2), bool(head.group(1) or head.group(3))
     number_of_block = int(block) if block is not None and len(block) <= 9 else None
+    code = code.rstrip().removesuffix(CONTINUED).rstrip()
+    shown = " ".join(code[head.end() :].split())
     try:
-        node = _node(Cursor(number, code.rstrip(), head.end()))
+        node = _node(Cursor(number, code, head.end()))
     except ProgramError as problem:
-        return KlartextLine(number, None, number_of_block, skip, comment, problem.diagnostic)
-    return KlartextLine(number, node, number_of_block, skip, comment)
+        return KlartextLine(number, None, number_of_block, skip, comment, problem.diagnostic, shown)
+    # A path is written anew from its words; every other block is shown as it was written.
+    return KlartextLine(
+        number, node, number_of_block, skip, comment, code="" if isinstance(node, Move) else shown
+    )
+
+
+CONTINUED = "~"
+"""Ends a line whose block goes on in the next one; it stands behind the comment where there is one."""
 
 
 def comment_start(text: str) -> int:
@@ -108,12 +116,11 @@ def comment_start(text: str) -> int:
 def _node(cursor: Cursor) -> Node | None:
     if cursor.done:
         return None
-    if cursor.text[-1] != "~" and cursor.take(_L):
-        return l_block.move(cursor)
+    column = cursor.column
+    if form := cursor.take(_PATHS):
+        return path_block.move(cursor, " ".join(form.group().split()), column)
     if cursor.text[cursor.at] == "*":
         return Heading(cursor.rest()[1:].strip().removeprefix("-").strip())
-    if cursor.text[-1] == "~":
-        raise unsupported(cursor.line, len(cursor.text), "A block over several lines (~)")
     return _by_keyword(cursor) or _by_letter(cursor)
 
 
@@ -126,40 +133,45 @@ def _by_keyword(cursor: Cursor) -> Node | None:
 
 
 def _stop(cursor: Cursor, _column: int) -> Node:
-    if not cursor.done:
-        raise cursor.expected("STOP stands alone")
-    return Stop()
+    codes = path_block.codes_to_the_end(cursor)
+    return Stop(codes)
 
 
 _KEYWORDS: dict[str, Callable[[Cursor, int], Node]] = {
+    "CC": path_block.pole,
+    "RND": lambda cursor, column: path_block.corner(cursor, "RND", column),
+    "CHF": lambda cursor, column: path_block.corner(cursor, "CHF", column),
     "BEGIN PGM": lambda cursor, _: structure_blocks.begin(cursor),
     "END PGM": lambda cursor, _: structure_blocks.end(cursor),
     "BLK FORM": lambda cursor, _: structure_blocks.blank_form(cursor),
     "TOOL CALL": lambda cursor, _: structure_blocks.tool_call(cursor),
+    "TOOL DEF": structure_blocks.tool_def,
     "PLANE": plane_block.plane,
-    "TRANS DATUM": structure_blocks.datum,
-    "CYCL DEF": structure_blocks.cycle,
+    "TRANS": structure_blocks.transformation,
+    "CYCL DEF": cycle_blocks.cycle,
+    "CYCL CALL": cycle_blocks.call,
     "CALL LBL": lambda cursor, _: structure_blocks.call(cursor),
+    "CALL PGM": structure_blocks.call_program,
     "LBL": lambda cursor, _: structure_blocks.label(cursor),
+    "FUNCTION": structure_blocks.function,
     "STOP": _stop,
 }
 
 
 def _by_letter(cursor: Cursor) -> Node:
+    column = cursor.column
     if _M.match(cursor.upper, cursor.at):
-        return l_block.codes_alone(cursor)
-    if cursor.take(_FN_0):
-        return structure_blocks.assign(cursor, spelled=True)
-    if cursor.take(_Q):
-        return structure_blocks.assign(cursor, spelled=False)
+        return path_block.codes_alone(cursor)
+    if match := cursor.take(_FN):
+        return q_parameters.function(cursor, int(match.group(1)[:4]), column)
+    if _Q.match(cursor.upper, cursor.at):
+        return q_parameters.assign(cursor)
     raise _no_block(cursor)
 
 
 def _no_block(cursor: Cursor) -> ProgramError:
-    """What begins no block of the subset, by its name where the control knows it."""
+    """What begins no block that is read here, by its name where the control knows it."""
     column = cursor.column
-    if function := _FN.match(cursor.upper, cursor.at):
-        return unsupported(cursor.line, column, f"FN {int(function.group(1)[:4])}")
     for name, pattern in _OUTSIDE_PATTERNS:
         if pattern.match(cursor.upper, cursor.at):
             return unsupported(cursor.line, column, name)

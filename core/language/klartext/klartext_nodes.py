@@ -6,15 +6,25 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from core.language.diagnostics import Diagnostic
+from core.language.formulas import Formula, Number, Operation, Parameter
 
 
 class Value(NamedTuple):
-    """A number, or the content of a Q parameter. ``column`` is where it stands, from 1."""
+    """A number, or the content of a parameter Q, QL or QR. ``column`` is where it stands, from 1."""
 
     number: float
     q: int | None = None
     negative: bool = False  # the sign before Q
     column: int = 0
+    kind: str = "Q"
+
+    @property
+    def formula(self) -> Formula:
+        """The same as a formula."""
+        if self.q is None:
+            return Number(self.number)
+        made = Parameter(self.kind, self.q, self.column)
+        return Operation("negative", (made,), self.column) if self.negative else made
 
 
 class AxisWord(NamedTuple):
@@ -90,12 +100,41 @@ class ToolCall:
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """``L X+10 IY-5 R0 F200 M3``."""
+    """A path function: ``L X+10 IY-5 R0 F200 M3``, ``CR X+10 Y+0 R+5 DR-``, ``APPR CT X+0 Y+0 CCA90 R+5 RL``.
+
+    ``words`` are those besides axes, by name: PR and PA (a pole's radius and angle), R, CCA, LEN.
+    """
 
     axes: tuple[AxisWord, ...] = ()
-    r0: bool = False
+    compensation: str = ""  # 0, L or R of R0, RL, RR; empty: as before
     feed: Feed | None = None
     codes: tuple[MCode, ...] = ()
+    form: str = "L"
+    words: tuple[AxisWord, ...] = ()
+    turn: str = ""  # + or - of DR
+    column: int = 1
+
+    def word(self, name: str) -> AxisWord | None:
+        """The axis or other word of this name."""
+        return next((word for word in (*self.axes, *self.words) if word.axis == name), None)
+
+
+@dataclass(frozen=True, slots=True)
+class Pole:
+    """``CC X+50 Y+50``; without axes the point where the tool stands."""
+
+    axes: tuple[AxisWord, ...] = ()
+    column: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Corner:
+    """``RND R5 F100`` or ``CHF 2``: the corner between the path before and the one behind."""
+
+    form: str  # RND or CHF
+    size: Value
+    feed: Feed | None = None
+    column: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,23 +167,142 @@ class Call:
     """``CALL LBL 1``, with ``REP n`` a repeat of the section behind the label."""
 
     name: int | str
-    repeat: int | None = None
+    repeat: Value | None = None
     column: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class Assign:
-    """``Q5 = +10``; ``spelled`` with FN 0."""
+    """``Q5 = +10``, ``Q5 = Q1 * SIN 30``, ``FN 3: Q5 = +Q1 * +2``."""
 
     q: int
-    value: Value
-    spelled: bool = False
+    formula: Formula
+    column: int = 0
+    kind: str = "Q"  # Q, QL or QR
+
+
+@dataclass(frozen=True, slots=True)
+class Jump:
+    """``FN 9: IF +Q1 EQU +5 GOTO LBL 3``; ``condition`` is the whole comparison."""
+
+    condition: Formula
+    name: int | str
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class SystemRead:
+    """``FN 18: SYSREAD Q5 = ID50 NR1 IDX5``: group, number and index of a figure of the control."""
+
+    q: int
+    group: Formula
+    number: Formula
+    index: Formula | None = None
+    column: int = 0
+    kind: str = "Q"
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorMessage:
+    """``FN 14: ERROR = 1000``: the program itself tells a fault, and stops."""
+
+    number: int
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Unheeded:
+    """A block that steers nothing here, such as ``FN 16: F-PRINT``; ``what`` names it."""
+
+    what: str
+    column: int = 0
+
+
+class CycleValue(NamedTuple):
+    """``Q200=+2``, or a part ``Q`` 0 of an old cycle's line with the word before it."""
+
+    q: int
+    formula: Formula
+    column: int
+
+
+@dataclass(frozen=True, slots=True)
+class Cycle:
+    """``CYCL DEF 200 DRILLING Q200=+2 …``: a cycle from 200 on with its parameters."""
+
+    number: int
+    values: tuple[CycleValue, ...] = ()
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class CycleLine:
+    """``CYCL DEF 1.2 DEPTH-15``: line ``part`` of a cycle under 200, with its words and numbers in order."""
+
+    number: int
+    part: int
+    words: tuple[AxisWord, ...] = ()
+    feed: Feed | None = None
+    turn: str = ""  # + or - of DR
+    text: str = ""  # what is no number
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class CycleCall:
+    """``CYCL CALL M3``, ``CYCL CALL POS X+10 Y+10 Z+0 F500``."""
+
+    axes: tuple[AxisWord, ...] = ()
+    feed: Feed | None = None
+    codes: tuple[MCode, ...] = ()
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramCall:
+    """``CALL PGM name``."""
+
+    name: str
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class ToolDef:
+    """``TOOL DEF 5 L+10 R+5`` in the program's unit; without both a tool to be got ready."""
+
+    tool: int | str
+    length: Value | None = None
+    radius: Value | None = None
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Transform:
+    """``TRANS MIRROR AXIS X``, ``TRANS ROTATION ROT+30``, ``TRANS SCALE SCL0.5``, RESET, cycles 8 10 11.
+
+    ``value`` is the angle or the factor; None with no ``axes`` ends it.
+    """
+
+    form: str  # MIRROR, ROTATION or SCALE
+    value: Value | None = None
+    axes: str = ""  # of MIRROR
+    incremental: bool = False
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class TipControl:
+    """``FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS`` and ``FUNCTION RESET TCPM``."""
+
+    on: bool
     column: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """``STOP``."""
+    """``STOP``, with M functions where there are."""
+
+    codes: tuple[MCode, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,7 +335,32 @@ class Plane:
 
 
 Node = (
-    Begin | End | BlankForm | ToolCall | Move | Codes | Datum | Label | Call | Assign | Stop | Heading | Plane
+    Begin
+    | End
+    | BlankForm
+    | ToolDef
+    | ToolCall
+    | Move
+    | Pole
+    | Corner
+    | Codes
+    | Datum
+    | Transform
+    | Label
+    | Call
+    | ProgramCall
+    | Assign
+    | Jump
+    | SystemRead
+    | ErrorMessage
+    | Unheeded
+    | Cycle
+    | CycleLine
+    | CycleCall
+    | TipControl
+    | Stop
+    | Heading
+    | Plane
 )
 
 
@@ -190,3 +373,4 @@ class KlartextLine(NamedTuple):
     skip: bool = False
     comment: str | None = None
     error: Diagnostic | None = None
+    code: str = ""  # the block as written, without number, skip sign and comment

@@ -11,7 +11,7 @@ from core.language.klartext.klartext_nodes import AxisWord, Feed, Retract, Value
 from core.language.typography import ascii_upper, typed
 
 _NUMBER = r"(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)"
-_VALUE = re.compile(rf"([+-]?)\s*(?:({_NUMBER})|Q\s*([0-9]+))(?![0-9A-Z.,])")
+_VALUE = re.compile(rf"([+-]?)\s*(?:({_NUMBER})|(Q[LR]?)\s*([0-9]+))(?![0-9.,])")
 _PLAIN = re.compile(rf"([+-]?)\s*({_NUMBER})(?![0-9.,])")
 _TEXT = re.compile(r"\(?[^\W\d_]{3}|\(")
 _WHOLE = re.compile(r"[0-9]+(?![0-9.,])")
@@ -85,9 +85,10 @@ class Cursor:
         column, match = self.column, self.take(_VALUE)
         if match is None:
             raise self.expected(f"{what} has no value", "Write a number such as +10, or a Q parameter.")
-        sign, number, q = match.groups()
+        sign, number, kind, q = match.groups()
         if q is not None:
-            return Value(0.0, self._q(int(q) if len(q) <= 4 else _HIGHEST_Q + 1, column), sign == "-", column)
+            high = self._q(int(q) if len(q) <= 4 else _HIGHEST_Q + 1, column)
+            return Value(0.0, high, sign == "-", column, kind)
         return Value(_number(sign, number), column=column)
 
     def number(self, what: str) -> Value:
@@ -131,11 +132,6 @@ class Cursor:
         if instead is not None:
             return instead[1]
         return f"{hint} A comment begins with ;.".lstrip() if _TEXT.match(word) else hint
-
-    def parameter(self) -> int:
-        """The number of a Q parameter."""
-        column = self.column
-        return self._q(self.whole("Q", 9999), column)
 
     def _q(self, number: int, column: int) -> int:
         if number > _HIGHEST_Q:

@@ -6,28 +6,30 @@ import dataclasses
 import re
 from collections.abc import Callable
 
-from core.language.klartext.klartext_faults import syntax, unsupported
+from core.language.klartext.klartext_faults import syntax
 from core.language.klartext.klartext_nodes import AxisWord, Plane, Positioning
 from core.language.klartext.line_cursor import Cursor, axis_words, doubled, feed, retract
 
 POINT_WORDS = tuple(f"P{point}{axis}" for point in "123" for axis in "XYZ")
 SPATIAL_WORDS = ("SPA", "SPB", "SPC")
-_OUTSIDE = ("EULER", "PROJECTED", "VECTOR")
+EULER_WORDS = ("EULPR", "EULNU", "EULROT")
+VECTOR_WORDS = ("BX", "BY", "BZ", "NX", "NY", "NZ")
+PROJECTED_WORDS = ("PROPR", "PROMIN", "ROT")
+FORMS = ("AXIAL", "POINTS", "SPATIAL", "RELATIV", "EULER", "VECTOR", "PROJECTED", "RESET")
 _WAYS = ("MOVE", "TURN", "STAY")
-_POINT = re.compile(r"(P[123][XYZ])(?=[\s+\-0-9.,Q]|$)")
-_SPATIAL = re.compile(r"(SP[ABC])(?=[\s+\-0-9.,Q]|$)")
+_POINT, _SPATIAL, _EULER, _VECTOR, _PROJECTED = (
+    re.compile(rf"({names})(?=[\s+\-0-9.,Q]|$)")
+    for names in ("P[123][XYZ]", "SP[ABC]", "EULPR|EULNU|EULROT", "[BN][XYZ]", "PROPR|PROMIN|ROT")
+)
 _SIDE = re.compile(r"(SYM|SEQ)\s*([+-])")
 _ROTATION = re.compile(r"(COORD|TABLE)\s+ROT(?![A-Z])")
 
 
 def plane(cursor: Cursor, column: int) -> Plane:
     """Behind ``PLANE``. Raises ProgramError for what is missing, unknown, doubled or out of the subset."""
-    form = cursor.keyword("AXIAL", "POINTS", "SPATIAL", "RELATIV", "RESET")
+    form = cursor.keyword(*FORMS)
     if form is None:
-        for name in _OUTSIDE:
-            if cursor.keyword(name):
-                raise unsupported(cursor.line, column, f"PLANE {name}")
-        raise cursor.expected("PLANE needs AXIAL, POINTS, SPATIAL, RELATIV or RESET")
+        raise cursor.expected(f"PLANE needs {', '.join(FORMS[:-1])} or {FORMS[-1]}")
     words = _WORDS[form](cursor) if form in _WORDS else ()
     return Plane(form, words, _positioning(cursor, form), column)
 
@@ -53,6 +55,9 @@ _WORDS: dict[str, Callable[[Cursor], tuple[AxisWord, ...]]] = {
     "POINTS": lambda cursor: _all_of(cursor, POINT_WORDS, _named(cursor, _POINT)),
     "SPATIAL": lambda cursor: _all_of(cursor, SPATIAL_WORDS, _named(cursor, _SPATIAL)),
     "RELATIV": _relative,
+    "EULER": lambda cursor: _all_of(cursor, EULER_WORDS, _named(cursor, _EULER)),
+    "VECTOR": lambda cursor: _all_of(cursor, VECTOR_WORDS, _named(cursor, _VECTOR)),
+    "PROJECTED": lambda cursor: _all_of(cursor, PROJECTED_WORDS, _named(cursor, _PROJECTED)),
 }
 
 

@@ -1,12 +1,12 @@
-"""Blocks besides L and PLANE: program frame, blank form, TOOL CALL, datum, labels, calls, Q parameters."""
+"""Blocks besides paths, cycles and PLANE: program frame, blank form, tools, datum, labels and calls."""
 
 from __future__ import annotations
 
 import re
 
+from core.language.klartext.cycle_blocks import mirrored_axes, rotation, scale
 from core.language.klartext.klartext_faults import syntax, unsupported
 from core.language.klartext.klartext_nodes import (
-    Assign,
     AxisWord,
     Begin,
     BlankForm,
@@ -14,15 +14,20 @@ from core.language.klartext.klartext_nodes import (
     Datum,
     End,
     Label,
+    ProgramCall,
+    TipControl,
     ToolCall,
+    ToolDef,
+    Transform,
+    Unheeded,
     Value,
 )
 from core.language.klartext.line_cursor import Cursor, axis_words, doubled
 
-_PROGRAM = re.compile(r"(\S.*?)\s+(MM|INCH)\s*$")
+_PROGRAM = re.compile(r"(?:(\S.*?)\s+)?(MM|INCH)\s*$")
 _PART = re.compile(r"0\.([12])(?![0-9])")
 _AXIS = re.compile(r"([XYZUVW])(?![A-Z0-9+\-])")
-_TOOL_WORD = re.compile(r"(DL|DR|S|F)(?=\s*[+\-0-9.,Q])")
+_TOOL_WORD = re.compile(r"(DL|DR2|DR|S|F)(?=\s*[+\-0-9.,Q])")
 _TOOL = re.compile(r'(?=[0-9"])')
 MOST_TOOL = 32767
 
@@ -38,12 +43,15 @@ def end(cursor: Cursor) -> End:
 
 
 def _named(cursor: Cursor, what: str) -> tuple[str, bool]:
+    """Name, which may be missing, and whether the unit is INCH; END PGM without a unit is read as MM."""
     match = _PROGRAM.match(cursor.text[cursor.at :].upper())
+    if match is None and what == "END PGM":
+        return cursor.rest(), False
     if match is None:
         raise syntax(
-            cursor.line, cursor.column, f"{what} needs a name and MM or INCH.", "Write both behind it."
+            cursor.line, cursor.column, f"{what} needs MM or INCH.", "Write the unit behind the name."
         )
-    name = cursor.text[cursor.at : cursor.at + len(match.group(1))]
+    name = cursor.text[cursor.at : cursor.at + len(match.group(1) or "")]
     cursor.rest()
     return name, match.group(2) == "INCH"
 
@@ -83,7 +91,7 @@ def tool_call(cursor: Cursor) -> ToolCall:
         at = cursor.column
         match = cursor.take(_TOOL_WORD)
         if match is None:
-            raise cursor.expected("No word of TOOL CALL", "It takes a tool, its axis, S, F, DL and DR.")
+            raise cursor.expected("No word of TOOL CALL", "It takes a tool, its axis, S, F, DL, DR and DR2.")
         name = match.group(1)
         if name in words:
             raise doubled(cursor, at, name)
@@ -94,18 +102,55 @@ def tool_call(cursor: Cursor) -> ToolCall:
 # --- datum shifts, labels, calls and Q parameters
 
 
+_LENGTHS = re.compile(r"([LR])(?=\s*[+\-0-9.,Q])")
+
+
+def tool_def(cursor: Cursor, column: int) -> ToolDef:
+    """The words behind ``TOOL DEF``: the tool, and its length and radius where the program tells them."""
+    tool = cursor.name("TOOL DEF", MOST_TOOL)
+    words: dict[str, Value] = {}
+    while not cursor.done:
+        at, match = cursor.column, cursor.take(_LENGTHS)
+        if match is None:
+            raise cursor.expected("No word of TOOL DEF", "It takes a tool, L and R.")
+        if match.group(1) in words:
+            raise doubled(cursor, at, match.group(1))
+        words[match.group(1)] = cursor.value(match.group(1))
+    return ToolDef(tool, words.get("L"), words.get("R"), column)
+
+
+# --- datum shifts and other transformations, labels, calls
+
+
 MOST_LABEL = 65535
 MOST_REPEATS = 65534
-_CYCLE = re.compile(r"([0-9]+)(?:\.([0-9]+))?")
-_EQUALS = re.compile(r"=")
+_OF_REPEATS = re.compile(r"/\s*[0-9]+")
 
 
-def datum(cursor: Cursor, column: int) -> Datum:
-    """The words behind ``TRANS DATUM``: AXIS with its axes, or RESET."""
+def transformation(cursor: Cursor, column: int) -> Datum | Transform:
+    """The words behind ``TRANS``."""
+    if cursor.keyword("DATUM"):
+        return _datum(cursor, column)
+    if cursor.keyword("MIRROR"):
+        axes = "" if cursor.keyword("RESET") else _mirrored(cursor)
+        return Transform("MIRROR", axes=axes, column=column)
+    for word, read in (("ROTATION", rotation), ("SCALE", scale)):
+        if cursor.keyword(word):
+            return Transform(word, column=column) if cursor.keyword("RESET") else read(cursor, column)
+    raise cursor.expected("TRANS needs DATUM, MIRROR, ROTATION or SCALE")
+
+
+def _mirrored(cursor: Cursor) -> str:
+    if not cursor.keyword("AXIS"):
+        raise cursor.expected("TRANS MIRROR needs AXIS or RESET")
+    return mirrored_axes(cursor)
+
+
+def _datum(cursor: Cursor, column: int) -> Datum:
     if cursor.keyword("RESET"):
         made = Datum(reset=True)
     elif cursor.keyword("AXIS"):
-        made = Datum(axis_words(cursor, "XYZ"))
+        made = Datum(axis_words(cursor, "XYZABC"))
         if not made.axes:
             raise cursor.expected("TRANS DATUM AXIS needs X, Y or Z")
     elif cursor.keyword("TABLE"):
@@ -115,23 +160,6 @@ def datum(cursor: Cursor, column: int) -> Datum:
     if not cursor.done:
         raise cursor.expected("No word of TRANS DATUM")
     return made
-
-
-def cycle(cursor: Cursor, column: int) -> Datum:
-    """Behind ``CYCL DEF``: cycle 7 only. Raises ProgramError for every other one."""
-    match = cursor.take(_CYCLE)
-    if match is None or match.group(1) != "7" or match.group(2) is None:
-        name = match.group(1) if match else cursor.next_word
-        raise unsupported(cursor.line, column, f"CYCL DEF {name}".strip())
-    part = int(match.group(2)[:4])
-    if part == 0:
-        return Datum(cycle=0, text=cursor.rest())
-    axes = axis_words(cursor, "XYZ")
-    if len(axes) != 1:
-        raise cursor.expected(f"CYCL DEF 7.{part} takes one of X, Y and Z")
-    if not cursor.done:
-        raise cursor.expected("No word of cycle 7")
-    return Datum(axes, cycle=part)
 
 
 def label(cursor: Cursor) -> Label:
@@ -144,25 +172,44 @@ def label(cursor: Cursor) -> Label:
 
 
 def call(cursor: Cursor) -> Call:
-    """The label behind ``CALL LBL``, and its repeats."""
+    """The label behind ``CALL LBL``, and its repeats; ``REP 3/3`` is how older controls write three."""
     column = cursor.column
     name = cursor.name("CALL LBL", MOST_LABEL)
     if name == 0:
         text = "LBL 0 ends a subprogram; it cannot be called."
         raise syntax(cursor.line, column, text, "Call another label.")
-    repeat = cursor.whole("REP", MOST_REPEATS) if cursor.keyword("REP") else None
+    repeat = None
+    if cursor.keyword("REP"):
+        repeat = _repeats(cursor)
+        cursor.take(_OF_REPEATS)
     if not cursor.done:
         raise cursor.expected("No word of CALL LBL")
     return Call(name, repeat, column)
 
 
-def assign(cursor: Cursor, *, spelled: bool) -> Assign:
-    """Behind ``Q``, with ``spelled`` behind ``FN 0: Q``. Raises ProgramError for a formula."""
+def _repeats(cursor: Cursor) -> Value:
+    """A whole number of repeats, or a Q parameter."""
     column = cursor.column
-    q = cursor.parameter()
-    if cursor.take(_EQUALS) is None:
-        raise cursor.expected(f"'=' was expected behind Q{q}")
-    value = cursor.value(f"Q{q}")
-    if not cursor.done:
-        raise unsupported(cursor.line, cursor.column, f"The formula '{cursor.rest()}'")
-    return Assign(q, value, spelled, column)
+    if cursor.upper[cursor.at : cursor.at + 1] == "Q":
+        return cursor.value("REP")
+    return Value(float(cursor.whole("REP", MOST_REPEATS)), column=column)
+
+
+def call_program(cursor: Cursor, column: int) -> ProgramCall:
+    """The file behind ``CALL PGM``, in quotes or not."""
+    name = cursor.rest().strip('"')
+    if not name:
+        raise cursor.expected("CALL PGM needs the name of a program")
+    return ProgramCall(name, column)
+
+
+def function(cursor: Cursor, column: int) -> TipControl | Unheeded:
+    """Behind ``FUNCTION``: TCPM on and off; MODE MILL, FEED and SPINDLE settings steer nothing here."""
+    if cursor.keyword("TCPM"):
+        cursor.rest()
+        return TipControl(on=True, column=column)
+    if cursor.keyword("RESET TCPM"):
+        return TipControl(on=False, column=column)
+    if cursor.keyword("MODE MILL"):
+        return Unheeded("FUNCTION MODE MILL", column)
+    raise unsupported(cursor.line, column, f"FUNCTION {cursor.rest()}".strip())

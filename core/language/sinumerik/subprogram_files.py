@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 from core.language.sinumerik.sinumerik_lexer import lex_line
-from core.language.source import Dialect, Source, SourceError, load_source
+from core.language.source import Source
 
 HEADER = re.compile(r"\s*%_N_([A-Z0-9_]+)_(MPF|SPF)\s*(?:;.*)?", re.IGNORECASE)
-ENDING = ".spf"
+ENDING = ".SPF"
 # Nearly all lines begin with a number, or with a letter and a number; only the others can be calls.
 _MAY_CALL = re.compile(
     r"\s*(?:/[0-9]?)?\s*(?:[N:][0-9]+)?\s*(?:\w+\s*:)?\s*(?:L[0-9]|[A-Z_]{2})", re.IGNORECASE
 )
-_MOST_FILES = 500
 
 
 class Section(NamedTuple):
@@ -41,48 +39,14 @@ def sections(source: Source) -> list[Section]:
     return [Section("", before), *found] if holds_code else found
 
 
-def with_subprograms(source: Source, folders: Sequence[Path]) -> Source:
-    """The source with the subprograms that it and they call, as far as the folders hold them.
-
-    A file that is missing or no text is left out: the call that needs it is an error of the program.
-    """
-    found: dict[str, Source] = {}
-    waiting = [source]
-    while waiting and len(found) < _MOST_FILES:
-        reading = waiting.pop()
-        inside = {section.name for section in sections(reading)}
-        for name in _called(reading):
-            if name not in found and name not in inside and (read := _read(name, folders)) is not None:
-                found[name] = read
-                waiting.append(read)
-    return replace(source, subprograms=tuple(found[name] for name in sorted(found)))
+def called_files(source: Source) -> Iterator[str]:
+    """Names of the files, in capitals, of the subprograms that are called and not in the file itself."""
+    inside = {section.name for section in sections(source)}
+    for number, text in enumerate(source.lines, start=1):
+        if _MAY_CALL.match(text) and (call := lex_line(number, text).call) and call not in inside:
+            yield f"{call}{ENDING}"
 
 
 def program_name(source: Source) -> str:
     """The name by which a program calls this file."""
     return Path(source.name).stem.upper()
-
-
-def _called(source: Source) -> Iterator[str]:
-    for number, text in enumerate(source.lines, start=1):
-        if _MAY_CALL.match(text) and (call := lex_line(number, text).call):
-            yield call
-
-
-def _read(name: str, folders: Sequence[Path]) -> Source | None:
-    for folder in folders:
-        for path in (folder / f"{name}{ENDING}".lower(), *_same_name(folder, name)):
-            try:
-                if path.is_file():
-                    return load_source(path, Dialect.SINUMERIK)
-            except SourceError:
-                return None
-    return None
-
-
-def _same_name(folder: Path, name: str) -> list[Path]:
-    """Files of this name in any case."""
-    try:
-        return [path for path in folder.iterdir() if path.name.upper() == f"{name}{ENDING}".upper()]
-    except OSError:
-        return []

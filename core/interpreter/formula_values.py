@@ -1,0 +1,91 @@
+"""What a formula comes to: arithmetic in numbers, angles in degrees."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from core.geometry.rotation_frames import cos_sin
+from core.language.formulas import Formula, Number, Operation, Parameter
+
+
+class NoValueError(Exception):
+    """A formula without a value. ``column`` is where its operation stands; ``str()`` says why."""
+
+    def __init__(self, column: int, why: str) -> None:
+        super().__init__(why)
+        self.column = column
+
+
+def worth(formula: Formula, parameter: Callable[[Parameter], float]) -> float:
+    """The value; ``parameter`` gives that of a parameter. Raises NoValueError where there is none."""
+    if isinstance(formula, Number):
+        return formula.value
+    if isinstance(formula, Parameter):
+        return parameter(formula)
+    operands = [worth(each, parameter) for each in formula.operands]
+    try:
+        found = OPERATIONS[formula.name](*operands)
+    except ZeroDivisionError:
+        raise NoValueError(formula.column, "It divides by zero") from None
+    except (ValueError, OverflowError):
+        raise NoValueError(formula.column, _undefined(formula, operands)) from None
+    except TypeError:
+        raise NoValueError(formula.column, "A function is asked of too few or too many values") from None
+    if not math.isfinite(found):
+        raise NoValueError(formula.column, "The result is too large")
+    return found
+
+
+def _undefined(formula: Operation, operands: list[float]) -> str:
+    return f"{formula.name} of {', '.join(f'{each:g}' for each in operands)} has no value"
+
+
+def _tangent(degrees: float) -> float:
+    cosine, sine = cos_sin(degrees)
+    return sine / cosine
+
+
+def _angle_of(opposite: float, adjacent: float) -> float:
+    """0 to under 360 degrees."""
+    return math.degrees(math.atan2(opposite, adjacent)) % 360.0
+
+
+def _power(base: float, exponent: float) -> float:
+    return math.pow(base, exponent)
+
+
+_TRUTH = 1e-12  # numbers that differ by less are equal
+
+OPERATIONS: dict[str, Callable[..., float]] = {
+    "plus": lambda a, b: a + b,
+    "minus": lambda a, b: a - b,
+    "times": lambda a, b: a * b,
+    "over": lambda a, b: a / b,
+    "power": _power,
+    "modulo": lambda a, b: a - b * math.floor(a / b),
+    "whole quotient": lambda a, b: float(math.trunc(a / b)),
+    "negative": lambda a: -a + 0.0,
+    "square": lambda a: a * a,
+    "square root": math.sqrt,
+    "sine": lambda a: cos_sin(a)[1],
+    "cosine": lambda a: cos_sin(a)[0],
+    "tangent": _tangent,
+    "arc sine": lambda a: math.degrees(math.asin(a)),
+    "arc cosine": lambda a: math.degrees(math.acos(a)),
+    "arc tangent": lambda a: math.degrees(math.atan(a)),
+    "angle": _angle_of,
+    "natural logarithm": math.log,
+    "common logarithm": math.log10,
+    "exponential": math.exp,
+    "whole part": lambda a: float(math.trunc(a)),
+    "fraction": lambda a: a - math.trunc(a),
+    "absolute": abs,
+    "sign": lambda a: math.copysign(1.0, a) if a else 0.0,
+    "length": math.hypot,
+    "equal": lambda a, b: float(abs(a - b) <= _TRUTH),
+    "unequal": lambda a, b: float(abs(a - b) > _TRUTH),
+    "greater": lambda a, b: float(a > b),
+    "less": lambda a, b: float(a < b),
+}
+"""What each operation of a formula does; angles in degrees."""

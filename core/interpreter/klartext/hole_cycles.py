@@ -1,0 +1,256 @@
+"""Cycles that make holes: drilling, reaming, boring, tapping, bore milling, centring (200 to 209, 240)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+
+from core.geometry.lines_and_arcs import Arc
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.klartext.cycle_moves import CycleTool
+
+SMALLEST = 1e-6  # mm; less is no depth
+_ASIDE = 0.2  # mm that a boring bar goes aside before it is drawn out
+_MOST_PECKS = 10_000
+
+
+def drilling(tool: CycleTool) -> Iterator[Block]:
+    """200: in infeeds, out of the hole after each."""
+    surface, clear, bottom = _heights(tool)
+    feed = tool.feed(206)
+    yield tool.to(clear)
+    if abs(bottom - surface) < SMALLEST:
+        return
+    before = 0.0
+    for depth in _infeeds(tool, surface - bottom, tool.length(202)):
+        if before:
+            yield from tool.dwell(tool.plain(210, 0.0))
+            yield tool.to(min(clear, surface - before + tool.length(200)))
+        yield tool.to(surface - depth, feed)
+        if depth < surface - bottom:
+            yield tool.to(clear)
+        before = depth
+    yield from tool.dwell(tool.plain(211, 0.0))
+    yield from _out(tool, surface, clear, None)
+
+
+def reaming(tool: CycleTool) -> Iterator[Block]:
+    """201: down and out at a feed."""
+    surface, clear, bottom = _heights(tool)
+    feed = tool.feed(206)
+    yield tool.to(clear)
+    if abs(bottom - surface) < SMALLEST:
+        return
+    yield tool.to(bottom, feed)
+    yield from tool.dwell(tool.plain(211, 0.0))
+    yield from _out(tool, surface, clear, tool.feed(208) if tool.plain(208, 0.0) else feed)
+
+
+def boring(tool: CycleTool) -> Iterator[Block]:
+    """202: down, the spindle stopped, aside where Q214 says so, out, the spindle on again."""
+    surface, clear, bottom = _heights(tool)
+    rpm = tool.rpm
+    aside = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}
+    way = aside.get(int(tool.plain(214, 0.0)))
+    if way is None:
+        raise tool.refuse("Q214 is not between 0 and 4.", "Correct the direction.")
+    x, y = tool.here
+    yield tool.to(clear)
+    if abs(bottom - surface) < SMALLEST:
+        return
+    yield tool.to(bottom, tool.feed(206))
+    yield from tool.dwell(tool.plain(211, 0.0))
+    yield tool.stop()
+    if way != (0.0, 0.0):
+        yield tool.across((x + way[0] * _ASIDE, y + way[1] * _ASIDE), None, tool.feed(206))
+    yield from _out(tool, surface, clear, tool.feed(208) if tool.plain(208, 0.0) else None)
+    if way != (0.0, 0.0):
+        yield tool.across((x, y))
+    yield tool.turn(rpm)
+
+
+def universal_drilling(tool: CycleTool) -> Iterator[Block]:
+    """203: Q213 chip breaks between two ways out, infeeds that become smaller by Q212 down to Q205."""
+    surface, clear, bottom = _heights(tool)
+    feed, whole = tool.feed(206), surface - bottom
+    back, breaks = tool.length(256, 0.2), int(tool.plain(213, 0.0))
+    yield tool.to(clear)
+    if whole < SMALLEST:
+        return
+    infeeds = _infeeds(tool, whole, tool.length(202), tool.length(212, 0.0), tool.length(205, 0.0))
+    for count, depth in enumerate(infeeds, start=1):
+        yield tool.to(surface - depth, feed)
+        if depth >= whole - SMALLEST:
+            break
+        if breaks and count % (breaks + 1):
+            yield tool.to(surface - depth + back)
+        else:
+            yield tool.to(clear)
+            yield from tool.dwell(tool.plain(210, 0.0))
+            yield tool.to(min(clear, surface - depth + tool.length(200)))
+    yield from tool.dwell(tool.plain(211, 0.0))
+    yield from _out(tool, surface, clear, tool.feed(208) if tool.plain(208, 0.0) else None)
+
+
+def deep_drilling(tool: CycleTool) -> Iterator[Block]:
+    """205: as 203, stopping Q258 to Q259 before the chips, chip breaks by depth (Q257), a start (Q379)."""
+    surface, clear, bottom = _heights(tool)
+    feed, begin = tool.feed(206), surface - max(tool.length(379, 0.0), 0.0)
+    whole, breaking, back = begin - bottom, tool.length(257, 0.0), tool.length(256, 0.2)
+    yield tool.to(clear)
+    if whole < SMALLEST:
+        return
+    if begin < surface:
+        yield tool.to(begin + tool.length(200), tool.feed(253))
+    near, far = tool.length(258, 0.2), tool.length(259, 0.2)
+    broken = 0.0
+    for depth in _infeeds(tool, whole, tool.length(202), tool.length(212, 0.0), tool.length(205, 0.0)):
+        while 0.0 < breaking < depth - broken - SMALLEST:
+            broken += breaking
+            yield tool.to(begin - broken, feed)
+            yield tool.to(begin - broken + back)
+        broken = depth
+        yield tool.to(begin - depth, feed)
+        if depth < whole - SMALLEST:
+            yield tool.to(clear)
+            yield tool.to(begin - depth + near + (far - near) * depth / whole)
+    yield from tool.dwell(tool.plain(211, 0.0))
+    yield from _out(tool, surface, clear, tool.feed(208) if tool.plain(208, 0.0) else None)
+
+
+def floating_tapping(tool: CycleTool) -> Iterator[Block]:
+    """206: down at Q206, the spindle turned round, out."""
+    surface, clear, bottom = _heights(tool)
+    yield from _tapped(tool, surface, clear, bottom, tool.feed(206) or 0.0)
+
+
+def rigid_tapping(tool: CycleTool) -> Iterator[Block]:
+    """207: as 206, the feed from pitch and speed; a pitch under 0 is a left-hand thread."""
+    surface, clear, bottom = _heights(tool)
+    yield from _tapped(tool, surface, clear, bottom, _pitch_feed(tool))
+
+
+def tapping_with_chip_breaking(tool: CycleTool) -> Iterator[Block]:
+    """209: rigid, the spindle turned round at every Q257 of depth."""
+    surface, clear, bottom = _heights(tool)
+    rpm, feed, back = tool.rpm, _pitch_feed(tool), tool.length(256, 0.0)
+    step = tool.length(257, 0.0)
+    yield tool.to(clear)
+    for depth in _infeeds(tool, surface - bottom, step or surface - bottom):
+        yield tool.to(surface - depth, feed)
+        yield tool.turn(-rpm)
+        last = depth >= surface - bottom - SMALLEST
+        yield tool.to(clear if last or not back else surface - depth + back, feed)
+        yield tool.turn(rpm)
+    yield from _out(tool, surface, clear, None)
+
+
+def _pitch_feed(tool: CycleTool) -> float:
+    """Feed as programmed, from pitch and speed."""
+    pitch = tool.plain(239)
+    if pitch == 0.0:
+        raise tool.refuse("Q239 is no pitch.", "Write the pitch of the thread.")
+    return abs(pitch) * abs(tool.rpm)
+
+
+def _tapped(tool: CycleTool, surface: float, clear: float, bottom: float, feed: float) -> Iterator[Block]:
+    rpm = tool.rpm
+    yield tool.to(clear)
+    if abs(bottom - surface) < SMALLEST or feed <= 0.0:
+        return
+    yield tool.to(bottom, feed)
+    yield from tool.dwell(tool.plain(211, 0.0))
+    yield tool.turn(-rpm)
+    yield tool.to(clear, feed)
+    yield tool.turn(rpm)
+    yield from _out(tool, surface, clear, None)
+
+
+def bore_milling(tool: CycleTool) -> Iterator[Block]:
+    """208: a helix of Q334 a turn to the diameter Q335, one turn at the bottom, out in the middle."""
+    surface, clear, bottom = _heights(tool)
+    feed = tool.feed(206) or 0.0
+    way = tool.length(335) / 2.0 - tool.radius
+    x, y = tool.here
+    pitch = tool.length(334)
+    if way < 0.0 or pitch <= 0.0 or feed <= 0.0:
+        raise tool.refuse(
+            "The tool, the infeed or the feed of cycle 208 does not fit the hole.", "Correct them."
+        )
+    yield tool.to(clear)
+    if way < SMALLEST:
+        yield tool.to(bottom, feed)
+        yield from _out(tool, surface, clear, None)
+        return
+    start = x + way, y
+    yield tool.across(start, None, feed)
+    clockwise = tool.plain(351, 1.0) < 0.0
+    circle = Arc(start, start, (x, y), clockwise)
+    for turn in range(1, math.ceil((clear - bottom) / pitch - SMALLEST) + 1):
+        yield tool.round(circle, max(clear - turn * pitch, bottom), feed)
+    yield tool.round(circle, bottom, feed)
+    yield tool.across((x, y), None, feed)
+    yield from _out(tool, surface, clear, None)
+
+
+def centring(tool: CycleTool) -> Iterator[Block]:
+    """240: to a depth; a diameter would need the angle of the tool's point."""
+    if tool.plain(343, 0.0) == 1.0:
+        raise tool.refuse(
+            "Cycle 240 by diameter needs the angle of the tool's point.", "Write Q343=+0 and Q201."
+        )
+    surface, clear, bottom = _heights(tool)
+    yield tool.to(clear)
+    yield tool.to(bottom, tool.feed(206))
+    yield from tool.dwell(tool.plain(211, 0.0))
+    yield from _out(tool, surface, clear, None)
+
+
+def _heights(tool: CycleTool) -> tuple[float, float, float]:
+    """Surface, set-up clearance above it, and bottom. Raises ProgramError for a depth that leads upwards."""
+    surface, depth = tool.length(203, 0.0), tool.length(201)
+    if depth > 0.0:
+        raise tool.refuse(f"The depth Q201 {depth:+.10g} mm leads upwards.", "Write it with a minus.")
+    return surface, surface + tool.length(200), surface + depth
+
+
+def _infeeds(
+    tool: CycleTool, whole: float, step: float, smaller: float = 0.0, least: float = 0.0
+) -> Iterator[float]:
+    """Depths of the infeeds one after the other, the whole depth last."""
+    if step <= 0.0 or step >= whole:
+        yield whole
+        return
+    if whole / max(step if not smaller else least or step, SMALLEST) > _MOST_PECKS:
+        raise tool.refuse(f"The infeed of {step:g} mm takes too many.", "Make Q202 larger.")
+    done = 0.0
+    while whole - done > SMALLEST:
+        done = min(done + step, whole)
+        yield done if whole - done > SMALLEST else whole
+        step = max(step - smaller, least, SMALLEST) if smaller else step
+
+
+def _out(tool: CycleTool, surface: float, clear: float, feed: float | None) -> Iterator[Block]:
+    """To the set-up clearance, and on to the second one where that is higher."""
+    second = surface + tool.length(204, 0.0)
+    if feed is None:
+        yield tool.to(max(clear, second))
+        return
+    yield tool.to(clear, feed)
+    if second > clear:
+        yield tool.to(second)
+
+
+HOLES: dict[int, Callable[[CycleTool], Iterator[Block]]] = {
+    200: drilling,
+    201: reaming,
+    202: boring,
+    203: universal_drilling,
+    205: deep_drilling,
+    206: floating_tapping,
+    207: rigid_tapping,
+    208: bore_milling,
+    209: tapping_with_chip_breaking,
+    240: centring,
+}
+"""Cycles by their number."""

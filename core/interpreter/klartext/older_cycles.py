@@ -1,0 +1,211 @@
+"""Cycles under 200, told line by line: pecking (1), tapping (2, 17), slot (3), pocket (4), circle (5).
+
+They are called with the tool at the set-up clearance above the surface, which is where it stands then.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+
+from core.geometry.lines_and_arcs import Arc, Point
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.klartext import word_values
+from core.interpreter.klartext.cycle_moves import CycleTool
+from core.interpreter.klartext.klartext_state import State
+from core.interpreter.klartext.q_functions import value
+from core.language.klartext.klartext_faults import CYCLE_MISSING
+from core.language.klartext.klartext_nodes import AxisWord, CycleLine
+
+Lines = Mapping[int, CycleLine]
+_SMALLEST = 1e-6  # mm
+_OVERLAP = 0.7  # of the tool's radius from one way to the next: the control's machine parameter 7430 has 1.4
+_MOST_LEVELS = 10_000
+
+
+class _Told:
+    """What the lines of a cycle say."""
+
+    def __init__(self, state: State, lines: Lines, column: int) -> None:
+        self._state = state
+        self._lines = lines
+        self._column = column
+
+    def number(self, part: int, axis: str = "") -> float:
+        """The number of a line, or of its word for an axis. Raises ProgramError where it is missing."""
+        words = self._lines[part].words if part in self._lines else ()
+        word: AxisWord | None = next((each for each in words if each.axis == axis), None)
+        if word is None:
+            number = next(iter(self._lines.values())).number if self._lines else 0
+            text = f"Line {number}.{part} of the cycle has no {axis or 'number'}."
+            raise self._state.refuse(self._column, CYCLE_MISSING, text, "Write it in CYCL DEF.")
+        return value(self._state, word.value.formula)
+
+    def length(self, part: int, axis: str = "") -> float:
+        """The same, mm."""
+        return self.number(part, axis) * self._state.scale
+
+    def feed(self, part: int) -> float | None:
+        """The feed of a line, as programmed; None for rapid."""
+        line = self._lines.get(part)
+        return word_values.feed_word(self._state, line.feed if line else None, self._column)
+
+    def cutting_feed(self, part: int) -> float:
+        """The same, which must not be rapid."""
+        found = self.feed(part)
+        if found is None:
+            text = "A pocket is not milled in rapid."
+            raise self._state.refuse(self._column, CYCLE_MISSING, text, "Write F in CYCL DEF.")
+        return found
+
+    def turn(self, part: int) -> float:
+        """1 for DR+, which is counter-clockwise, -1 for DR-."""
+        line = self._lines.get(part)
+        return -1.0 if line is not None and line.turn == "-" else 1.0
+
+    def has(self, part: int, axis: str) -> bool:
+        """Whether a line has a word."""
+        return part in self._lines and any(word.axis == axis for word in self._lines[part].words)
+
+
+def _pecking(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
+    """1: down by infeeds; out in rapid, and in rapid to just before the chips."""
+    told = _Told(state, lines, column)
+    clear, feed = tool.height, told.feed(5)
+    depth, step = abs(told.length(2)), abs(told.length(3))
+    surface = clear - told.length(1)
+    near = 0.6 if depth <= 30.0 else min(depth / 50.0, 7.0)
+    for done in _levels(tool, depth, step):
+        yield tool.to(surface - done, feed)
+        if done < depth:
+            yield tool.to(clear)
+            yield tool.to(min(clear, surface - done + near))
+    yield from tool.dwell(told.number(4))
+    yield tool.to(clear)
+
+
+def _tapping(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
+    """2 at a feed, 17 by a pitch: the spindle turns round at the bottom."""
+    told = _Told(state, lines, column)
+    rigid = next(iter(lines.values())).number == _RIGID
+    clear, rpm = tool.height, tool.rpm
+    feed = abs(told.number(3)) * abs(rpm) if rigid else told.feed(4)
+    yield tool.to(clear - told.length(1) - abs(told.length(2)), feed)
+    if not rigid:
+        yield from tool.dwell(told.number(3))
+    yield tool.turn(-rpm)
+    yield tool.to(clear, feed)
+    yield tool.turn(rpm)
+
+
+def _slot(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
+    """3: along the first side by levels, then round at the width."""
+    told = _Told(state, lines, column)
+    first, second = _sides(told, 4), _sides(told, 5)
+    (x, y), clear = tool.here, tool.height
+    end = x + first[0], y + first[1]
+    width = (abs(second[0]) + abs(second[1])) / 2.0 - tool.radius
+    if width < -_SMALLEST:
+        raise tool.refuse("The tool is wider than the slot.", "Take a smaller tool.")
+    surface, feed = clear - told.length(1), told.cutting_feed(6)
+    ends = [(x, y), end]
+    for at, done in enumerate(_levels(tool, abs(told.length(2)), abs(told.length(3)))):
+        yield tool.to(surface - done, told.feed(3))
+        yield tool.across(ends[1 - at % 2], None, feed)
+    if width > _SMALLEST:
+        yield from _round_slot(tool, (x, y), end, width, feed)
+    yield tool.to(clear)
+    yield tool.across((x, y))
+
+
+def _round_slot(tool: CycleTool, start: Point, end: Point, width: float, feed: float) -> Iterator[Block]:
+    length = math.dist(start, end)
+    u = (end[0] - start[0]) / length, (end[1] - start[1]) / length
+    v = -u[1] * width, u[0] * width
+    corners = [
+        (start[0] - v[0], start[1] - v[1]),
+        (end[0] - v[0], end[1] - v[1]),
+        (end[0] + v[0], end[1] + v[1]),
+        (start[0] + v[0], start[1] + v[1]),
+    ]
+    for corner in (*corners, corners[0]):
+        yield tool.across(corner, None, feed)
+
+
+def _pocket(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
+    """4: from the middle outwards in rectangles, level by level."""
+    told = _Told(state, lines, column)
+    (x, y), clear = tool.here, tool.height
+    half = abs(told.length(4, "X")) / 2.0 - tool.radius, abs(told.length(5, "Y")) / 2.0 - tool.radius
+    if min(half) < -_SMALLEST:
+        raise tool.refuse("The tool is wider than the pocket.", "Take a smaller tool.")
+    surface, feed, turn = clear - told.length(1), told.cutting_feed(6), told.turn(6)
+    step = tool.radius * 2.0 * _OVERLAP
+    count = max(1, math.ceil(min(half) / step)) if step > _SMALLEST else 1
+    for done in _levels(tool, abs(told.length(2)), abs(told.length(3))):
+        yield tool.across((x, y), None, feed)
+        yield tool.to(surface - done, told.feed(3))
+        for ring in range(1, count + 1):
+            inset = min(half) * (1.0 - ring / count)
+            a, b = half[0] - inset, half[1] - inset
+            corners = [
+                (x + a, y - turn * b),
+                (x + a, y + turn * b),
+                (x - a, y + turn * b),
+                (x - a, y - turn * b),
+            ]
+            for corner in (*corners, corners[0]):
+                yield tool.across(corner, None, feed)
+    yield tool.to(clear)
+    yield tool.across((x, y))
+
+
+def _circular_pocket(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
+    """5: from the middle outwards in circles, level by level."""
+    told = _Told(state, lines, column)
+    (x, y), clear = tool.here, tool.height
+    radius = abs(told.length(4, "R" if told.has(4, "R") else "")) - tool.radius
+    if radius < -_SMALLEST:
+        raise tool.refuse("The tool is wider than the pocket.", "Take a smaller tool.")
+    surface, feed, turn = clear - told.length(1), told.cutting_feed(5), told.turn(5)
+    step = tool.radius * 2.0 * _OVERLAP
+    count = max(1, math.ceil(radius / step)) if step > _SMALLEST else 1
+    for done in _levels(tool, abs(told.length(2)), abs(told.length(3))):
+        yield tool.across((x, y), None, feed)
+        yield tool.to(surface - done, told.feed(3))
+        for ring in range(1, count + 1):
+            start = x + radius * ring / count, y
+            yield tool.across(start, None, feed)
+            yield tool.round(Arc(start, start, (x, y), clockwise=turn < 0.0), tool.height, feed)
+    yield tool.to(clear)
+    yield tool.across((x, y))
+
+
+def _sides(told: _Told, part: int) -> Point:
+    return (
+        told.length(part, "X") if told.has(part, "X") else 0.0,
+        told.length(part, "Y") if told.has(part, "Y") else 0.0,
+    )
+
+
+def _levels(tool: CycleTool, depth: float, step: float) -> Iterator[float]:
+    """Depths of the infeeds, the whole depth last."""
+    if step <= 0.0 or step >= depth:
+        yield depth
+        return
+    count = math.ceil(depth / step - 1e-9)
+    if count > _MOST_LEVELS:
+        raise tool.refuse(f"The infeed of {step:g} mm takes {count} passes.", "Make it larger.")
+    yield from (min(step * at, depth) for at in range(1, count + 1))
+
+
+_RIGID = 17
+OLDER: dict[int, Callable[[State, CycleTool, Lines, int], Iterator[Block]]] = {
+    1: _pecking,
+    2: _tapping,
+    3: _slot,
+    4: _pocket,
+    5: _circular_pocket,
+    17: _tapping,
+}
+"""Cycles by their number."""

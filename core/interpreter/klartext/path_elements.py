@@ -1,0 +1,230 @@
+"""What a path function comes to: one element of the path, in the coordinates of the program.
+
+C, CR, CT, CP and CTP become arcs, with Z helices; LP and CP count from the pole (CC). mm and degrees.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from core.geometry.lines_and_arcs import (
+    SAME_POINT,
+    Arc,
+    Element,
+    Line,
+    Point,
+    arc_between,
+    centre_from_radius,
+)
+from core.geometry.rotation_frames import Vector
+from core.interpreter.klartext import word_values
+from core.interpreter.klartext.klartext_state import State
+from core.language.klartext.klartext_faults import ARC_END, DIRECTION, NO_POLE, PREVIOUS
+from core.language.klartext.klartext_nodes import AxisWord, Move
+
+ON_CIRCLE = 0.016  # mm by which the end of an arc may miss the circle through its start: the control's own
+_PARALLEL = 1e-9
+_MOST_TURNS = 1000
+
+
+@dataclass(frozen=True, slots=True)
+class PathElement:
+    """From ``start`` to ``end``, straight or on ``arc`` in X and Y; ``feed`` as programmed, None rapid.
+
+    ``rotary`` are the goals of rotary axes, counted on. ``line`` and ``text`` are those of its block.
+    """
+
+    start: Vector
+    end: Vector
+    feed: float | None
+    line: int
+    text: str
+    column: int = 1
+    arc: Arc | None = None
+    rotary: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def flat(self) -> Element | None:
+        """What it is in X and Y; None where nothing moves there."""
+        if self.arc is not None:
+            return self.arc
+        start, end = self.start[:2], self.end[:2]
+        return Line(start, end) if math.dist(start, end) > SAME_POINT else None
+
+    @property
+    def end_direction(self) -> Point | None:
+        """Unit vector in X and Y at its end; None where nothing moves there."""
+        flat = self.flat
+        return None if flat is None else flat.end_direction
+
+
+def elements(
+    state: State,
+    node: Move,
+    start: Vector,
+    before: Point | None,
+    feed: float | None,
+    rotary: Mapping[str, float],
+) -> Iterator[PathElement]:
+    """The element of a path function that begins at ``start``; several where it goes round more than once.
+
+    ``before`` is the direction in which the path has come there. Raises ProgramError.
+    """
+    made = PathElement(start, start, feed, state.line, state.text, node.column, None, rotary)
+    if node.form == "CP":
+        yield from _round_the_pole(state, node, made)
+        return
+    end = goal(state, node, start)
+    arc = _ARCS[node.form](state, node, start[:2], end[:2], before) if node.form in _ARCS else None
+    yield _with(made, start, end, arc)
+
+
+def _with(made: PathElement, start: Vector, end: Vector, arc: Arc | None) -> PathElement:
+    return PathElement(start, end, made.feed, made.line, made.text, made.column, arc, made.rotary)
+
+
+def goal(state: State, node: Move, start: Vector) -> Vector:
+    """The end point of a path function: its axes, or radius and angle about the pole."""
+    x, y, z = (_along(state, node.word(axis), at) for axis, at in zip("XYZ", start, strict=True))
+    if node.word("PR") is None and node.word("PA") is None:
+        return x, y, z
+    (cx, cy), (radius, angle) = pole(state, node), _polar(state, node, start)
+    turned = math.radians(angle)
+    return cx + radius * math.cos(turned), cy + radius * math.sin(turned), z
+
+
+def pole(state: State, node: Move) -> Point:
+    """The pole of CC. Raises ProgramError where none was programmed."""
+    if state.pole is None:
+        text = "No CC has set a pole."
+        raise state.refuse(node.column, NO_POLE, text, "Write CC with X and Y before.")
+    return state.pole
+
+
+def _along(state: State, word: AxisWord | None, at: float) -> float:
+    if word is None:
+        return at
+    value = word_values.coordinate(state, word)
+    return at + value if word.incremental else value
+
+
+def _polar(state: State, node: Move, start: Vector) -> tuple[float, float]:
+    """Radius (mm) and angle (degrees, from X towards Y) of the end; what is not programmed stays."""
+    cx, cy = pole(state, node)
+    radius = math.hypot(start[0] - cx, start[1] - cy)
+    angle = math.degrees(math.atan2(start[1] - cy, start[0] - cx))
+    if (word := node.word("PR")) is not None:
+        value = word_values.coordinate(state, word)
+        radius = radius + value if word.incremental else value
+    if (word := node.word("PA")) is not None:
+        value = word_values.number(state, word.value, "PA", word_values.MOST_COORDINATE)
+        angle = angle + value if word.incremental else value
+    return radius, angle
+
+
+# --- arcs
+
+
+def _about_pole(state: State, node: Move, start: Point, end: Point, _: Point | None) -> Arc:
+    """C: about the pole; the end has to lie on the circle."""
+    centre = pole(state, node)
+    _demand_radius(state, node, math.dist(start, centre))
+    _demand_on_circle(state, node, math.dist(start, centre), math.dist(end, centre))
+    return arc_between(start, end, centre, clockwise=node.turn == "-") if node.turn else _no_turn(state, node)
+
+
+def _by_radius(state: State, node: Move, start: Point, end: Point, _: Point | None) -> Arc:
+    """CR: a positive radius is the shorter arc, a negative one the longer."""
+    word = node.word("R")
+    assert word is not None  # the block was refused without it
+    radius = word_values.coordinate(state, word)
+    chord = math.dist(start, end)
+    if chord < SAME_POINT or chord / 2.0 > abs(radius) + ON_CIRCLE:
+        text = f"An arc of R {abs(radius):.10g} mm does not reach over {chord:.10g} mm."
+        hint = "A full circle takes two arcs, or C." if chord < SAME_POINT else "Correct R or the end point."
+        raise state.refuse(word.column, ARC_END, text, hint)
+    if not node.turn:
+        return _no_turn(state, node)
+    clockwise = node.turn == "-"
+    centre = centre_from_radius(start, end, abs(radius), clockwise=clockwise == (radius > 0.0))
+    return Arc(start, end, centre, clockwise)
+
+
+def _tangential(state: State, node: Move, start: Point, end: Point, before: Point | None) -> Arc | None:
+    """CT and CTP: goes on in the direction of the element before; straight on it is a line."""
+    if before is None:
+        text = f"Nothing moves before {node.form}, so it has no direction to begin with."
+        raise state.refuse(node.column, PREVIOUS, text, "Program a path before it.")
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    aside = -before[1] * dx + before[0] * dy  # of the end to the left of the way
+    if abs(aside) < _PARALLEL * max(1.0, math.hypot(dx, dy)):
+        if before[0] * dx + before[1] * dy <= 0.0:
+            text = f"The end of {node.form} lies straight behind its start."
+            raise state.refuse(node.column, ARC_END, text, "Correct the end point.")
+        return None
+    radius = (dx * dx + dy * dy) / (2.0 * aside)  # positive where the centre is on the left
+    centre = start[0] - before[1] * radius, start[1] + before[0] * radius
+    return Arc(start, end, centre, clockwise=radius < 0.0)
+
+
+_ARCS = {"C": _about_pole, "CR": _by_radius, "CT": _tangential, "CTP": _tangential}
+
+
+def _round_the_pole(state: State, node: Move, made: PathElement) -> Iterator[PathElement]:
+    """CP: an angle about the pole, of any number of turns, with Z a helix."""
+    start, centre = made.start, pole(state, node)
+    radius = math.dist(start[:2], centre)
+    _demand_radius(state, node, radius)
+    if not node.turn:
+        _no_turn(state, node)
+    first = math.degrees(math.atan2(start[1] - centre[1], start[0] - centre[0]))
+    sweep = _sweep(state, node, first)
+    turns = math.ceil(abs(sweep) / 360.0 - 1e-9)
+    if turns > _MOST_TURNS:
+        text = f"CP goes round {turns} times."
+        raise state.refuse(node.column, ARC_END, text, f"{_MOST_TURNS} turns are the most.")
+    z1 = _along(state, node.word("Z"), start[2])
+    here = start
+    for turn in range(1, turns + 1):
+        done = min(turn * 360.0 / abs(sweep), 1.0)
+        angle = math.radians(first + sweep * done)
+        point = centre[0] + radius * math.cos(angle), centre[1] + radius * math.sin(angle)
+        whole = turn * 360.0 <= abs(sweep) + 1e-9
+        end = (*(here[:2] if whole else point), start[2] + (z1 - start[2]) * done)
+        yield _with(made, here, end, Arc(here[:2], end[:2], centre, node.turn == "-"))
+        here = end
+
+
+def _sweep(state: State, node: Move, first: float) -> float:
+    """Signed degrees of CP, counter-clockwise positive. Raises ProgramError where IPA and DR disagree."""
+    word = node.word("PA")
+    if word is None:
+        return 360.0 if node.turn == "+" else -360.0
+    value = word_values.number(state, word.value, "PA", word_values.MOST_COORDINATE)
+    if not word.incremental:
+        turned = (value - first) % 360.0
+        turned = 0.0 if 360.0 - turned < 1e-9 else turned
+        return (turned or 360.0) if node.turn == "+" else turned - 360.0
+    if value == 0.0 or (value > 0.0) != (node.turn == "+"):
+        text = f"IPA{value:+g} and DR{node.turn} go different ways." if value else "IPA+0 goes nowhere."
+        raise state.refuse(word.column, DIRECTION, text, "Give both the same sign.")
+    return value
+
+
+def _demand_radius(state: State, node: Move, radius: float) -> None:
+    if radius < SAME_POINT:
+        text = "The tool stands on the pole, so there is no circle."
+        raise state.refuse(node.column, ARC_END, text, "Go to the circle before.")
+
+
+def _demand_on_circle(state: State, node: Move, first: float, last: float) -> None:
+    if abs(first - last) > ON_CIRCLE:
+        text = f"The end lies {last:.10g} mm from the pole, the start {first:.10g} mm."
+        raise state.refuse(node.column, ARC_END, text, "Correct the end point or CC.")
+
+
+def _no_turn(state: State, node: Move) -> Arc:
+    text = f"{node.form} needs DR+ or DR-."
+    raise state.refuse(node.column, DIRECTION, text, "Write DR+ for counter-clockwise.")

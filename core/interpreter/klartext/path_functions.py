@@ -1,0 +1,400 @@
+"""Path functions as they are executed: what waits for the block behind it, and what becomes of it.
+
+RND and CHF need the element behind them, APPR the first element of the contour, radius compensation (RL, RR)
+all elements up to R0 or DEP. Until then elements wait here, with whatever else stands between them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from core.geometry.chamfer_and_rounding import CornerError, chamfer, rounding
+from core.geometry.lines_and_arcs import Arc, Element, Point
+from core.geometry.plane_arcs import HelixMove
+from core.geometry.rotation_frames import Vector
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.klartext import word_values
+from core.interpreter.klartext.klartext_state import SAME_POINT, SLIDES, State
+from core.interpreter.klartext.path_elements import PathElement, elements, goal
+from core.interpreter.klartext.radius_compensation import Contour, Entry, way_in, way_out
+from core.interpreter.klartext.tip_control import swivelled
+from core.language.klartext.klartext_faults import COMPENSATION, PREVIOUS, ROUNDING, WRONG_AXIS
+from core.language.klartext.klartext_nodes import AxisWord, Corner, Move, Pole
+
+AT_TARGET = 0.001  # degrees by which a table may miss its target before a cut is warned of
+
+Event = Callable[[], Iterator[Block]]
+
+
+@dataclass(slots=True)
+class _Between:
+    """What stands between elements that wait: M functions, a speed. ``line`` and ``text`` of its block."""
+
+    event: Event
+    line: int
+    text: str
+
+
+@dataclass(slots=True)
+class _Approach:
+    """APPR, or the block that switches compensation on: the way to the contour, which begins at its end."""
+
+    node: Move
+    element: PathElement
+
+
+_Waiting = PathElement | _Between | _Approach
+
+
+class PathRunner:
+    """Makes the blocks of path functions. ``machine`` in ``move`` says that M91 counts."""
+
+    def __init__(self, state: State) -> None:
+        self._state = state
+        self._waiting: list[_Waiting] = []
+        self._corner: Corner | None = None
+        self._side = ""  # L or R while radius compensation is on
+        self._end: Vector | None = None  # of the path that waits, in the program's coordinates
+        self._direction: Point | None = None  # in which the path has come there
+
+    @property
+    def compensated(self) -> bool:
+        """Whether radius compensation is on."""
+        return bool(self._side)
+
+    @property
+    def here(self) -> Vector:
+        """Where the path stands in the program's coordinates, mm: the contour, under compensation."""
+        return self._state.programmed if self._end is None else self._end
+
+    def pole(self, node: Pole) -> None:
+        """CC: the pole, at the end of the path where it names no axes."""
+        here = dict(zip(SLIDES, self.here, strict=True))
+        for word in node.axes:
+            value = word_values.coordinate(self._state, word)
+            here[word.axis] = here[word.axis] + value if word.incremental else value
+        self._state.pole = here["X"], here["Y"]
+
+    def corner(self, node: Corner) -> None:
+        """RND or CHF behind an element that waits for it. Raises ProgramError where there is none."""
+        last = next((each for each in reversed(self._waiting) if isinstance(each, PathElement)), None)
+        if last is None or last.flat is None or self._corner is not None:
+            text = f"{node.form} needs a path in the working plane before it."
+            raise self._state.refuse(
+                node.column, ROUNDING, text, "Put it between two elements of the contour."
+            )
+        self._corner = node
+
+    def between(self, event: Event) -> Iterator[Block]:
+        """What is done between two elements, or at once where nothing waits."""
+        if not self._waiting:
+            yield from event()
+            return
+        self._waiting.append(_Between(event, self._state.line, self._state.text))
+
+    def finish(self, column: int, what: str) -> Iterator[Block]:
+        """Everything that waits, before ``what``, which radius compensation does not let through."""
+        if self._side:
+            text = f"{what} stands while radius compensation is on."
+            raise self._state.refuse(column, COMPENSATION, text, "End the contour with R0 or DEP before.")
+        yield from self._release()
+
+    def end(self) -> Iterator[Block]:
+        """The end of the program: a contour that was never left is run to its end."""
+        if self._side:
+            text = "The program ends while radius compensation is on."
+            hint = "End the contour with R0 or DEP."
+            self._state.log.warn(self._state.line, 0, "compensation-left-on", text, hint)
+            yield from self._close(None)
+        yield from self._release()
+
+    # --- moves --------------------------------------------------------------------------------------------
+
+    def move(self, node: Move, *, machine: bool, corner_behind: bool) -> Iterator[Block]:
+        """The blocks of a path function, and of what has waited for it. Raises ProgramError."""
+        if not node.axes and not node.words and node.form == "L":
+            if node.feed is not None:
+                self._take_feed(node)
+            yield from self._switched(node)
+            return
+        self._demand_axes(node)
+        if machine:
+            yield from self.finish(node.column, "M91")
+            yield from self._by_machine(node)
+            return
+        made = list(self._elements(node))
+        if node.form.startswith("APPR"):
+            yield from self._approach(node, made[0])
+        elif node.form.startswith("DEP"):
+            yield from self._depart(node)
+        elif node.compensation in {"L", "R"} and not self._side:
+            yield from self._release()
+            self._begin(node, _Approach(node, made[-1]), made[-1])
+        elif node.compensation == "0" and self._side:
+            yield from self._close(None)
+            yield from self._add(list(self._elements(node)), hold=corner_behind)
+        else:
+            self._demand_same_side(node)
+            yield from self._add(made, hold=corner_behind)
+
+    def _elements(self, node: Move) -> Iterator[PathElement]:
+        state, feed = self._state, self._take_feed(node)
+        if feed is not None:
+            _warn(state, node)
+        rotary = _rotary(state, node)
+        if rotary and self._side:
+            text = "A rotary axis moves while radius compensation is on."
+            raise state.refuse(node.column, COMPENSATION, text, "End the contour with R0 before.")
+        if node.form.startswith(("APPR", "DEP")):
+            yield PathElement(
+                self.here, goal(state, node, self.here), feed, state.line, state.text, node.column
+            )
+            return
+        yield from elements(state, node, self.here, self._direction, feed, rotary)
+
+    def _add(self, made: list[PathElement], *, hold: bool) -> Iterator[Block]:
+        """Elements behind those that wait; without a reason to wait all of them become blocks."""
+        if self._corner is not None and made:
+            made[0] = self._rounded(made[0])
+        self._waiting += made
+        self._end = made[-1].end
+        self._direction = made[-1].end_direction or self._direction
+        approaching = any(isinstance(each, _Approach) for each in self._waiting)
+        if self._side or hold:
+            return
+        if approaching and not any(isinstance(each, PathElement) and each.flat for each in self._waiting):
+            return
+        yield from self._release()
+
+    def _begin(self, node: Move, first: _Approach, element: PathElement) -> None:
+        self._side = node.compensation
+        self._waiting.append(first)
+        self._end, self._direction = element.end, element.end_direction
+
+    def _approach(self, node: Move, element: PathElement) -> Iterator[Block]:
+        if self._side:
+            text = "APPR stands while radius compensation is on."
+            raise self._state.refuse(
+                node.column, COMPENSATION, text, "End the contour with R0 or DEP before."
+            )
+        yield from self._release()
+        self._begin(node, _Approach(node, element), element)
+        self._side = node.compensation if node.compensation in {"L", "R"} else ""
+
+    def _depart(self, node: Move) -> Iterator[Block]:
+        if self._side:
+            yield from self._close(node)
+            return
+        if self._direction is None:
+            text = f"Nothing moves before {node.form}, so it has no direction to begin with."
+            raise self._state.refuse(node.column, PREVIOUS, text, "Program a path before it.")
+        here, direction = self.here, self._direction
+        yield from self._release()
+        yield from self._emit_all(way_out(self._state, node, here, direction, "", 0.0, self._take_feed(node)))
+
+    def _demand_same_side(self, node: Move) -> None:
+        if node.compensation in {"L", "R"} and self._side and node.compensation != self._side:
+            text = f"R{node.compensation} stands while R{self._side} is on."
+            raise self._state.refuse(node.column, COMPENSATION, text, "Write R0 between them.")
+
+    def _switched(self, node: Move) -> Iterator[Block]:
+        """An L without axes that ends compensation."""
+        if node.compensation == "0" and self._side:
+            yield from self._close(None)
+
+    # --- corners ------------------------------------------------------------------------------------------
+
+    def _rounded(self, after: PathElement) -> PathElement:
+        """Puts the corner that waits between the last element and this one, which is returned shorter."""
+        corner, self._corner = self._corner, None
+        assert corner is not None
+        at = next(i for i in reversed(range(len(self._waiting))) if isinstance(self._waiting[i], PathElement))
+        before = self._waiting[at]
+        assert isinstance(before, PathElement)
+        first, last = before.flat, after.flat
+        size = word_values.number(self._state, corner.size, corner.form, word_values.MOST_COORDINATE, 0.0)
+        size *= self._state.scale
+        if first is None or last is None:
+            text = f"{corner.form} needs a path in the working plane behind it."
+            raise self._state.refuse(
+                corner.column, ROUNDING, text, "Put it between two elements of the contour."
+            )
+        if size <= SAME_POINT:
+            return after
+        try:
+            cut = rounding(first, last, size) if corner.form == "RND" else chamfer(first, last, size)
+        except CornerError as problem:
+            text = f"{corner.form} {size:g} mm: {problem}."
+            raise self._state.refuse(corner.column, ROUNDING, text, "Make it smaller.") from None
+        feed = before.feed if corner.feed is None else self._feed_of(corner)
+        z = before.end[2]
+        self._waiting[at] = _reshaped(before, cut[0], before.start[2], z)
+        self._waiting.insert(at + 1, _reshaped(replace(after, feed=feed, rotary={}), cut[1], z, z))
+        return _reshaped(after, cut[2], z, after.end[2])
+
+    def _feed_of(self, corner: Corner) -> float | None:
+        return word_values.feed_word(self._state, corner.feed, corner.column)
+
+    # --- from elements to blocks --------------------------------------------------------------------------
+
+    def _release(self) -> Iterator[Block]:
+        """Everything that waits, uncompensated."""
+        if self._corner is not None:
+            corner = self._corner
+            self._corner = None
+            text = f"{corner.form} needs a path in the working plane behind it."
+            raise self._state.refuse(
+                corner.column, ROUNDING, text, "Put it between two elements of the contour."
+            )
+        waiting, self._waiting, self._end = self._waiting, [], None
+        for index, each in enumerate(waiting):
+            if isinstance(each, _Between):
+                yield from self._run(each)
+            elif isinstance(each, PathElement):
+                yield from self._emit(each)
+            else:
+                first = next((e.flat for e in waiting[index:] if isinstance(e, PathElement) and e.flat), None)
+                yield from self._enter(each, first, "", 0.0)
+
+    def _close(self, leave: Move | None) -> Iterator[Block]:
+        """The contour that has been collected, compensated, and the way off it where DEP says one."""
+        side, self._side = self._side, ""
+        waiting, self._waiting, self._end = self._waiting, [], None
+        radius = self._state.tool_radius / self._state.figure.factor
+        contour = Contour([e for e in waiting if isinstance(e, PathElement)], side, radius)
+        for each in waiting:
+            if isinstance(each, _Between):
+                yield from self._run(each)
+            elif isinstance(each, _Approach):
+                yield from self._enter(each, contour.first, side, radius)
+            else:
+                yield from self._emit_all(contour.pieces(each, self._state.programmed))
+        if leave is not None:
+            feed = self._take_feed(leave)
+            here = (*contour.end, self._state.programmed[2]) if contour.end else self._state.programmed
+            direction = contour.end_direction or self._direction or (1.0, 0.0)
+            yield from self._emit_all(way_out(self._state, leave, here, direction, side, radius, feed))
+
+    def _enter(self, each: _Approach, first: Element | None, side: str, radius: float) -> Iterator[Block]:
+        """The way to the contour: straight to beside its start, or as APPR says."""
+        state = self._state
+        entry = Entry(each.node, state.programmed, each.element.end, each.element.feed, side, radius)
+        direction = first.start_direction if first is not None else each.element.end_direction
+        line, text = state.line, state.text
+        state.line, state.text = each.element.line, each.element.text
+        yield from self._emit_all(way_in(state, entry, direction or (1.0, 0.0)))
+        state.line, state.text = line, text
+
+    def _run(self, between: _Between) -> Iterator[Block]:
+        state = self._state
+        line, text = state.line, state.text
+        state.line, state.text = between.line, between.text
+        yield from between.event()
+        state.line, state.text = line, text
+
+    def _emit_all(self, made: Iterator[PathElement]) -> Iterator[Block]:
+        for each in made:
+            yield from self._emit(each)
+
+    def _emit(self, each: PathElement) -> Iterator[Block]:
+        """The block of one element; the program's coordinates become those of plane and machine."""
+        state = self._state
+        line, text = state.line, state.text
+        state.line, state.text = each.line, each.text
+        yield self._block(each)
+        state.line, state.text = line, text
+
+    def _block(self, each: PathElement) -> Block:
+        state = self._state
+        if each.arc is not None:
+            return self._arc(each, each.arc)
+        if state.m128 and each.rotary:
+            return swivelled(state, each)
+        goals: Mapping[str, float] = dict(zip(SLIDES, state.machine(each.end), strict=True))
+        if not any(abs(goals[name] - state.at[name]) > SAME_POINT for name in SLIDES):
+            goals = {}
+        rate = None if each.feed is None else (state.path_feed(each.feed) if goals else each.feed / 60.0)
+        return state.move(Kind.RAPID if rate is None else Kind.FEED, {**goals, **each.rotary}, rate)
+
+    def _arc(self, each: PathElement, arc: Arc) -> Block:
+        state = self._state
+        z0, z1 = (state.figure.plane((0.0, 0.0, at))[2] for at in (each.start[2], each.end[2]))
+        names = state.names
+        columns = names.index("X"), names.index("Y"), names.index("Z")
+        way = HelixMove(state.place, state.figure.arc(arc), z0, z1, state.there, columns)
+        goals = dict(zip(SLIDES, state.machine(each.end), strict=True))
+        rate = None if each.feed is None else state.path_feed(each.feed)
+        return state.move(Kind.PLANE_ARC, goals, rate, way)
+
+    def _by_machine(self, node: Move) -> Iterator[Block]:
+        """M91: the words count from the machine's own zero."""
+        state, feed = self._state, self._take_feed(node)
+        if feed is not None:
+            _warn(state, node)
+        goals = _rotary(state, node)
+        for axis, now in zip(SLIDES, state.slides, strict=True):
+            if (word := node.word(axis)) is not None:
+                value = word_values.coordinate(state, word)
+                goals[axis] = now + value if word.incremental else value
+        linear = any(abs(goals.get(name, state.at[name]) - state.at[name]) > SAME_POINT for name in SLIDES)
+        rate = None if feed is None else (state.path_feed(feed) if linear else feed / 60.0)
+        yield state.move(Kind.RAPID if rate is None else Kind.FEED, goals, rate)
+
+    # --- words --------------------------------------------------------------------------------------------
+
+    def _demand_axes(self, node: Move) -> None:
+        for word in node.axes:
+            if word.axis not in self._state.at:
+                text = f"This machine has no axis {word.axis}."
+                raise self._state.refuse(word.column, WRONG_AXIS, text, "Take the word out.")
+
+    def _take_feed(self, node: Move) -> float | None:
+        """The feed of the block, None for rapid, which holds for this block alone."""
+        state = self._state
+        feed = word_values.feed_word(state, node.feed, node.axes[0].column if node.axes else node.column)
+        if feed is not None and feed != state.feed:
+            state.feed = feed
+            state.modal = state.modal._replace(feed=state.path_feed(feed))
+        return feed
+
+
+def _reshaped(element: PathElement, flat: Element, z0: float, z1: float) -> PathElement:
+    """The same between other points of the working plane."""
+    arc = flat if isinstance(flat, Arc) else None
+    return replace(element, start=(*flat.start, z0), end=(*flat.end, z1), arc=arc)
+
+
+def _rotary(state: State, node: Move) -> dict[str, float]:
+    """Rotary axes by the short way where they are modulo; an incremental word is the way itself."""
+    found = {}
+    for axis in state.kinematics.rotaries:
+        word: AxisWord | None = node.word(axis.name)
+        if word is not None:
+            value, now = word_values.coordinate(state, word), state.at[axis.name]
+            state.table_known = state.table_known or not word.incremental
+            found[axis.name] = now + (value if word.incremental else axis.travel(now, value))
+    return found
+
+
+def _warn(state: State, node: Move) -> None:
+    """A cut with the table elsewhere than the plane asks, or with the spindle at rest: told once."""
+    if all(word.axis not in SLIDES for word in node.axes) and not node.words:
+        return
+    if not state.modal.spindle and "spindle" not in state.reported:
+        state.reported.add("spindle")
+        text, hint = "This feed move runs with the spindle at rest.", "Start it with M3 or M4."
+        state.log.warn(state.line, 0, "spindle-stopped", text, hint)
+    plane = state.plane
+    if plane is None or ("table", plane.line) in state.reported:
+        return
+    off = [
+        axis.name
+        for axis in state.kinematics.rotaries
+        if abs(axis.travel(plane.targets[axis.name], state.at[axis.name])) > AT_TARGET
+    ]
+    if off:
+        state.reported.add(("table", plane.line))
+        text = f"{' and '.join(off)} stand elsewhere than the plane of line {plane.line} asks."
+        hint = "Position them before the cut: L A+Q120 C+Q122 R0 FMAX, or TURN in the PLANE block."
+        state.log.warn(state.line, 0, "table-elsewhere", text, hint)

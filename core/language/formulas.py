@@ -1,0 +1,200 @@
+"""Formulas of a program: numbers, parameters, operators with their precedence, functions.
+
+Each language states its own ``Grammar``; what comes of the text is the same for all, and is worked out by
+``core.interpreter.formula_values``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+
+class Number(NamedTuple):
+    """A number as written."""
+
+    value: float
+
+
+class Parameter(NamedTuple):
+    """A parameter by its letters, ``Q`` or ``R``, and its number; a name stands alone. ``column`` from 1."""
+
+    letters: str
+    number: int | Formula | None
+    column: int
+
+
+class Operation(NamedTuple):
+    """An operator or a function by the name that ``formula_values`` knows, and what it is asked of."""
+
+    name: str
+    operands: tuple[Formula, ...]
+    column: int
+
+
+Formula = Number | Parameter | Operation
+
+
+class FormulaError(Exception):
+    """What cannot be read. ``at`` is the index of the place in the text; ``str()`` a sentence about it."""
+
+    def __init__(self, at: int, why: str, hint: str) -> None:
+        super().__init__(why)
+        self.at = at
+        self.hint = hint
+
+
+@dataclass(frozen=True)
+class Grammar:
+    """How formulas of a language are written, all in capitals.
+
+    ``number`` and ``parameter`` match one operand (a parameter's groups are its letters and its number);
+    ``operators`` give precedence (higher binds closer) and name by how they are written; ``functions`` the
+    name, ``constants`` the value. ``separator`` stands between the operands of a function (empty: there is
+    one, without brackets).
+    """
+
+    number: re.Pattern[str]
+    parameter: re.Pattern[str]
+    operators: Mapping[str, tuple[int, str]]
+    functions: Mapping[str, str]
+    constants: Mapping[str, float] = field(default_factory=dict)
+    separator: str = ""
+    negation: int = 50  # precedence of a sign before an operand
+    _sign: re.Pattern[str] = field(init=False, repr=False)
+    _word: re.Pattern[str] = field(init=False, repr=False)
+    _constant: re.Pattern[str] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_sign", _any_of(self.operators))
+        object.__setattr__(self, "_word", _any_of(self.functions))
+        object.__setattr__(self, "_constant", _any_of(self.constants))
+
+    def operator(self, text: str, at: int) -> str | None:
+        """The operator that stands here."""
+        match = self._sign.match(text, at)
+        return match.group() if match else None
+
+    def function(self, text: str, at: int) -> str | None:
+        """The function that stands here."""
+        match = self._word.match(text, at)
+        return match.group() if match else None
+
+    def constant(self, text: str, at: int) -> str | None:
+        """The constant that stands here."""
+        match = self._constant.match(text, at)
+        return match.group() if match else None
+
+
+def _any_of(words: Mapping[str, object]) -> re.Pattern[str]:
+    """The longest that stands here; a word ends where its letters do."""
+    if not words:
+        return re.compile(r"(?!)")
+    ordered = sorted(words, key=len, reverse=True)
+    return re.compile(
+        "|".join(re.escape(word) + ("(?![A-Z_])" if word.isalpha() else "") for word in ordered)
+    )
+
+
+_CLOSEST = 1000
+_DEEPEST = 40
+
+
+class FormulaReader:
+    """Reads one formula from ``text`` (in capitals) at ``at``; ``at`` then stands behind it."""
+
+    def __init__(self, grammar: Grammar, text: str, at: int) -> None:
+        self._grammar = grammar
+        self._text = text
+        self.at = at
+        self._depth = 0
+
+    def formula(self) -> Formula:
+        """The formula. Raises FormulaError for what is missing or is none."""
+        return self._expression(0)
+
+    def _expression(self, weakest: int) -> Formula:
+        """Operands and operators that bind at least as close as ``weakest``, from left to right."""
+        self._depth += 1
+        if self._depth > _DEEPEST:
+            raise FormulaError(self.at, "The formula is nested too deep", "Split it.")
+        made = self._operand()
+        while (sign := self._operator()) is not None:
+            power, name = self._grammar.operators[sign]
+            if power < weakest:
+                break
+            column = self.at + 1
+            self.at += len(sign)
+            made = Operation(name, (made, self._expression(power + 1)), column)
+        self._depth -= 1
+        return made
+
+    def _operator(self) -> str | None:
+        self._blanks()
+        return self._grammar.operator(self._text, self.at)
+
+    def _operand(self) -> Formula:
+        self._blanks()
+        at = self.at
+        if self._takes("-"):
+            return Operation("negative", (self._expression(self._grammar.negation),), at + 1)
+        if self._takes("+"):
+            return self._expression(self._grammar.negation)
+        if self._takes("("):
+            return self._enclosed()
+        return self._word(at) or self._figure(at)
+
+    def _word(self, at: int) -> Formula | None:
+        """A function with what it is asked of, or a constant."""
+        grammar = self._grammar
+        if word := grammar.function(self._text, at):
+            self.at += len(word)
+            return Operation(grammar.functions[word], self._asked_of(), at + 1)
+        if word := grammar.constant(self._text, at):
+            self.at += len(word)
+            return Number(grammar.constants[word])
+        return None
+
+    def _figure(self, at: int) -> Formula:
+        """A parameter or a number."""
+        if match := self._grammar.parameter.match(self._text, at):
+            self.at = match.end()
+            letters, number = match.group(1), match.group(2)
+            return Parameter(letters, int(number) if number else None, at + 1)
+        if match := self._grammar.number.match(self._text, at):
+            self.at = match.end()
+            return Number(float(match.group().replace(",", ".")))
+        raise FormulaError(at, "The formula needs a number or a parameter", "Complete it.")
+
+    def _enclosed(self) -> Formula:
+        made = self._expression(0)
+        self._close()
+        return made
+
+    def _asked_of(self) -> tuple[Formula, ...]:
+        """What a function is asked of: one operand, or a list in brackets where the language has that."""
+        self._blanks()
+        if not self._grammar.separator or not self._takes("("):
+            return (self._expression(_CLOSEST),)
+        found = [self._expression(0)]
+        while self._takes(self._grammar.separator):
+            found.append(self._expression(0))
+        self._close()
+        return tuple(found)
+
+    def _close(self) -> None:
+        if not self._takes(")"):
+            raise FormulaError(self.at, "A closing bracket is missing", "Write ) behind the formula.")
+
+    def _takes(self, sign: str) -> bool:
+        self._blanks()
+        if not self._text.startswith(sign, self.at):
+            return False
+        self.at += len(sign)
+        return True
+
+    def _blanks(self) -> None:
+        while self.at < len(self._text) and self._text[self.at].isspace():
+            self.at += 1

@@ -1,0 +1,174 @@
+"""CYCL DEF and CYCL CALL: cycles from 200 on with Q parameters, older ones line by line."""
+
+from __future__ import annotations
+
+import re
+
+from core.language.klartext import q_parameters
+from core.language.klartext.klartext_faults import syntax
+from core.language.klartext.klartext_nodes import (
+    AxisWord,
+    Cycle,
+    CycleCall,
+    CycleLine,
+    CycleValue,
+    Datum,
+    Feed,
+    Node,
+    Transform,
+)
+from core.language.klartext.line_cursor import Cursor, axis_words, feed
+from core.language.klartext.path_block import codes_to_the_end
+
+_NUMBER = re.compile(r"([0-9]{1,3})(?:\.([0-9]{1,2}))?(?![0-9.])")
+_Q_VALUE = re.compile(r"Q\s*[0-9]+\s*=")
+_NEW = 200  # cycles from here on are told by Q parameters
+_DATUM, _MIRROR, _ROTATION, _SCALE = 7, 8, 10, 11
+
+
+def cycle(cursor: Cursor, column: int) -> Node:
+    """Behind ``CYCL DEF``. Raises ProgramError for what is none; which are run is said when they are."""
+    match = cursor.take(_NUMBER)
+    if match is None:
+        raise cursor.expected("CYCL DEF needs the number of a cycle")
+    number, part = int(match.group(1)), match.group(2)
+    if number >= _NEW:
+        return Cycle(number, _values(cursor), column)
+    if part is None:
+        raise cursor.expected(f"CYCL DEF {number} needs its line", f"Write CYCL DEF {number}.0.")
+    if number == _DATUM:
+        return _datum(cursor, int(part))
+    if number in {_MIRROR, _ROTATION, _SCALE} and int(part) > 0:
+        return _transform(cursor, number, column)
+    return _line(cursor, number, int(part), column)
+
+
+def call(cursor: Cursor, column: int) -> CycleCall:
+    """Behind ``CYCL CALL``."""
+    if cursor.keyword("PAT"):
+        raise syntax(
+            cursor.line, column, "CYCL CALL PAT needs a table of points.", "Write the points with M99."
+        )
+    if not cursor.keyword("POS"):
+        return CycleCall(codes=codes_to_the_end(cursor), column=column)
+    axes = axis_words(cursor, "XYZ")
+    return CycleCall(axes, feed(cursor), codes_to_the_end(cursor), column)
+
+
+def _values(cursor: Cursor) -> tuple[CycleValue, ...]:
+    """The Q parameters behind the cycle's name, which says nothing."""
+    first = _Q_VALUE.search(cursor.upper, cursor.at)
+    if first is None:
+        cursor.rest()
+        return ()
+    cursor.at = first.start()
+    found = []
+    while not cursor.done:
+        column = cursor.column
+        if not _Q_VALUE.match(cursor.upper, cursor.at):
+            raise cursor.expected("A cycle takes Q parameters", "Write Q200=+2 and so on.")
+        _, number = q_parameters.parameter(cursor)
+        cursor.take(re.compile(r"="))
+        found.append(CycleValue(number, q_parameters.formula(cursor, f"Q{number}"), column))
+    return tuple(found)
+
+
+def _datum(cursor: Cursor, part: int) -> Datum:
+    if part == 0:
+        return Datum(cycle=0, text=cursor.rest())
+    axes = axis_words(cursor, "XYZABC")
+    if not axes:
+        raise cursor.expected(f"CYCL DEF 7.{part} takes X, Y or Z")
+    if not cursor.done:
+        raise cursor.expected("No word of cycle 7")
+    return Datum(axes, cycle=part)
+
+
+_LETTERS = re.compile(r"[XYZUVW](?![A-Z0-9])")
+_ROT = re.compile(r"(I?)ROT(?![A-Z])")
+_SCL = re.compile(r"SCL(?![A-Z])")
+
+
+def _transform(cursor: Cursor, number: int, column: int) -> Transform:
+    """``CYCL DEF 8.1 X Y``, ``10.1 ROT+35``, ``11.1 SCL 0.99``."""
+    if number == _MIRROR:
+        return Transform("MIRROR", axes=mirrored_axes(cursor), column=column)
+    if number == _ROTATION:
+        return rotation(cursor, column)
+    return scale(cursor, column)
+
+
+def mirrored_axes(cursor: Cursor) -> str:
+    """Letters of axes to the end of the line; none ends the mirroring."""
+    axes = ""
+    while match := cursor.take(_LETTERS):
+        axes += match.group()
+    if not cursor.done:
+        raise cursor.expected("Mirroring takes X, Y and Z")
+    return axes
+
+
+def rotation(cursor: Cursor, column: int) -> Transform:
+    """``ROT+35`` or ``IROT+5``."""
+    match = cursor.take(_ROT)
+    if match is None:
+        raise cursor.expected("A rotation needs ROT and its angle")
+    made = Transform("ROTATION", cursor.value("ROT"), incremental=bool(match.group(1)), column=column)
+    if not cursor.done:
+        raise cursor.expected("No word of a rotation")
+    return made
+
+
+def scale(cursor: Cursor, column: int) -> Transform:
+    """``SCL0.95``."""
+    if cursor.take(_SCL) is None:
+        raise cursor.expected("Scaling needs SCL and its factor")
+    made = Transform("SCALE", cursor.value("SCL"), column=column)
+    if not cursor.done:
+        raise cursor.expected("No word of scaling")
+    return made
+
+
+_AXIS = re.compile(r"(I?[XYZABC]|RADIUS|R)(?=\s*[+\-0-9.,Q])")
+_TURN = re.compile(r"DR\s*([+-])(?![0-9Q])")
+_PLAIN = re.compile(r"(?=[+-]?\s*(?:[0-9.]|Q[LR]?\s*[0-9]))")
+_TEXT = re.compile(r"[^\s+\-0-9]+|[+-](?!\s*[0-9.Q])")
+
+
+def _line(cursor: Cursor, number: int, part: int, column: int) -> CycleLine:
+    """A line of a cycle under 200: its words say little, its numbers and their order say what is meant."""
+    words: list[AxisWord] = []
+    text: list[str] = []
+    speed: Feed | None = None
+    turn = ""
+    if part == 0 or number == 12:
+        return CycleLine(number, part, text=cursor.rest(), column=column)
+    while not cursor.done:
+        at = cursor.column
+        if match := cursor.take(_AXIS):
+            words.append(
+                AxisWord(
+                    "R" if match.group(1)[0] == "R" else match.group(1)[-1],
+                    cursor.value("It"),
+                    match.group(1)[0] == "I",
+                    at,
+                )
+            )
+        elif match := cursor.take(_TURN):
+            turn = match.group(1)
+        elif read := _feed(cursor):
+            speed = read
+        elif _PLAIN.match(cursor.upper, cursor.at):
+            words.append(AxisWord("", cursor.value("It"), column=at))
+        elif match := cursor.take(_TEXT):
+            text.append(match.group())
+        else:
+            raise cursor.expected(f"No word of cycle {number}")
+    return CycleLine(number, part, tuple(words), speed, turn, " ".join(text), column)
+
+
+_FEED = re.compile(r"F(?=\s*(?:[0-9.,Q]|MAX|AUTO))")
+
+
+def _feed(cursor: Cursor) -> Feed | None:
+    return feed(cursor) if _FEED.match(cursor.upper, cursor.at) else None

@@ -1,0 +1,207 @@
+"""Path functions L, C, CR, CT, LP, CP, CTP, CC, RND, CHF, APPR and DEP, and M functions."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from core.language.diagnostics import ProgramError
+from core.language.klartext.klartext_faults import syntax
+from core.language.klartext.klartext_nodes import AxisWord, Codes, Corner, Feed, MCode, Move, Pole
+from core.language.klartext.line_cursor import Cursor, axis_words, doubled, feed, retract
+
+MOST_CODES = 4
+AXES = "XYZABCUVW"
+_COMPENSATION = re.compile(r"R([0LR])(?![A-Z0-9])")
+_M = re.compile(r"M(?=\s*[0-9])")
+_AXIS_ALONE = re.compile(r"I?[XYZABCUVW](?=\s*$)")
+_TURN = re.compile(r"DR\s*([+-])(?![0-9Q])")
+
+
+class _Form(NamedTuple):
+    """What a path function takes besides axes, compensation, feed and M functions; ``needs`` all at once."""
+
+    takes: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()
+    turn: bool = False  # DR has to be there
+
+
+_POLAR = ("PR", "PA")
+_FORMS = {
+    "L": _Form(),
+    "LP": _Form(_POLAR),
+    "C": _Form(turn=True),
+    "CR": _Form(("R",), ("R",), turn=True),
+    "CT": _Form(),
+    "CP": _Form(("PA",), turn=True),
+    "CTP": _Form(_POLAR),
+    "APPR LT": _Form(("LEN",), ("LEN",)),
+    "APPR LN": _Form(("LEN",), ("LEN",)),
+    "APPR CT": _Form(("CCA", "R"), ("CCA", "R")),
+    "APPR LCT": _Form(("R",), ("R",)),
+    "APPR PLT": _Form((*_POLAR, "LEN"), ("LEN",)),
+    "APPR PLN": _Form((*_POLAR, "LEN"), ("LEN",)),
+    "APPR PCT": _Form((*_POLAR, "CCA", "R"), ("CCA", "R")),
+    "APPR PLCT": _Form((*_POLAR, "R"), ("R",)),
+    "DEP LT": _Form(("LEN",), ("LEN",)),
+    "DEP LN": _Form(("LEN",), ("LEN",)),
+    "DEP CT": _Form(("CCA", "R"), ("CCA", "R")),
+    "DEP LCT": _Form(("R",), ("R",)),
+    "DEP PLCT": _Form((*_POLAR, "R"), ("R",)),
+}
+FORMS = tuple(_FORMS)
+"""Every path function by the words that it begins with."""
+
+_KNOWN_WORDS = re.compile(r"(I?P[RA]|LEN|CCA|R)(?=\s*[+\-0-9.,Q])")
+
+
+def move(cursor: Cursor, form: str, column: int) -> Move:
+    """Behind the words of a path function. Raises ProgramError for a word too many or one that is missing."""
+    axes: tuple[AxisWord, ...] = ()
+    words: dict[str, AxisWord] = {}
+    compensation, turn, speed = "", "", None
+    codes: list[MCode] = []
+    while not cursor.done:
+        at = cursor.column
+        found = axis_words(cursor, AXES)
+        if found:
+            axes = _joined(cursor, axes, found)
+        elif radius := cursor.take(_COMPENSATION):
+            compensation = _once(cursor, at, compensation, radius.group(1), f"R{radius.group(1)}")
+        elif direction := cursor.take(_TURN):
+            turn = _once(cursor, at, turn, direction.group(1), "DR")
+        elif word := _word(cursor, form):
+            if word.axis in words:
+                raise doubled(cursor, word.column, word.axis)
+            words[word.axis] = word
+        elif read := feed(cursor):
+            speed = _once_feed(cursor, speed, read)
+        elif code := m_code(cursor):
+            codes.append(code)
+            _demand_few(cursor, codes)
+        else:
+            raise _strange(cursor, form)
+    made = Move(axes, compensation, speed, tuple(codes), form, tuple(words.values()), turn, column)
+    _demand_whole(cursor, made)
+    return made
+
+
+def _word(cursor: Cursor, form: str) -> AxisWord | None:
+    at, match = cursor.at, _KNOWN_WORDS.match(cursor.upper, cursor.at)
+    if match is None or match.group(1).removeprefix("I") not in _FORMS[form].takes:
+        return None
+    cursor.take(_KNOWN_WORDS)
+    name = match.group(1).removeprefix("I")
+    return AxisWord(name, cursor.value(match.group(1)), match.group(1)[0] == "I", at + 1)
+
+
+def _once(cursor: Cursor, column: int, known: str, read: str, what: str) -> str:
+    if known:
+        raise doubled(cursor, column, what)
+    return read
+
+
+def _once_feed(cursor: Cursor, known: Feed | None, read: Feed) -> Feed:
+    if known is not None:
+        raise doubled(cursor, read.column, "F")
+    return read
+
+
+def _demand_whole(cursor: Cursor, made: Move) -> None:
+    form = _FORMS[made.form]
+    missing = [name for name in form.needs if made.word(name) is None]
+    if missing:
+        raise cursor.expected(f"{made.form} needs {' and '.join(missing)}")
+    if made.turn and not form.turn and made.form not in {"CT", "CTP"}:
+        raise syntax(cursor.line, made.column, f"{made.form} takes no DR.", "Take it out.")
+
+
+def pole(cursor: Cursor, column: int) -> Pole:
+    """The axes behind ``CC``."""
+    made = Pole(axis_words(cursor, "XYZ"), column)
+    if not cursor.done:
+        raise cursor.expected("CC takes two axes")
+    return made
+
+
+_SIZE = re.compile(r"R(?=\s*[+\-0-9.,Q])")
+
+
+def corner(cursor: Cursor, form: str, column: int) -> Corner:
+    """Behind ``RND`` or ``CHF``: its size, and a feed of its own."""
+    cursor.take(_SIZE)
+    size = cursor.value(form)
+    speed = feed(cursor)
+    if not cursor.done:
+        raise cursor.expected(f"{form} takes its size and a feed")
+    return Corner(form, size, speed, column)
+
+
+def codes_alone(cursor: Cursor) -> Codes:
+    """A block of M functions."""
+    return Codes(codes_to_the_end(cursor))
+
+
+def codes_to_the_end(cursor: Cursor) -> tuple[MCode, ...]:
+    """M functions and nothing else to the end of the line."""
+    codes: list[MCode] = []
+    while not cursor.done:
+        code = m_code(cursor)
+        if code is None:
+            raise cursor.expected("An M function was expected")
+        codes.append(code)
+        _demand_few(cursor, codes)
+    return tuple(codes)
+
+
+_WITH_WORDS = {120: re.compile(r"LA\s*[0-9]+"), 118: re.compile(r"(?:[XYZABC]\s*[0-9.,]+\s*)+")}
+
+
+def m_code(cursor: Cursor) -> MCode | None:
+    """One M function where it stands here."""
+    column = cursor.column
+    if cursor.take(_M) is None:
+        return None
+    number = cursor.whole("M", 999)
+    if number == 128:
+        return MCode(number, column, feed=_plain_feed(cursor))
+    if number == 140:
+        way = retract(cursor)
+        if way is None:
+            raise cursor.expected("M140 needs MB", "Write MB and a length, or MB MAX.")
+        return MCode(number, column, way, feed(cursor))
+    if number in _WITH_WORDS:
+        cursor.take(_WITH_WORDS[number])
+    return MCode(number, column)
+
+
+def _plain_feed(cursor: Cursor) -> Feed | None:
+    found = feed(cursor)
+    if found is not None and found.kind == "auto":
+        raise syntax(
+            cursor.line, found.column, "M128 takes a feed in numbers, or FMAX.", "Write F and a number."
+        )
+    return found
+
+
+def _joined(cursor: Cursor, axes: tuple[AxisWord, ...], words: tuple[AxisWord, ...]) -> tuple[AxisWord, ...]:
+    for word in words:
+        if any(word.axis == known.axis for known in axes):
+            raise doubled(cursor, word.column, word.axis)
+    return axes + words
+
+
+def _demand_few(cursor: Cursor, codes: list[MCode]) -> None:
+    if len(codes) > MOST_CODES:
+        text = f"There are more than {MOST_CODES} M functions in the block."
+        raise syntax(cursor.line, codes[-1].column, text, "Split the block.")
+
+
+def _strange(cursor: Cursor, form: str) -> ProgramError:
+    if cursor.take(_AXIS_ALONE):
+        return cursor.expected("The axis has no value", "Write a number such as +10.")
+    article = "an" if form[0] in "AL" else "a"
+    takes = ", ".join(("axes", *_FORMS[form].takes, *(("DR",) if _FORMS[form].turn else ())))
+    return cursor.expected(
+        f"No word of {article} {form} block", f"It takes {takes}, R0, RL or RR, a feed and M functions."
+    )
