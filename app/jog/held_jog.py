@@ -49,11 +49,12 @@ class HeldJog:
     barred: Callable[[], str]
     mode: Mode = field(default_factory=Mode)
     held: Held | None = None
+    button: str = ""  # the input that the last press came from, where a button beside the slides did
     down: set[str] = field(default_factory=set)  # keys and fingers that were pressed and not let go yet
     _ended: str = ""  # why the last one ended, to be said once more when the slide rests
 
-    def press(self, source: str, axis: str, sign: int, *, rapid: bool) -> None:
-        """A key or finger goes down on a direction."""
+    def press(self, source: str, axis: str, sign: int, *, rapid: bool, button: str = "") -> None:
+        """A key or finger goes down on a direction, or a ``button`` beside the slides: its input's name."""
         others, self._ended = self.down - {source}, ""
         self.down.add(source)
         if others or self.held is not None:
@@ -61,6 +62,7 @@ class HeldJog:
         elif why := self.barred():
             self.say(why)
         else:
+            self.button = button
             self._go(source, axis, sign, rapid)
 
     def _go(self, source: str, axis: str, sign: int, rapid: bool) -> None:
@@ -81,7 +83,7 @@ class HeldJog:
 
     def _begin(self, source: str, axis: str, sign: int, rapid: bool) -> None:
         velocity = sign * self.speeds.velocity(axis, self.mode, rapid=rapid)
-        self._hold(source, axis, velocity, rapid, Jog(axis, velocity, self.lease))
+        self._hold(source, axis, velocity, rapid, Jog(axis, velocity, self.lease, self.button))
 
     def _hold(self, source: str, axis: str, velocity: float, rapid: bool, command: Command) -> None:
         self.clear()
@@ -156,4 +158,4 @@ class HeldJog:
             self.post(self._renewal(held))
 
     def _renewal(self, held: Held, /) -> Command:
-        return Jog(held.axis, held.velocity, self.lease)
+        return Jog(held.axis, held.velocity, self.lease, self.button)

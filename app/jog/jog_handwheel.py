@@ -67,6 +67,15 @@ class JogHandwheel:
         """The key: the next axis, behind the last one nothing."""
         self.choose(following(("", *self.names), self.choice[0] if self.choice else ""))
 
+    def next_step(self) -> None:
+        """A button beside the wheel: the next of the steps that a click may have."""
+        if any(name in self.machine.inputs for name in FACTORS):
+            return
+        fine = range(FINE - 1, FINE + 2)
+        self._speeds.step = following(
+            tuple(fine), self._speeds.step if self._speeds.step in fine else fine[-1]
+        )
+
     def choose(self, axis: str) -> None:
         """Select an axis by key or finger; an empty one lets the wheel go."""
         self._left = None

@@ -8,11 +8,12 @@ from app.desk import prompt_line
 from app.desk.desk import Desk
 from app.desk.prompt_line import STOP_HELD
 from app.desk.translation import tr
-from app.jog.held_jog import HeldJog
 from app.jog.jog_handwheel import JogHandwheel
 from app.jog.jog_homing import HomingQuestion
 from app.jog.jog_speeds import CONTINUOUS, JogDirection, JogSpeeds, directions_of
 from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z, TOUCHES
+from app.jog.pendant_jog import PendantJog
+from app.jog.setter_touch import HeldTouch, SetterTouch
 from app.jog.tool_setting import TOOL, ToolSetting
 from core.executor.commands import JogStop
 from core.executor.snapshot import Snapshot, State
@@ -42,10 +43,12 @@ class JogModel:
     desk: Desk
     machine: Machine
     speeds: JogSpeeds = field(init=False)
-    hold: HeldJog = field(init=False)
+    hold: HeldTouch = field(init=False)
     wheel: JogHandwheel = field(init=False)
     home: HomingQuestion = field(init=False)
     tool: ToolSetting = field(init=False)
+    setter: SetterTouch = field(init=False)
+    pendant: PendantJog = field(init=False)
     directions: tuple[JogDirection, ...] = ()
     armed: bool = False
 
@@ -53,9 +56,10 @@ class JogModel:
         desk = self.desk
         self.speeds = JogSpeeds(self.machine)
         self.directions = directions_of(self.machine)
-        self.hold = HeldJog(
+        lease = min(self.machine.timing.lease, LEASE)
+        self.hold = HeldTouch(
             self.speeds,
-            min(self.machine.timing.lease, LEASE),
+            lease,
             desk.post,
             desk.say,
             desk.clear,
@@ -67,6 +71,9 @@ class JogModel:
         self.wheel = JogHandwheel(self.machine, self.hold, names, self._wheel_barred)
         self.home = HomingQuestion(self.machine, desk)
         self.tool = ToolSetting(desk, desk.book)
+        self.setter = SetterTouch(desk, self.machine, self.tool, lease, self.directions)
+        self.hold.setter = self.setter
+        self.pendant = PendantJog(self.machine, self.hold, self.wheel, names)
 
     def _now(self) -> float:
         return self.desk.hands.clock()
@@ -91,13 +98,19 @@ class JogModel:
     def look(self, snapshot: Snapshot) -> None:
         """Renew what is held and follow the machine; called once a frame."""
         self.hold.look(snapshot)
+        self.pendant.look(snapshot)
         self.wheel.look(snapshot)
+        self.setter.look(snapshot)
         self.tool.look(snapshot)
 
     def prompt(self, snapshot: Snapshot) -> str:
         """The page's own words on the prompt line."""
+        if self.tool.by_setter:
+            return tr("RETURN KEEPS WHAT WAS FOUND, ESC LEAVES THE TOOL AS IT WAS")
         if self.tool.asked:
             return tr("TYPE A VALUE OR A SUM SUCH AS .5-.002, THEN RETURN; ESC LEAVES IT AS IT WAS")
+        if touching := self.setter.prompt(snapshot):
+            return why_no_jog(snapshot.state) or touching
         wheel = self.wheel.choice[0] if self.wheel.choice else ""
         return jog_prompt(snapshot.state, self.home.lost(snapshot), wheel, self.speeds.step)
 
@@ -155,6 +168,13 @@ class JogModel:
         self.hold.other_key()
         self.tool.master()
 
+    def touch_at_setter(self) -> None:
+        """The key of the tool setter; what is held ends, and the handwheel is let go."""
+        self.hold.other_key()
+        self.wheel.drop("")
+        self.home.give_up()
+        self.setter.key()
+
     @property
     def wheel_drawn(self) -> bool:
         """Whether the screen's own wheel moves something now: its station is the screen's."""
@@ -193,7 +213,9 @@ class JogModel:
             return self.tool.typed(key)
         if self.home.answer(key, self.desk.snapshot()):
             return True
-        if key in {"m", "M"}:
+        if key in {"p", "P"}:
+            self.touch_at_setter()
+        elif key in {"m", "M"}:
             self.tool.master()
         elif key in {"v", "V"}:
             self.wheel.next_axis()
@@ -205,12 +227,15 @@ class JogModel:
 
     def takes(self, key: str) -> bool:
         """Whether a character is this page's."""
-        return self.tool.takes(key) or (not self.tool.asked and key.lower() in {*LETTERS, "m", "v"})
+        return self.tool.takes(key) or (not self.tool.asked and key.lower() in {*LETTERS, "m", "v", "p"})
 
     def escape(self) -> bool:
         """Esc ends a hold, takes a question or an entry back; False when the page may be left."""
         if self.hold.held is not None:
             self.hold.let_go()
+            return True
+        if self.setter.armed:
+            self.setter.drop()
             return True
         if self.wheel.choice is not None:
             self.wheel.drop(tr("THE HANDWHEEL IS OFF"))
@@ -240,6 +265,7 @@ class JogModel:
         self._stop_step()
         self.home.give_up()
         self.armed = False
+        self.setter.drop()
         self.tool.forget()
         self.desk.clear()
 

@@ -158,6 +158,7 @@ class JogPad(JogCross):
             (model.speeds.step, model.speeds.speed, model.armed, model.hold.mode),
             (held.axis, held.velocity) if held else None,
             (model.wheel.choice, model.home.asking, snapshot.state),
+            (model.setter.armed, snapshot.touching),
         )
 
     # --- drawing -------------------------------------------------------------------------------------
@@ -229,7 +230,12 @@ class JogPad(JogCross):
             if known in {AxisState.LOST, AxisState.LOOKING}
         )
         chosen = 0 if model.home.asking else -1
-        self._tiles(painter, row, Tiles(("", ""), tuple(words), presses, chosen, alarmed=lost))
+        armed = model.setter.armed
+        if model.setter.model is not None:
+            words.append(tr("SETTER P"))
+            presses.append(model.touch_at_setter)
+            chosen = len(words) - 1 if armed else chosen
+        self._tiles(painter, row, Tiles(("", ""), tuple(words), presses, chosen, armed, lost))
 
     def _tiles(self, painter: Painter, row: QRectF, tiles: Tiles) -> None:
         for box, press in draw_tiles(painter, row, tiles):
@@ -249,6 +255,9 @@ class JogPad(JogCross):
         if model.wheel_drawn:
             self._dial.draw(painter, box, words[1])
             self.controls.append(self._dial.control(box))
+            return
+        if model.setter.armed:
+            draw_middle(painter, box, (tr("TOUCH OFF"), f"T{model.tool.number}", tr("at the setter")))
             return
         unit = tr("mm") if mode.metric else tr("in")
         draw_middle(painter, box, (*words, unit if step != CONTINUOUS else f"{unit}/min"))

@@ -38,11 +38,17 @@ def slide(what: str, snapshot: Snapshot) -> float:
 
 @dataclass(slots=True)
 class TouchOff:
-    """One touch of one axis; ``at`` is the machine position when the question was opened, mm."""
+    """One touch of one axis; ``at`` is the machine position when the question was opened, mm.
+
+    ``found`` is where the tip stands on part zero as the tool setter has found it, machine mm, and ``cause``
+    says how: then there is nothing to type, and the slide may have gone on.
+    """
 
     what: str = ""
     at: float = 0.0
     alone: bool = False  # of the master: the others stay
+    found: float | None = None
+    cause: str = ""
 
     @property
     def name(self) -> str:
@@ -52,11 +58,20 @@ class TouchOff:
     def open(self, what: str, snapshot: Snapshot) -> None:
         """The tip touches now: remember where the slide stands."""
         self.what, self.at, self.alone = what, slide(what, snapshot), False
+        self.found, self.cause = None, ""
+
+    def set(self, what: str, found: float, cause: str) -> None:
+        """The tool setter has found it. It stands at the machine: the master is set for itself."""
+        self.what, self.found, self.cause, self.alone = what, found, cause, True
 
     def place(self, text: str, mode: Mode) -> float:
         """Where the tip stands on part zero, machine mm and X a radius. Raises EntryError."""
+        if self.found is not None:
+            return self._within(self.found)
         typed = value_of(text) * (0.5 if self.what == TOUCH_X else 1.0)
-        place = self.at - to_mm(typed, mode.metric)
+        return self._within(self.at - to_mm(typed, mode.metric))
+
+    def _within(self, place: float) -> float:
         if not TOOL_FIELDS[self.name].takes(place):
             raise EntryError(tr("{axis} would be out of range").format(axis=word(self.name)))
         return place
@@ -74,17 +89,19 @@ class TouchOff:
         if len(values) < 2:
             return ""
         x, z = (float(values[name]) for name in ("x", "z"))
-        why = book.touch_off(number, Touch(x, z), tr("touched off, new tool"))
+        why = book.touch_off(number, Touch(x, z), self.cause or tr("touched off, new tool"))
         if not why:
             new.drop()
         return why
 
     def moved(self, snapshot: Snapshot) -> bool:
         """Whether the slide has left the place of the touch."""
-        return abs(slide(self.what, snapshot) - self.at) > MOVED
+        return self.found is None and abs(slide(self.what, snapshot) - self.at) > MOVED
 
     def _reason(self, text: str, mode: Mode) -> str:
         """What the history says of it."""
+        if self.cause:
+            return f"{self.cause}{tr(', alone') if self.alone else ''}"
         unit = "MM " if mode.metric else ""
         what = tr("touched Ø") if self.what == TOUCH_X else tr("touched Z")
         return f"{unit}{what} {text.strip()}{tr(', alone') if self.alone else ''}"

@@ -107,7 +107,8 @@ class JogPage(HeldKeysPage):
             if entering
             else tr("T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo")
         )
-        self.asked.asked = EntryWords("", tool.question(), tool.text, tool.old_to_new(), foot)
+        text = tool.touching.cause if tool.by_setter else tool.text
+        self.asked.asked = EntryWords("", tool.question(), text, tool.old_to_new(), foot, tool.large)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Pad at the left; tool over question at the right."""

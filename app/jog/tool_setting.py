@@ -12,7 +12,16 @@ from app.jog import jog_touch_off
 from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_history import CORRECTIONS, OffsetHistory, refusal
-from app.offsets.offset_values import TOOL_FIELDS, Mode, heading, not_set, shown_value, value_typed, word
+from app.offsets.offset_values import (
+    TOOL_FIELDS,
+    Mode,
+    heading,
+    not_set,
+    shown_value,
+    signed,
+    value_typed,
+    word,
+)
 from app.offsets.tool_fields import ToolFields
 from core.executor.snapshot import Snapshot
 from core.store.offset_fields import REMARK_LONGEST, Sort
@@ -20,6 +29,7 @@ from core.store.store_rows import OFFSETS, Kind, ToolRow
 
 TOOL = "tool"  # asked: its number
 Pair = tuple[float, float]
+LARGE = 0.5  # mm: a setter that finds a tip so far from where it was is to be wondered at
 _AFTER = {"wear_x": "wear_z"}  # what is asked after an answer
 
 
@@ -53,11 +63,37 @@ class ToolSetting:
         """Whether the master is being touched."""
         return self.asked in TOUCHES and self.row is not None and self.row.master
 
+    @property
+    def by_setter(self) -> bool:
+        """Whether it is asked if what the tool setter has found is to be kept."""
+        return self.asked in TOUCHES and self.touching.found is not None
+
+    def found(self, what: str, value: float, cause: str) -> None:
+        """The tool setter has found where the tip stands on part zero, machine mm: ask whether to keep it."""
+        self.asked, self.text = what, ""
+        self.touching.set(what, value, cause)
+
+    @property
+    def moved(self) -> float | None:
+        """How far what was found is from what the tool had, with its wear, mm; None: it had nothing."""
+        if not self.by_setter or self.row is None or self.touching.found is None:
+            return None
+        return self.touching.found - self.row.offset["xz".index(self.touching.name)]
+
+    @property
+    def large(self) -> bool:
+        """Whether what was found is so far from what the tool had that something may be wrong."""
+        return abs(self.moved or 0.0) > LARGE
+
     def question(self) -> str:
         """What is asked now; empty when nothing is."""
         name = f"T{self.number}"
         if self.asked == TOOL:
             return tr("TOOL NUMBER?")
+        if self.by_setter:
+            return tr("{tool} {axis} BY THE TOOL SETTER: KEEP IT?").format(
+                tool=name, axis=self.touching.name.upper()
+            )
         if self.asked == TOUCH_X:
             return tr("{tool} MEASURED DIAMETER?").format(tool=name)
         if self.asked == TOUCH_Z:
@@ -86,9 +122,17 @@ class ToolSetting:
         try:
             value = self.touching.place(self.text, mode) if touched else value_typed(name, self.text, mode)
             ends = _wear_that_ends(row, f"wear_{name}", mode) if touched else ""
-            return f"{title}  {was}  →  {shown_value(name, value, mode)}{ends}"
+            apart = self._apart(name, mode)
+            return f"{title}  {was}  →  {shown_value(name, value, mode)}{apart}{ends}"
         except EntryError:
             return f"{title}  {was}  →  …"  # half a sum is no mistake yet
+
+    def _apart(self, name: str, mode: Mode) -> str:
+        """How far what was found is from what it was, in the figures that are shown."""
+        if self.moved is None:
+            return ""
+        shown = 2 * self.moved if name == "x" and mode.diameter else self.moved
+        return f"   {tr('DIFFERENCE')} {signed(shown, mode.metric)}"
 
     def tip(self, snapshot: Snapshot) -> Pair | None:
         """Where the tip of the chosen tool stands from part zero, mm; None when it was never set."""
@@ -163,7 +207,7 @@ class ToolSetting:
 
     def takes(self, key: str) -> bool:
         """Whether a character goes to the entry."""
-        return self.asked == "remark" or (bool(self.asked) and key in CHARACTERS)
+        return self.asked == "remark" or (bool(self.asked) and not self.by_setter and key in CHARACTERS)
 
     def typed(self, key: str) -> bool:
         """A key while something is asked; False when it means nothing in an entry."""

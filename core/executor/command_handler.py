@@ -228,7 +228,7 @@ class CommandHandler:
 
     def _button_up(self, name: str) -> str:
         """Why a jog that a button holds does not begin; empty when the button is down."""
-        return "" if not name or self._context.inputs.get(name, False) else f"its button {name} is up"
+        return "" if not name or self._context.button(name) else f"its button {name} is up"
 
     def _touch(self, command: commands.Touch) -> None:
         control = self._control

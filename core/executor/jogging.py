@@ -280,7 +280,7 @@ class Jogger:
 
     def mind_button(self) -> None:
         """A jog that a button holds ends when that comes up, or is no longer known. Raises DriverError."""
-        if self.while_on and not self._context.inputs.get(self.while_on, False):
+        if self.while_on and not self._context.button(self.while_on):
             self.while_on = ""
             self.stop()
 

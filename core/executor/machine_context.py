@@ -14,6 +14,7 @@ from core.executor.snapshot import Alarm, Event
 from core.executor.spindle_control import SpindleControl
 from core.executor.station_signals import StationSignals
 from core.machine.machine_model import Machine
+from core.machine.station_rules import ENABLE
 from core.ports import AxisSample, MachinePorts, Unknown
 
 _log = logging.getLogger(__name__)
@@ -94,6 +95,10 @@ class MachineContext:
             if model.terminal == name:
                 return self.inputs.get(model.name, False)
         return False
+
+    def button(self, name: str) -> bool:
+        """Whether a button that holds a motion is down, and the enabling switch where there is one."""
+        return self.inputs.get(name, False) and self.inputs.get(ENABLE, True)
 
     def in_position(self) -> bool:
         """All slides are where they were sent."""

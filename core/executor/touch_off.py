@@ -13,6 +13,7 @@ from core.executor.snapshot import State, Touched, TouchPhase
 from core.executor.start_conditions import guard_open
 from core.machine.setter_table import SetterModel
 from core.ports import PROBE, Latch, Unknown
+from core.table_schema import Unit, shown
 
 _SETTLED = 0.1  # s at rest until the input is believed to be off
 _RENEWED = 0.03  # s between two renewals of the way
@@ -132,7 +133,7 @@ class TouchOff:
         button = (command or self._command).while_on
         reasons = (
             (command is None and context.now > self._until, "it was let go"),
-            (bool(button) and not context.inputs.get(button, False), f"its button {button} is up"),
+            (bool(button) and not context.button(button), f"its button {button} is up"),
             (context.signals.hold, "feed hold is pressed"),
             (guard_open(context), "the guard is open: close it"),
             (context.spindle.asked or not context.spindle.stopped, "the spindle turns: stop it first"),
@@ -152,8 +153,12 @@ class TouchOff:
         end = here + command.sign * (self._model.search + self._model.overtravel)
         if low <= end <= high:
             return ""
-        far = end - (high if command.sign > 0 else low)
-        return f"its search would leave the travel of {command.axis} by {abs(far):.2f} mm: jog back"
+        far = self._length(abs(end - (high if command.sign > 0 else low)))
+        return f"its search would leave the travel of {command.axis} by {far}: jog back"
+
+    def _length(self, mm: float) -> str:
+        """In the unit of the machine's builder."""
+        return shown(mm, Unit.LENGTH, self._context.machine.inch)
 
     # --- from phase to phase --------------------------------------------------------------------------------
 
@@ -205,7 +210,8 @@ class TouchOff:
         place = self._first if self._latch is None else self._latch.place[self._index(self._command.axis)]
         over = (here - place) * sign
         if over > model.overtravel:
-            self.end(f"it ran {over:.3f} mm past the touch, more than overtravel: look at the setter")
+            far = self._length(over)
+            self.end(f"it ran {far} past the touch, more than overtravel: look at the setter")
         elif self.phase is TouchPhase.SEARCH:
             self._go(TouchPhase.BACK_OFF, self._first - sign * model.back_off)
         else:
@@ -215,7 +221,7 @@ class TouchOff:
         assert self._model is not None
         model, sign, port = self._model, self._command.sign, self._context.ports.touch
         if self.phase is TouchPhase.SEARCH:
-            self._failed = f"nothing was touched within {model.search:.1f} mm"
+            self._failed = f"nothing was touched within {self._length(model.search)}"
             self._go(TouchPhase.RETURN, self._start)
         elif self.phase is TouchPhase.RETURN:
             self._over(self._failed)
@@ -223,7 +229,8 @@ class TouchOff:
             self._failed = "the second touch did not come: is the tool or the setter loose?"
             self._go(TouchPhase.RETURN, self._first - sign * model.back_off)
         elif self._made:
-            self._over(f"the input stays on {model.back_off:.2f} mm off the touch: look at stylus and cable")
+            far = self._length(model.back_off)
+            self._over(f"the input stays on {far} off the touch: look at stylus and cable")
         elif self.phase is TouchPhase.BACK_OFF:
             if port is not None:
                 port.arm()
