@@ -188,7 +188,7 @@ class PanelStation(StationHands):
     """Hands on one side, ``core.ports.Station`` on the other; any thread may call.
 
     ``inputs`` are those of the machine: its own E-stop, start and hold count as well, where it has any.
-    ``wired`` is a station of which there is only a handwheel: it counts on.
+    ``wired`` is a station of which there is only a handwheel, which counts on, or the input of a load.
     """
 
     def __init__(
@@ -210,6 +210,7 @@ class PanelStation(StationHands):
             start=state.start or inputs.get("start", False),
             hold=state.hold or inputs.get("hold", False),
             handwheel=state.handwheel + wired.handwheel,
+            spindle_load=wired.spindle_load,
             age=max(state.age, wired.age),
         )
 

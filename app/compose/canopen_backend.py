@@ -167,7 +167,7 @@ def can_driven(machine: Machine, clock: Clock) -> Driven:
     ports = owned.ports
     hands: object | None = peers.machine if peers is not None else None
     if not has_station(machine):
-        wired = ports.station if "handwheel" in machine.hardware.analog else None
+        wired = ports.station if {"handwheel", "spindle_load"} & machine.hardware.analog.keys() else None
         panel = PanelStation(clock, ports.io.inputs, wired)
         hands, ports = hands or panel, replace(ports, station=panel)
     if peers is None:

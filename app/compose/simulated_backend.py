@@ -43,6 +43,7 @@ def sim_config(machine: Machine) -> SimConfig:
         faults=sim.faults,
         seed=sim.seed,
         setter=_setter(machine, sim.tips),
+        measures_load="spindle_load" in machine.hardware.analog,
     )
 
 

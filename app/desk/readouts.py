@@ -294,6 +294,7 @@ class SpindleFigures:
     override: float
     auto: bool
     known: bool = True  # else nothing is heard of it: it may turn
+    load: str = ""  # per cent, where the machine measures it
 
 
 def feed_figures(snapshot: Snapshot, metric: bool) -> FeedFigures:
@@ -350,4 +351,5 @@ def spindle_figures(snapshot: Snapshot, metric: bool) -> SpindleFigures:
         surface_label="M/MIN" if metric else "SFM",
         override=snapshot.spindle_override,
         auto=snapshot.spindle_auto,
+        load=f"{snapshot.spindle_load:.0f} %" if snapshot.spindle_load is not None else "",
     )

@@ -17,7 +17,7 @@ from app.jog.tool_setting import ToolSetting
 from app.offsets.offset_history import refusal
 from app.offsets.offset_values import signed
 from core.executor.commands import Command, Touch
-from core.executor.snapshot import Snapshot, Touched, TouchPhase
+from core.executor.snapshot import Snapshot, State, Touched, TouchPhase
 from core.machine.machine_model import Machine
 from core.machine.setter_table import SetterModel
 from core.ports import PROBE
@@ -113,7 +113,9 @@ class SetterTouch:
         return Touch(axis, sign, self.lease, self._presses, button)
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame: what a touch-off has found is asked to be kept."""
+        """Once a frame: what a touch-off has found is asked to be kept, once the slide rests."""
+        if self._seen is not None and snapshot.state is State.JOG:
+            return
         touched = snapshot.touched
         number = touched.number if touched is not None else 0
         if self._seen is None or touched is None or number == self._seen:

@@ -167,6 +167,8 @@ class SpindleGauge(Gauge):
         self.label(painter, surface, view.surface_label)
         self.figure(painter, surface.adjusted(5 * u, 0, 0, 0), view.surface, 2.5)
         self.bar(painter, self.row(11.2, 2.8), view.override, 1.0)
+        if view.load:
+            painter.write(self.row(0.4, 1.9), f"{tr('LOAD')} {view.load}", 1.6, "soft", at=RIGHT)
 
     def _unheard(self, painter: Painter) -> None:
         """Nobody knows whether it stands: that is said instead of any figure."""

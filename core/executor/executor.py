@@ -21,6 +21,7 @@ from core.executor.commands import (
     Jog,
     JogStep,
     Reset,
+    Touch,
     Wheel,
 )
 from core.executor.interrupted_job import InterruptedJob
@@ -46,7 +47,7 @@ _log = logging.getLogger(__name__)
 TICK = 0.01  # s from the end of one to the beginning of the next
 _STALL = 0.2  # s between two ticks that tell of a stalled host
 _STALE = 0.5  # s after which nobody expects a press to move the machine any more
-_STARTS = (CycleStart, DriveTest, EnableDrives, Home, Jog, JogStep, Wheel)
+_STARTS = (CycleStart, DriveTest, EnableDrives, Home, Jog, JogStep, Touch, Wheel)
 _WAITED_FOR = (EnableDrives, Home, Reset)  # a driver answers them when its drives have obeyed
 _WORTH_AN_ENTRY = 0.1  # change of the feed override that is worth an entry in the log
 _COMMANDS = 100  # looked at in one tick

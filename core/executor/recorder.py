@@ -233,7 +233,9 @@ class Recorder:
     def _sample_rows(self, ticks: list[Tick]) -> FloatArray:
         """The driver's, or where it has none what the axes said at each tick."""
         width, last = self.ring.recorded.sample_width, self.ring.samples.last
-        told = [tick.samples for tick in ticks if tick.samples is not None and len(tick.samples)]
+        told = [
+            _loaded(tick.samples, tick) for tick in ticks if tick.samples is not None and len(tick.samples)
+        ]
         rows = np.concatenate(told) if told else self._seen(ticks, last)
         rows = self._with_gap(rows, ticks)
         if rows.shape[1:] != (width,):
@@ -260,7 +262,7 @@ class Recorder:
             if tick.samples is not None or s.t <= last or Unknown.SLIDES in s.unknown:
                 continue
             place = (s.demand, s.actual, s.rpm_actual)
-            row = [s.t, *s.demand, *s.actual, *none, s.rpm_actual, tick.turns, _NAN, tick.queue]
+            row = [s.t, *s.demand, *s.actual, *none, s.rpm_actual, tick.turns, _load(tick), tick.queue]
             if place == self._place and s.t < last + _AT_REST - _GRAIN:
                 self._resting = row
                 continue
@@ -322,3 +324,20 @@ def rotate(folder: Path) -> None:
             old.unlink()
     except OSError as error:
         raise RecordError(f"{folder}: old records cannot be removed: {error.strerror or error}") from error
+
+
+_LOAD = -2  # column of the spindle's load in a sample
+
+
+def _load(tick: Tick) -> float:
+    return _NAN if tick.snapshot.spindle_load is None else tick.snapshot.spindle_load
+
+
+def _loaded(rows: FloatArray, tick: Tick) -> FloatArray:
+    """With the load that an input tells, where the driver's own samples tell none."""
+    load = tick.snapshot.spindle_load
+    if load is None or not len(rows) or not np.isnan(rows[:, _LOAD]).all():
+        return rows
+    rows = rows.copy()
+    rows[:, _LOAD] = load
+    return rows

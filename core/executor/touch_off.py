@@ -102,6 +102,8 @@ class TouchOff:
         self._seen = (self._context.sample.t, self._start)
         self._jogger.forget()
         assert self._model is not None
+        if self._context.ports.touch is not None:
+            self._context.ports.touch.arm()
         self._go(TouchPhase.SEARCH, self._start + command.sign * self._model.search)
         return True
 

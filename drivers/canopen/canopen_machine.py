@@ -4,12 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from core.ports import ALL_UNKNOWN, Clock, DriverError, FloatArray, MachinePorts, Spindle, Stop, Unknown
+from core.ports import (
+    ALL_UNKNOWN,
+    PROBE,
+    Clock,
+    DriverError,
+    FloatArray,
+    MachinePorts,
+    Spindle,
+    Stop,
+    Unknown,
+)
 from drivers.canopen.canopen_axes import CanopenAxes
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_encoder import CanEncoder, MeasuredSpindle
 from drivers.canopen.canopen_objects import DriveState
+from drivers.canopen.canopen_probe import CanopenProbe
 from drivers.canopen.canopen_spindle import CanopenSpindle
 from drivers.canopen.canopen_terminals import CanopenIO
 from drivers.canopen.cia402_drives import Drive402
@@ -73,6 +84,7 @@ class CanopenMachine:
                 self.axes.clearing.append(self.spindle.clear_fault)
             self.encoder = self._encoder(drives)
             self.c = self._spindle_c()
+            self.touch = CanopenProbe(self.axes, self.io, config.bus.sync) if PROBE in config.inputs else None
             self.samples = CanopenSamples(self.axes, self._turning, config.bus.sync)
             self._connect()
         except DriverError:
@@ -109,6 +121,7 @@ class CanopenMachine:
             station=self.io,
             lock=self.c,
             samples=self.samples,
+            touch=self.touch,
             unknown=self.unknown,
             untraced=_UNTRACED if self.config.mode == "pp" else "",
             warnings=tuple(each for axis in self.axes.drives.axes for each in axis.drive.setup.warnings),
@@ -193,6 +206,8 @@ class CanopenMachine:
         now = self.clock.now()
         self.axes.tick(now)
         self.samples.note(now)
+        if self.touch is not None:
+            self.touch.note()
         if self.bus.trouble:
             return
         try:

@@ -257,6 +257,7 @@ class CanopenIO:
             feed_pot=self._pot("feed_pot"),
             handwheel=self._turned(),
             age=age,
+            spindle_load=self._load(),
         )
 
     def _turned(self) -> int:
@@ -271,6 +272,14 @@ class CanopenIO:
         count += (raw - last + 0x8000) % 0x10000 - 0x8000
         self._wheel = (raw, count)
         return count
+
+    def _load(self) -> float | None:
+        """Per cent: ``low`` at 0, ``high`` at the full word; what is below is the noise of an idle motor."""
+        load = self._config.pots.get("spindle_load")
+        if load is None:
+            return None
+        raw = self._module(load.terminal).analog[load.terminal.sub - 1]
+        return load.low + (load.high - load.low) * max(raw / _FULL, 0.0)
 
     def _pot(self, name: str) -> float:
         pot = self._config.pots.get(name)

@@ -26,6 +26,7 @@ _SETTING = re.compile(r"\$\d+=.*")
 _ANSWER = re.compile(r"error:(\d+)")
 _ALARM = re.compile(r"ALARM:(\d+)")
 _IDLERS = frozenset(("Check", "Sleep", "Tool"))  # states in which it runs no program of ours
+_HURRIED = 0.02  # s, while a tool is touched off
 _COALESCED = 0.5  # s; two questions so far apart are never answered by one report
 _LISTENING = 0.1  # s; of a longer pause of this computer no more counts as the controller's silence
 _LEAP = 1.0  # mm beyond what the slides can do between two reports
@@ -79,6 +80,7 @@ class Controller:
         self._wire = wire
         self._inbox = b""
         self._next_question = 0.0
+        self.hurry_until = 0.0  # somebody wants to know as often as it may be asked
         self._sees_overrides = False
         self._halted = False
         self._opening: Opening | None = None  # of a wire that was lost
@@ -452,6 +454,8 @@ class Controller:
     def _interval(self) -> float:
         if self.busy:
             return _ASKING
+        if self.clock.now() < self.hurry_until:
+            return _HURRIED
         resting = self.report is not None and self.report.state == "Idle" and self.stream.quiet
         return _RESTING if resting and not self._sees_overrides else _RUNNING
 

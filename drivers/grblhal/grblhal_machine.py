@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from core.ports import ALL_UNKNOWN, Clock, DriverError, MachinePorts, Stop, Trip, Unknown
+from core.ports import ALL_UNKNOWN, PROBE, Clock, DriverError, MachinePorts, Stop, Trip, Unknown
 from drivers.grblhal import grblhal_scripts
 from drivers.grblhal.grblhal_axes import GrblAxes
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_config import ESTOP, HARDWARE, GrblConfig
 from drivers.grblhal.grblhal_controller import Controller
+from drivers.grblhal.grblhal_probe import GrblProbe
 from drivers.grblhal.grblhal_spindle import GrblEncoder, GrblSpindle
 from drivers.grblhal.grblhal_terminals import LETTERS, GrblInputs, GrblIO
 from drivers.grblhal.grblhal_wire import Opening, Wire, open_wire
@@ -45,6 +46,7 @@ class GrblMachine:
         self.io = GrblIO(self.controller, self.blocks, self.inputs)
         self.axes = GrblAxes(self.controller, self.blocks, self.pump, self._reopen)
         self.blocks.terminals = self.io.able
+        self.touch = GrblProbe(self.controller, self.axes, self.inputs) if PROBE in config.inputs else None
         voided = self.controller.on_void
 
         def void() -> None:
@@ -64,6 +66,7 @@ class GrblMachine:
             warnings=self._warnings(),
             blocks=self.blocks,
             halt=self.controller.halt,
+            touch=self.touch,
             unknown=self.unknown,
             trips=self,
         )
@@ -75,6 +78,8 @@ class GrblMachine:
         self.spindle.pump()
         self.io.pump()
         self.inputs.pump()
+        if self.touch is not None:
+            self.touch.pump()
 
     def unknown(self) -> frozenset[Unknown]:
         """A controller that is not heard goes on with what it has, and its spindle turns on."""

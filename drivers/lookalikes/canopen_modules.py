@@ -81,7 +81,8 @@ class TerminalBoard:
         wheel = self._config.pots.get("handwheel")
         if wheel is not None and wheel.terminal.node == self._name and wheel.terminal.sub == sub:
             return (state.handwheel + 2**15) % 2**16 - 2**15
-        shown = {"feed_pot": state.feed_pot, "spindle_pot": state.spindle_pot}
+        load = self._plant.spindle_load
+        shown = {"feed_pot": state.feed_pot, "spindle_pot": state.spindle_pot, "spindle_load": load}
         for name, pot in self._config.pots.items():
             if pot.terminal.node == self._name and pot.terminal.sub == sub and name in shown:
                 fraction = (shown[name] - pot.low) / (pot.high - pot.low)

@@ -90,5 +90,6 @@ class SimConfig:
     seed: int = 1
     faults: tuple[PlannedFault, ...] = ()
     setter: SimSetter | None = None
+    measures_load: bool = False  # an input tells the spindle's load
     palms: float = 0.5  # seconds within which both palms must go down
     start_pulse: float = 0.1  # how long the two-hand relay holds its output at least

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 from core.ports import (
@@ -216,8 +217,11 @@ class SimStation(_OnPlant):
 
     def snapshot(self) -> StationState:
         """The station as the control reads it now."""
-        with self._plant.lock:
-            return self._plant.panel.state(self._plant.clock.now())
+        plant = self._plant
+        with plant.lock:
+            state = plant.panel.state(plant.clock.now())
+            load = plant.spindle_load if plant.config.measures_load else None
+        return state if load is None else replace(state, spindle_load=load)
 
 
 class Simulation(NamedTuple):

@@ -57,8 +57,10 @@ class Canopen(Rig):
     def __init__(self, *, homing: bool = False, turns: bool = False) -> None:
         """``turns``: the spindle's drive counts them."""
         counted = ("spindle = { id = 3 }", "spindle = { id = 3, counts_per_rev = 4096 }")
+        estop = 'estop = { at = "401.6000.1.0"'
+        probe = (estop, 'probe = { at = "401.6000.7.7" }\n' + estop)
         changes = (counted, ("encoder_ppr = 0 ", "encoder_ppr = 1024 ")) if turns else ()
-        self.bench = CanBench(self.made(*changes, absolute=not homing))
+        self.bench = CanBench(self.made(probe, *changes, absolute=not homing))
         self.peers, self.clock, self.machine = self.bench.peers, self.bench.clock, self.bench.model
         self.ports = self.bench.machine.ports
         self._answered, self._count = 1, 0  # the peers answer every so many rounds

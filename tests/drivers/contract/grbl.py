@@ -158,7 +158,9 @@ class Grblhal(Rig):
     world: GrblWorld
 
     def __init__(self, *, homing: bool = False) -> None:
-        self.machine = grbl_machine(*(HOMING if homing else ()))
+        estop = 'estop = { at = "pn.E" }'
+        probe = (estop, 'probe = { at = "pn.P" }\n' + estop)
+        self.machine = grbl_machine(probe, *(HOMING if homing else ()))
         self.clock = StepClock()
         self.peer = Firmware(self.clock, quirky(homing=homing))
         self.wire = LateWire(self.peer)

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 from app.compose.machine_files import load_machine
 from app.compose.simulated_backend import simulated
-from core.machine.machine_model import Machine
+from core.machine.machine_model import InputModel, Machine
 from core.ports import ALL_UNKNOWN, DriverError, MachinePorts
 from drivers.clocks import StepClock
 from drivers.feeder.feeder_client import Line, feeder_ports
@@ -29,6 +29,12 @@ def unhomed(machine: Machine) -> Machine:
     x, z, c = machine.axes
     z = dataclasses.replace(z, absolute=False, home_speed=20.0, home_order=1)
     return dataclasses.replace(machine, axes=(x, z, c))
+
+
+def with_probe(machine: Machine) -> Machine:
+    """With the input of a touch probe."""
+    wired = InputModel("probe", "IN-7")
+    return dataclasses.replace(machine, inputs={**machine.inputs, "probe": wired})
 
 
 class Simulated(Rig):
@@ -52,7 +58,7 @@ class Simulated(Rig):
     hold = 0.15
 
     def __init__(self, machine: Machine | None = None, *, homing: bool = False) -> None:
-        self.machine = machine or load_machine(None)
+        self.machine = with_probe(machine or load_machine(None))
         if homing:
             self.machine = unhomed(self.machine)
         self.clock = self.make_clock()

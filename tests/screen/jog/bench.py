@@ -33,7 +33,27 @@ NONE = Qt.KeyboardModifier.NoModifier
 SHIFT = Qt.KeyboardModifier.ShiftModifier
 
 
-def shipped(folder: Path, *, absolute: bool, with_c: bool = True, wheel: bool = False) -> str:
+# A tool setter, and one tool that stands with its tip on part zero where X is .15 and Z -1.6.
+SETTER = """[setter]
+x = 0.5
+z = 1.0
+width = 0.25
+overtravel = 0.15
+speed = 20
+slow = 0.5
+
+[io.in]
+probe = { at = "IN-7" }
+jog_x_minus = { at = "IN-8" }
+jog_z_plus = { at = "IN-9" }
+jog_rapid = { at = "IN-10" }
+"""
+TIP = "[sim]\ntips = [{ x = 0.15, z = -1.6 }]\n"
+
+
+def shipped(
+    folder: Path, *, absolute: bool, with_c: bool = True, wheel: bool = False, setter: bool = False
+) -> str:
     """The shipped machine file; not ``absolute``: its slides only count, and Z is homed before X."""
     text = files("resources").joinpath("machines", "gt75.toml").read_text(encoding="utf-8")
     if not absolute:
@@ -45,6 +65,8 @@ def shipped(folder: Path, *, absolute: bool, with_c: bool = True, wheel: bool = 
         text = f"{before}[axis.C]{c_axis.replace('enabled = true', 'enabled = false', 1)}"
     if wheel:
         text += '\n[io.analog]\nhandwheel = { at = "wheel", counts_per_click = 4 }\n'
+    if setter:
+        text = text.replace("[io.in]\n", SETTER).replace("[sim]\n", TIP)
     path = folder / "lathe.toml"
     path.write_text(text, encoding="utf-8")
     return str(path)
@@ -138,13 +160,12 @@ class JogBench:
         return self.frame.prompt.text
 
 
-def bench_on(folder: Path, *, absolute: bool = True, with_c: bool = True, wheel: bool = False) -> JogBench:
-    """Desk, lathe and window; the drives are on and the Jog page is open."""
+def bench_on(folder: Path, *, absolute: bool = True, **more: bool) -> JogBench:
+    """Desk, lathe and window; the drives are on and the Jog page is open. ``more`` as ``shipped`` has it."""
     clock = StepClock()
     store = Store.open(folder / "home")
-    desk, executor = desk_and_executor(
-        shipped(folder, absolute=absolute, with_c=with_c, wheel=wheel), lambda: offsets_of(store), clock
-    )
+    file = shipped(folder, absolute=absolute, **more)
+    desk, executor = desk_and_executor(file, lambda: offsets_of(store), clock)
     desk.book = OffsetBook(store)
     desk.hands.clock = clock.now
     window = MainWindow(Look(DARK))

@@ -11,10 +11,8 @@ from pytestqt.qtbot import QtBot
 from tests.screen.jog.bench import JogBench, bench_on, opened
 
 
-def _open(
-    qtbot: QtBot, folder: Path, *, absolute: bool = True, with_c: bool = True, wheel: bool = False
-) -> Iterator[JogBench]:
-    bench = bench_on(folder, absolute=absolute, with_c=with_c, wheel=wheel)
+def _open(qtbot: QtBot, folder: Path, *, absolute: bool = True, **more: bool) -> Iterator[JogBench]:
+    bench = bench_on(folder, absolute=absolute, **more)
     qtbot.waitExposed(bench.window)
     opened(bench)
     yield bench
@@ -42,3 +40,9 @@ def no_c(qtbot: QtBot, tmp_path: Path) -> Iterator[JogBench]:
 def wheeled(qtbot: QtBot, tmp_path: Path) -> Iterator[JogBench]:
     """A lathe with a handwheel; its station is the screen's, so the wheel is drawn."""
     yield from _open(qtbot, tmp_path, wheel=True)
+
+
+@pytest.fixture
+def setter(qtbot: QtBot, tmp_path: Path) -> Iterator[JogBench]:
+    """A lathe with a tool setter, jog buttons beside its slides, and a tool."""
+    yield from _open(qtbot, tmp_path, setter=True)

@@ -1,0 +1,136 @@
+"""A tool is touched off at a tool setter by every driver that has an input: what it finds, what ends it."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from core.executor.commands import JogStop, Touch
+from core.executor.snapshot import State, Touched, TouchPhase
+from core.machine.setter_table import SetterModel
+from core.ports import PROBE
+from tests.drivers.contract.conftest import need
+from tests.drivers.contract.control import Control
+from tests.drivers.contract.rig import TICK, Rig
+
+FACE = -6.0  # mm of X: the setter is touched by slides that go beyond, from 0 towards −
+SLOW = 0.2  # mm/s
+SETTER = SetterModel(
+    x=0.0, z=0.0, width=2.0, overtravel=4.0, speed=10.0, slow=SLOW, search=12.0, back_off=1.0
+)
+LEASE = 0.2
+COUNT = 0.003  # mm
+
+
+class Bench(Control):
+    """The executor on a rig with a setter; ``held`` is what the key asks for, ``there``: it stands there."""
+
+    held: Touch | None = None
+    there = True
+
+    def __init__(self, rig: Rig) -> None:
+        assert PROBE in rig.machine.inputs
+        tables = {**rig.machine.hardware.tables, "setter": SETTER}
+        hardware = dataclasses.replace(rig.machine.hardware, tables=tables)
+        super().__init__(rig, dataclasses.replace(rig.machine, hardware=hardware))
+
+    def tick(self) -> None:
+        if self.held is not None:
+            self.executor.post(self.held)
+        self.rig.world.set_input(PROBE, self.there and self.rig.world.place()[0] < FACE)
+        super().tick()
+
+    def touch(self, number: int = 1) -> None:
+        self.held = Touch("X", -1, LEASE, number)
+        self.tick()
+
+    def let_go(self) -> None:
+        self.held = None
+        self.post(JogStop())
+
+    @property
+    def touched(self) -> Touched:
+        assert self.shot.touched is not None, self.events[-3:]
+        return self.shot.touched
+
+
+@pytest.fixture
+def bench(shipped: Rig) -> Bench:
+    made = Bench(shipped)
+    made.ready()
+    return made
+
+
+def test_the_place_of_the_touch_is_found_as_near_as_is_said(bench: Bench) -> None:
+    bench.touch()
+    bench.until(State.JOG)
+    bench.until(State.IDLE, limit=60.0)
+    touched = bench.touched
+    assert touched.why == ""
+    assert touched.place is not None
+    # The bench itself makes the input up to a tick late.
+    assert touched.place == pytest.approx(FACE, abs=touched.error + SLOW * TICK + COUNT)
+    assert touched.error <= SLOW * 0.06 / 2
+    assert bench.rig.world.place()[0] == pytest.approx(FACE + SETTER.back_off, abs=0.02)
+    assert bench.shot.alarms == ()
+
+
+@pytest.mark.parametrize("phase", [TouchPhase.SEARCH, TouchPhase.BACK_OFF, TouchPhase.SLOW])
+def test_letting_go_stops_it(bench: Bench, phase: TouchPhase) -> None:
+    bench.touch()
+    bench.until_true(lambda shot: shot.touching is phase)
+    bench.run(0.1)
+    bench.let_go()
+    bench.rest(0.6)
+    bench.until(State.IDLE)
+    assert bench.touched.place is None
+    assert "let go" in bench.touched.why
+
+
+def test_a_screen_that_is_gone_stops_it(bench: Bench) -> None:
+    bench.touch()
+    bench.run(0.3)
+    bench.held = None
+    before = bench.rig.world.place()[0]
+    bench.until(State.IDLE)
+    assert before - bench.rig.world.place()[0] < 10.0 * (LEASE + 0.5)
+    assert bench.touched.place is None
+
+
+def test_nothing_there_leads_back(bench: Bench) -> None:
+    bench.there = False
+    begin = bench.shot.actual[0]
+    bench.touch()
+    bench.until(State.JOG)
+    bench.until(State.IDLE, limit=30.0)
+    assert "nothing was touched" in bench.touched.why
+    assert bench.shot.actual[0] == pytest.approx(begin, abs=0.01)
+    assert bench.shot.alarms == ()
+
+
+def test_an_input_that_is_on_begins_nothing(bench: Bench) -> None:
+    bench.rig.world.set_input(PROBE, True)
+    bench.there = False
+    for _ in range(30):
+        bench.rig.world.set_input(PROBE, True)
+        Control.tick(bench)
+    bench.executor.post(Touch("X", -1, LEASE, 1))
+    Control.tick(bench)
+    assert bench.state is State.IDLE
+    assert any("on already" in event.text for event in bench.events if event.kind == "refused")
+
+
+@pytest.mark.parametrize("fault", ["drive fault", "cable out", "silence"])
+def test_what_breaks_ends_it(bench: Bench, fault: str) -> None:
+    need(bench.rig, fault)
+    if fault not in bench.rig.faults:
+        pytest.skip(f"its wires cannot have it: {fault}")
+    bench.touch()
+    bench.run(0.3)
+    bench.rig.acts()[fault]()
+    bench.until(State.FAULT)
+    bench.run(bench.rig.faults[fault].rests)
+    assert bench.shot.touching is None
+    assert bench.touched.place is None
+    assert bench.stands()

@@ -1,0 +1,282 @@
+"""A tool is touched off at the tool setter by a key that is held, and buttons beside the slides jog."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.executor.snapshot import State
+from core.store.store_rows import Kind, ToolRow
+from drivers.lookalikes.plant_hands import PlantHands
+from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
+
+ABOVE = (1.0, -0.6)  # in: machine X and Z from which X- finds it
+BESIDE = (0.65, -0.2)  # and from which Z- does
+TIP = (0.15, -1.6)
+
+
+def hands(bench: JogBench) -> PlantHands:
+    assert isinstance(bench.desk.hands.station, PlantHands)
+    return bench.desk.hands.station
+
+
+def put(bench: JogBench, place: tuple[float, float]) -> None:
+    """The slides stand there: somebody has pushed them while the drives were off."""
+    hands(bench)._plant.power(False)
+    for axis, inches in zip("XZ", place, strict=True):
+        here = bench.shot.actual["XZ".index(axis)]
+        hands(bench).push(axis, inches * INCH - here)
+    hands(bench)._plant.power(True)
+    bench.run(0.1)
+
+
+def given(bench: JogBench, number: int, row: ToolRow) -> None:
+    """The table has this tool already."""
+    values = row._asdict()
+    values.pop("master")
+    bench.desk.book.change(Kind.TOOL, number, values, "typed")
+    bench.saved()
+
+
+def choose(bench: JogBench, number: int) -> None:
+    bench.key(Key.Key_T)
+    bench.enter(str(number))
+    bench.run(0.05)
+
+
+def hold(bench: JogBench, key: Key, seconds: float = 20.0) -> None:
+    """Until it is back, or nothing comes of it."""
+    bench.down(key)
+    bench.run(0.1)
+    bench.until(lambda: bench.shot.state is State.IDLE, seconds)
+    bench.up(key)
+    bench.run(0.1)
+
+
+def test_a_new_tool_is_found_by_two_touches_and_kept_by_return(setter: JogBench) -> None:
+    choose(setter, 3)
+    put(setter, ABOVE)
+    setter.key(Key.Key_P)
+    assert "T3 AT THE TOOL SETTER: HOLD ↑ (X−)" in setter.prompt
+    hold(setter, Key.Key_Up)
+    assert "RETURN KEEPS" in setter.prompt
+    words = setter.page.asked.asked
+    assert "not set  →  +0.1500" in words.change
+    assert words.text.startswith("tool setter X− ±")
+    setter.key(Key.Key_Return)
+    put(setter, BESIDE)
+    setter.key(Key.Key_P)
+    hold(setter, Key.Key_Left)
+    setter.key(Key.Key_Return)
+    setter.saved()
+    row = setter.desk.book.tools[3]
+    assert (row.x, row.z) == pytest.approx((TIP[0] * INCH, TIP[1] * INCH), abs=0.002)
+    assert "tool setter Z−" in setter.desk.book.history(Kind.TOOL)[0].why
+
+
+def test_a_tool_that_was_set_shows_the_difference_and_a_large_one_warns(setter: JogBench) -> None:
+    given(setter, 2, ToolRow(x=0.14 * INCH, z=-1.6 * INCH, quadrant=3))
+    choose(setter, 2)
+    put(setter, ABOVE)
+    setter.key(Key.Key_P)
+    hold(setter, Key.Key_Up)
+    words = setter.page.asked.asked
+    assert "DIFFERENCE +0.0100" in words.change
+    assert not words.warn
+    setter.key(Key.Key_Escape)
+    setter.saved()
+    assert setter.desk.book.tools[2].x == pytest.approx(0.14 * INCH)  # nothing was kept
+    given(setter, 2, ToolRow(x=0.11 * INCH, z=-1.6 * INCH, quadrant=3))
+    put(setter, ABOVE)
+    setter.key(Key.Key_P)
+    hold(setter, Key.Key_Up)
+    assert setter.page.asked.asked.warn
+    assert "0.0400" in setter.page.asked.asked.change
+
+
+def test_a_figure_that_is_typed_changes_nothing_of_what_was_found(setter: JogBench) -> None:
+    given(setter, 2, ToolRow(x=0.14 * INCH, z=-1.6 * INCH, quadrant=3))
+    choose(setter, 2)
+    put(setter, ABOVE)
+    setter.key(Key.Key_P)
+    hold(setter, Key.Key_Up)
+    before = setter.page.asked.asked.change
+    setter.type("12")
+    setter.run(0.05)
+    assert setter.page.asked.asked.change == before
+
+
+def test_letting_go_finds_nothing_and_the_next_press_begins_anew(setter: JogBench) -> None:
+    choose(setter, 3)
+    put(setter, ABOVE)
+    setter.key(Key.Key_P)
+    setter.down(Key.Key_Up)
+    setter.run(0.3)
+    setter.up(Key.Key_Up)
+    setter.until(lambda: setter.shot.state is State.IDLE)
+    assert "NOT TOUCHED OFF" in setter.prompt
+    assert setter.page.model.tool.asked == ""
+    hold(setter, Key.Key_Up)
+    assert "RETURN KEEPS" in setter.prompt
+
+
+def test_another_key_and_another_page_end_it(setter: JogBench) -> None:
+    choose(setter, 3)
+    put(setter, ABOVE)
+    setter.key(Key.Key_P)
+    setter.down(Key.Key_Up)
+    setter.run(0.3)
+    setter.key(Key.Key_F3)
+    setter.until(lambda: setter.shot.state is State.IDLE)
+    assert setter.page.model.tool.asked == ""
+    setter.up(Key.Key_Up)
+    assert setter.page.model.setter.armed
+    setter.key(Key.Key_F8)
+    setter.run(0.05)
+    setter.key(Key.Key_F1)
+    setter.key(Key.Key_F5)
+    setter.run(0.05)
+    assert not setter.page.model.setter.armed
+
+
+# --- which way ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("quadrant", "ways"),
+    [(1, "X+ Z+"), (2, "X+ Z−"), (3, "X− Z−"), (4, "X− Z+"), (5, "Z+"), (6, "X+"), (7, "Z−"), (8, "X−")],
+)
+def test_the_tip_says_which_way(setter: JogBench, quadrant: int, ways: str) -> None:
+    given(setter, 2, ToolRow(x=1.0, z=1.0, quadrant=quadrant))
+    choose(setter, 2)
+    keys = {"X−": Key.Key_Up, "X+": Key.Key_Down, "Z−": Key.Key_Left, "Z+": Key.Key_Right}
+    for way, key in keys.items():
+        setter.key(Key.Key_P)
+        setter.run(0.02)
+        setter.down(key)
+        setter.run(0.05)
+        moves = setter.shot.state is State.JOG
+        setter.up(key)
+        setter.until(lambda: setter.shot.state is State.IDLE)
+        assert moves == (way in ways.split()), way
+        setter.key(Key.Key_Escape)
+
+
+def test_of_a_round_tip_the_centre_is_set(setter: JogBench) -> None:
+    """Quadrant 9: the centre stands a nose radius, here .03 in, before the face."""
+    given(setter, 2, ToolRow(x=0.1 * INCH, z=1.0, quadrant=9, nose_radius=0.03 * INCH))
+    choose(setter, 2)
+    put(setter, ABOVE)
+    setter.key(Key.Key_P)
+    hold(setter, Key.Key_Up)
+    setter.key(Key.Key_Return)
+    setter.saved()
+    # The contact is at .15; the centre of the nose is .03 further out.
+    assert setter.desk.book.tools[2].x == pytest.approx((0.15 - 0.03) * INCH, abs=0.002)
+
+
+def test_what_is_refused_before_anything_moves(setter: JogBench) -> None:
+    setter.key(Key.Key_P)
+    assert "WHICH TOOL?" in setter.prompt
+    given(setter, 2, ToolRow(x=1.0, z=1.0))
+    choose(setter, 2)
+    setter.key(Key.Key_P)
+    assert "T2 HAS NO TIP: PRESS Q" in setter.prompt
+    choose(setter, 3)
+    setter.key(Key.Key_P)
+    setter.down(Key.Key_Up, SHIFT)
+    setter.run(0.05)
+    assert "NO RAPID" in setter.prompt
+    setter.up(Key.Key_Up, SHIFT)
+    hands(setter).set_input("probe", True)
+    setter.run(0.05)
+    setter.down(Key.Key_Up)
+    setter.run(0.1)
+    assert setter.shot.state is State.IDLE
+    assert "ON ALREADY" in setter.prompt.upper()
+
+
+def test_a_lathe_without_a_setter_says_so(jog: JogBench) -> None:
+    jog.key(Key.Key_P)
+    assert "NO TOOL SETTER" in jog.prompt
+
+
+# --- buttons beside the slides ------------------------------------------------------------------------------
+
+
+def test_a_button_jogs_while_it_is_held(setter: JogBench) -> None:
+    hands(setter).set_input("jog_z_plus", True)
+    setter.run(0.5)
+    assert setter.shot.state is State.JOG
+    assert setter.shot.demand[1] > 0.5
+    assert setter.shot.demand[0] == 0.0
+    hands(setter).set_input("jog_z_plus", False)
+    setter.run(0.02)
+    setter.until(lambda: setter.shot.state is State.IDLE, 0.5)
+
+
+def test_it_stops_though_the_screen_stands_still(setter: JogBench) -> None:
+    """The executor sees the button come up by itself: within ticks, not within the lease."""
+    hands(setter).set_input("jog_z_plus", True)
+    setter.run(0.5)
+    hands(setter).set_input("jog_z_plus", False)
+    setter.run(0.08, screen=False)
+    assert setter.shot.velocity == pytest.approx(0.0, abs=0.05)
+
+
+def test_one_that_is_down_when_the_page_opens_moves_nothing(setter: JogBench) -> None:
+    setter.key(Key.Key_F8)
+    setter.run(0.1)
+    hands(setter).set_input("jog_z_plus", True)
+    setter.run(0.5)
+    setter.key(Key.Key_F1)
+    setter.key(Key.Key_F5)
+    setter.run(0.5)
+    assert setter.shot.state is State.IDLE
+    hands(setter).set_input("jog_z_plus", False)
+    setter.run(0.05)
+    hands(setter).set_input("jog_z_plus", True)
+    setter.run(0.1)
+    assert setter.shot.state is State.JOG
+
+
+def test_two_buttons_and_a_button_with_a_key_move_nothing(setter: JogBench) -> None:
+    hands(setter).set_input("jog_z_plus", True)
+    setter.run(0.2)
+    hands(setter).set_input("jog_x_minus", True)
+    setter.run(0.05)
+    assert "TWO AT ONCE" in setter.prompt
+    setter.until(lambda: setter.shot.state is State.IDLE, 0.5)
+    setter.run(0.5)
+    assert setter.shot.state is State.IDLE
+    for name in ("jog_z_plus", "jog_x_minus"):
+        hands(setter).set_input(name, False)
+    setter.run(0.05)
+    hands(setter).set_input("jog_z_plus", True)
+    setter.run(0.2)
+    setter.down(Key.Key_Left)
+    setter.run(0.05)
+    setter.until(lambda: setter.shot.state is State.IDLE, 0.5)
+
+
+def test_rapid_is_the_button_beside_it(setter: JogBench) -> None:
+    hands(setter).set_input("jog_rapid", True)
+    setter.run(0.05)
+    hands(setter).set_input("jog_z_plus", True)
+    setter.run(0.5)
+    assert setter.shot.velocity == pytest.approx(100 * INCH / 60, rel=0.02)
+    hands(setter).set_input("jog_rapid", False)
+    setter.run(0.3)
+    assert setter.shot.state is State.IDLE  # it does not go on slowly
+
+
+def test_a_button_touches_off_as_a_key_does(setter: JogBench) -> None:
+    choose(setter, 3)
+    put(setter, ABOVE)
+    setter.key(Key.Key_P)
+    hands(setter).set_input("jog_x_minus", True)
+    setter.run(0.1)
+    setter.until(lambda: setter.shot.state is State.IDLE)
+    assert "RETURN KEEPS" in setter.prompt
+    hands(setter).set_input("jog_x_minus", False)
+    setter.run(0.1)
+    assert "RETURN KEEPS" in setter.prompt
