@@ -60,6 +60,7 @@ SUPERVISED = {
     "status": "STATUS.JSON",
     "mtconnect": "MTCONNECT",
     "program-file": "WHAT WATCHES THE PROGRAM'S FILE",
+    "pendant": "WHAT READS THE PENDANT",
     "inverter": "WHAT TALKS TO THE INVERTER",
     "recorder": "THE RECORD OF THE SCOPE",
 }

@@ -40,7 +40,8 @@ z = 1.0
 width = 0.25
 overtravel = 0.15
 speed = 20
-slow = 0.5
+slow = 3
+back_off = 0.03
 
 [io.in]
 probe = { at = "IN-7" }
