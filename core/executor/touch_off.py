@@ -13,7 +13,7 @@ from core.executor.snapshot import State, Touched, TouchPhase
 from core.executor.start_conditions import guard_open
 from core.machine.setter_table import SetterModel
 from core.ports import PROBE, Latch, Unknown
-from core.table_schema import Unit, shown
+from core.table_schema import INCH
 
 _SETTLED = 0.1  # s at rest until the input is believed to be off
 _RENEWED = 0.03  # s between two renewals of the way
@@ -160,7 +160,7 @@ class TouchOff:
 
     def _length(self, mm: float) -> str:
         """In the unit of the machine's builder."""
-        return shown(mm, Unit.LENGTH, self._context.machine.inch)
+        return f"{mm / INCH:.3f} in" if self._context.machine.inch else f"{mm:.2f} mm"
 
     # --- from phase to phase --------------------------------------------------------------------------------
 
