@@ -30,7 +30,6 @@ class Bench(Control):
     there = True
 
     def __init__(self, rig: Rig) -> None:
-        assert PROBE in rig.machine.inputs
         tables = {**rig.machine.hardware.tables, "setter": SETTER}
         hardware = dataclasses.replace(rig.machine.hardware, tables=tables)
         super().__init__(rig, dataclasses.replace(rig.machine, hardware=hardware))
@@ -57,6 +56,8 @@ class Bench(Control):
 
 @pytest.fixture
 def bench(shipped: Rig) -> Bench:
+    if PROBE not in shipped.machine.inputs:
+        pytest.skip("its machine file has no input for a tool setter")
     made = Bench(shipped)
     made.ready()
     return made
