@@ -13,11 +13,12 @@ from app.compose.inverter_backend import has_inverter, with_inverter
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError
 from drivers.clocks import RealClock
-from drivers.feeder.feeder_client import Line
+from drivers.feeder.feeder_client import Line, Link, cleared
 from drivers.feeder.feeder_links import SocketLink
 from drivers.feeder.feeder_loop import keep_memory, real_time, serve
 from drivers.feeder.feeder_messages import NOTHING, Inbox, Message, packed, text
 from drivers.feeder.feeder_server import Driven
+from drivers.reopening import Opening
 
 
 def driven(machine: Machine, clock: Clock) -> Driven:
@@ -40,6 +41,21 @@ class FeederProcess:
     """A feeder in its own process, and the line to it."""
 
     def __init__(self, machine: Machine, clock: RealClock) -> None:
+        self._machine, self._clock = machine, clock
+        self.line = Line(self._begin(), clock, self._again)
+
+    def _again(self) -> Opening[Link]:
+        """Another process, once the one before has ended: two would be two masters on one bus."""
+
+        def begun() -> Link:
+            self.close()
+            return cleared(self._begin())
+
+        return Opening(begun)
+
+    def _begin(self) -> Link:
+        """Raises DriverError with what it says of its drivers."""
+        machine, clock = self._machine, self._clock
         ours, theirs = socket.socketpair()
         with theirs:
             command = [
@@ -60,8 +76,8 @@ class FeederProcess:
         ready = self._first(ours)
         if why := text(ready.head, "error"):
             self.close()
-            raise DriverError(why)
-        self.line = Line(self._link, clock)
+            raise DriverError(why, "feeder-gone")
+        return self._link
 
     def close(self) -> None:
         """The feeder stops what is left and ends."""

@@ -76,6 +76,7 @@ def _attended(
         clock,
         encoder=encoder,
         alive=lambda: keeper.alive,
+        revive=keeper.revive,
         estop=lambda: ports.station.snapshot().estop,
         lost=ports.spindle.fault if machine.backend == "canopen" else str,
     )

@@ -15,7 +15,7 @@ WIRES: Entries = {
             "the CAN interface was unplugged",
             "another master is on the bus",
         ),
-        "PRESS E-STOP; check cable, terminators and interface, then start the control again",
+        "PRESS E-STOP, the spindle may turn; check cable, terminators, interface; Reset opens the bus again",
         tells=True,
     ),
     "io-silent": off(
@@ -39,13 +39,13 @@ WIRES: Entries = {
             "the feeder process was ended or has failed: slides, spindle and outputs are off",
             "the computer ran out of memory",
         ),
-        "PRESS E-STOP; look where the tool stands, end TurnDesk and start it again, home where asked",
+        "PRESS E-STOP, the spindle may turn; look at the tool; Reset starts another. Home where asked",
     ),
     "feeder-silent": off(
         512,
         "the feeder does not answer",
         ("the computer is overloaded: the slides stop at the end of what they have", "the feeder has failed"),
-        "PRESS E-STOP; look where the tool stands, end TurnDesk and start it again",
+        "PRESS E-STOP, the spindle may turn; look where the tool stands; Reset ends it and starts another",
     ),
     "controller-lost": off(
         521,

@@ -28,6 +28,7 @@ from core.executor.supervision import OutputsWatch, Supervisor
 from core.executor.touch_off import TouchOff
 from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal
+from core.ports import Unknown
 
 _GOES_ON = frozenset({State.RUN, State.WAIT, State.IDLE, State.DISABLED, State.JOG, State.HOME})
 MEANT = 0.8  # s from an answer to a start by hands: half a second between two palms, and time to read
@@ -327,6 +328,13 @@ class MachineControl:
         if self.state is not State.ESTOP:
             self.status.state = State.DISABLED
 
+    def _power_off(self) -> None:
+        """Drives that nobody hears are not told either; Reset is what leads back to them."""
+        with Attempt() as off:
+            self._context.ports.axes.enable(False)
+        if off.error is not None and Unknown.SLIDES not in self._context.unknown:
+            raise off.error
+
     def _acknowledge(self) -> None:
         """Reset with an alarm: only at rest, and drives that an alarm has switched off stay off."""
         context, status = self._context, self.status
@@ -334,7 +342,7 @@ class MachineControl:
             context.log("refused", "reset: wait until the slides are at rest")
             return
         if status.power_off:
-            context.ports.axes.enable(False)
+            self._power_off()
         context.ports.axes.clear_fault()
         status.power_off, status.alarms = False, ()
         self.safe.forget()

@@ -39,6 +39,9 @@ class Supervisor:
         sample, context = self._context.sample, self._context
         if sample.fault:
             raise AlarmError(code_of(sample.fault, "axis"), sample.fault)
+        if Unknown.SLIDES in context.unknown:
+            self._axes.forget()  # heard again, they may stand elsewhere
+            return
         self._numbers(sample)
         self.max_following_error = max(self.max_following_error, *map(abs, sample.following_error[:2]))
         self._axes.look(sample, unpowered=state is State.DISABLED)

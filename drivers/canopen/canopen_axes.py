@@ -61,6 +61,7 @@ class CanopenAxes:
         self.homing: Homing | None = None
         self.fault = ""
         self.beside = ""  # what is wrong elsewhere on the bus
+        self.reconnect: Callable[[], None] = lambda: None  # opens the bus and configures all that is on it
         self.clearing: list[Callable[[], None]] = []  # who else has faults to clear
         self._on = False
         self._braking = False  # by quick stop, after which a drive takes its power itself
@@ -130,9 +131,13 @@ class CanopenAxes:
             following_error=tuple([d - a for d, a in zip(demand, actual, strict=True)]),
             enabled=powered,
             homed=self._homed(),
-            moving=busy or any(velocity) or self.drives.moving or (self.cyclic and self.follower.playing),
+            moving=not self._bus.trouble and (busy or any(velocity) or self._plays),
             fault=self.fault,
         )
+
+    @property
+    def _plays(self) -> bool:
+        return self.drives.moving or (self.cyclic and self.follower.playing)
 
     def enable(self, on: bool) -> None:
         """Power on or off, and wait for it. Raises DriverError naming the drive that does not come."""
@@ -172,9 +177,11 @@ class CanopenAxes:
         self.homing = Homing(driven, self.follower.mode, self.now())
 
     def clear_fault(self) -> None:
-        """Forget the fault, reset the drives that have one; they stay without power. Raises DriverError."""
+        """Forget the fault, reset the drives that have one; they stay without power. A bus that has failed is
+        opened anew, and every node configured. Raises DriverError.
+        """
         if self._bus.trouble:
-            raise DriverError(f"{self._bus.trouble}; mend it and start the control again", "bus")
+            self.reconnect()
         self._off(DriveState.OFF)
         for clear in self.clearing:
             clear()

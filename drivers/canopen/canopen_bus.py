@@ -52,6 +52,16 @@ class Bus(canopen.Network):
             self.bus.shutdown()
             self.bus = None
 
+    def reopen(self) -> None:
+        """The interface anew, behind whatever ended the trust in it. Raises DriverError."""
+        self.close()
+        try:
+            self.bus = opened(self.config)
+        except DriverError as error:
+            raise DriverError(f"{self.trouble}; {error}", "bus") from error
+        self.trouble, self.garbled = "", 0
+        self._next_beat = self.clock.now()
+
     def pump(self, wait: float = 0.0) -> None:
         """Take in what has come, waiting at most ``wait`` for the first; our heartbeat goes out from here.
 

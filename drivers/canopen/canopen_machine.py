@@ -86,6 +86,7 @@ class CanopenMachine:
             self.c = self._spindle_c()
             self.touch = CanopenProbe(self.axes, self.io, config.bus.sync) if PROBE in config.inputs else None
             self.samples = CanopenSamples(self.axes, self._turning, config.bus.sync)
+            self.axes.reconnect = self._reconnect
             self._connect()
         except DriverError:
             self.bus.close()
@@ -257,6 +258,15 @@ class CanopenMachine:
         self.bus.beat(at_once=True)
         self._exchange()
         self.bus.wait(self._answered, _FIRST)
+
+    def _reconnect(self) -> None:
+        """As at a start, whatever became of the nodes meanwhile: what only counts has no home."""
+        self.bus.reopen()
+        try:
+            self._connect()
+        except DriverError as error:
+            self.bus.lost(str(error))
+            raise
 
     def _answered(self) -> bool:
         drives = [axis.drive for axis in self.axes.drives.axes]

@@ -27,6 +27,7 @@ from core.ports import (
     Trip,
     TrippedError,
     Unknown,
+    code_of,
 )
 from drivers.feeder.feeder_messages import (
     NOTHING,
@@ -41,6 +42,7 @@ from drivers.feeder.feeder_messages import (
     text,
     texts,
 )
+from drivers.reopening import Opening
 
 _log = logging.getLogger(__name__)
 _FRESH = 0.002  # s for which one look serves all ports
@@ -61,13 +63,26 @@ class Link(Protocol):
     def close(self) -> None: ...
 
 
-class Line:
-    """Requests in words, and the last look at everything."""
+def cleared(link: Link) -> Link:
+    """The Reset that has asked for another feeder is meant for its drives too. Raises DriverError."""
+    answer = link.ask(Message({"do": "do", "what": "clear_fault"}, NOTHING))
+    if why := fault_of(answer.head, "error", "driver"):
+        raise DriverError(why)
+    return link
 
-    def __init__(self, link: Link, clock: Clock) -> None:
+
+class Line:
+    """Requests in words, and the last look at everything.
+
+    ``again`` begins to start another feeder in the place of one that is gone: there is no other way back.
+    """
+
+    def __init__(self, link: Link, clock: Clock, again: Callable[[], Opening[Link]] | None = None) -> None:
         self._link = link
+        self._again = again
+        self._opening: Opening[Link] | None = None
         self.clock = clock
-        self.lost: Fault | str = ""  # why the feeder cannot be asked any more
+        self.fault: Fault | str = ""  # why the feeder cannot be asked any more
         self._state: Mapping[str, object] = {}
         self._at = -1.0
         self._posted: queue.SimpleQueue[Message] = queue.SimpleQueue()
@@ -75,12 +90,14 @@ class Line:
 
     def ask(self, message: Message) -> Message:
         """The answer. Raises DriverError with what the drivers refuse, or that the feeder is gone."""
-        if self.lost:
-            raise DriverError(self.lost)
+        if self.fault:
+            raise DriverError(self.fault)
+        if self._opening is not None:
+            raise DriverError("the feeder is being started again", "feeder-gone")
         try:
             answer = self._link.ask(message)
         except DriverError as error:
-            self.lost = error.fault
+            self.fault = error.fault
             raise
         if "tripped" in answer.head:
             raise TrippedError(text(answer.head, "tripped"))
@@ -99,6 +116,8 @@ class Line:
 
     def look(self, *, anew: bool = False) -> Mapping[str, object]:
         """Everything that can be seen, at most 2 ms old; the last known when the feeder is gone."""
+        if self._opening is not None:
+            self._reopen(self._opening)
         now = self.clock.now()
         if not self.lost and (anew or not 0.0 <= now - self._at < _FRESH):
             try:
@@ -109,11 +128,45 @@ class Line:
                 if len(answer.numbers):
                     self.sampled.append(answer.numbers)
             except DriverError as error:
-                self.lost = self.lost or error.fault
+                self.fault = self.fault or error.fault
             self._at = now
             for note in texts(self._state.get("notes")):
                 _log.warning("feeder: %s", note)
         return self._state
+
+    @property
+    def lost(self) -> bool:
+        """Whether there is no feeder to ask."""
+        return self.fault != "" or self._opening is not None
+
+    def restart(self) -> None:
+        """Begin to start another feeder; why that fails is the next fault. Raises DriverError where there is
+        none to start.
+        """
+        if self._again is None:
+            raise DriverError(f"{self.fault}; start the control again", code_of(self.fault, "feeder-gone"))
+        self.fault, self._opening = "", self._again()
+
+    def greet(self) -> Mapping[str, object]:
+        """What the feeder says of itself. Raises DriverError for one of another version."""
+        hello = self.ask(Message({"do": "hello"}, NOTHING)).head
+        if hello.get("version") != VERSION:
+            raise DriverError(
+                f"the feeder speaks version {hello.get('version')}, this control {VERSION}: end the control,"
+                " and start it again once its installation is whole"
+            )
+        return hello
+
+    def _reopen(self, opening: Opening[Link]) -> None:
+        try:
+            link = opening.take()
+            if link is None:
+                return
+            self._link, self._opening, self._at = link, None, -1.0
+            self._state = {}
+            self.greet()
+        except DriverError as error:
+            self._opening, self.fault = None, error.fault
 
     def unknown(self) -> frozenset[Unknown]:
         """What the drivers do not hear of; of a feeder that is gone nothing is known."""
@@ -179,7 +232,7 @@ class FeederAxes(_OnLine):
             enabled=shown.get("enabled") is True and not self._line.lost,
             homed=tuple(one is True for one in items(shown.get("homed"))) or (False,) * len(self.axes),
             moving=shown.get("moving") is True and not self._line.lost,
-            fault=self._line.lost or fault_of(shown, "fault", "axis"),
+            fault=self._line.fault or fault_of(shown, "fault", "axis"),
         )
 
     def enable(self, on: bool) -> None:
@@ -195,8 +248,11 @@ class FeederAxes(_OnLine):
         self._line.order("home", name=axis)
 
     def clear_fault(self) -> None:
-        """Forget the fault."""
-        self._line.order("clear_fault")
+        """Forget the fault; a feeder that is gone is started again. Raises DriverError."""
+        if self._line.fault:
+            self._line.restart()
+        else:
+            self._line.order("clear_fault")
 
 
 class FeederGear(_OnLine):
@@ -238,7 +294,7 @@ class FeederSpindle(_OnLine):
 
     def fault(self) -> str:
         """What is wrong with it."""
-        return self._line.lost or fault_of(self._line.look(), "spindle", "spindle")
+        return self._line.fault or fault_of(self._line.look(), "spindle", "spindle")
 
 
 class FeederSamples(_OnLine):
@@ -337,12 +393,7 @@ class FeederTrips(_OnLine):
 
 def feeder_ports(line: Line) -> MachinePorts:
     """The ports of whatever the feeder drives. Raises DriverError when it does not answer."""
-    hello = line.ask(Message({"do": "hello"}, NOTHING)).head
-    if hello.get("version") != VERSION:
-        raise DriverError(
-            f"the feeder speaks version {hello.get('version')}, this control {VERSION}: end the control, and"
-            " start it again once its installation is whole"
-        )
+    hello = line.greet()
     return MachinePorts(
         clock=line.clock,
         axes=FeederAxes(line, hello),

@@ -12,8 +12,8 @@ from drivers.feeder.feeder_messages import Inbox, Message, packed, text
 from drivers.feeder.feeder_server import Feeder
 
 _QUICK = 0.5  # s for an answer; the feeder's loop takes milliseconds
-_SLOW = 5.0  # s for orders that wait for a drive
-_WAITING = frozenset(("enable", "home", "clear_fault"))
+# s for orders that wait for a drive; a fault that is cleared may mean to configure all of a bus
+_SLOW = {"enable": 5.0, "home": 5.0, "clear_fault": 15.0}
 _CHUNK = 1 << 16
 
 
@@ -49,8 +49,7 @@ class SocketLink:
 
     def ask(self, message: Message) -> Message:
         """Raises DriverError when the feeder has gone or does not answer in time."""
-        slow = text(message.head, "what") in _WAITING
-        limit = _SLOW if slow else _QUICK
+        limit = _SLOW.get(text(message.head, "what"), _QUICK)
         try:
             self._socket.settimeout(limit)
             self._socket.sendall(packed(message))
@@ -60,9 +59,7 @@ class SocketLink:
                 f"the feeder has not answered for {limit:g} s; the slides stop on their path", "feeder-silent"
             ) from error
         except OSError as error:
-            raise DriverError(
-                f"the feeder process has ended ({error.strerror}); start the control again", "feeder-gone"
-            ) from error
+            raise DriverError(f"the feeder process has ended ({error.strerror})", "feeder-gone") from error
 
     def hang_up(self) -> None:
         """Both directions end, whoever waits on it."""
@@ -83,6 +80,6 @@ class SocketLink:
                 raise TimeoutError
             data = self._socket.recv(_CHUNK)
             if not data:
-                raise DriverError("the feeder process has ended; start the control again", "feeder-gone")
+                raise DriverError("the feeder process has ended", "feeder-gone")
             for message in self._inbox.feed(data):
                 return message

@@ -8,7 +8,8 @@ from core.ports import AxisSample, DriverError, Segments, Stop
 from drivers.grblhal import grblhal_codes, grblhal_scripts
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_controller import Controller
-from drivers.grblhal.grblhal_wire import Opening
+from drivers.grblhal.grblhal_wire import Wire
+from drivers.reopening import Opening
 
 _REPORTED = 0.002  # mm between where a block has ended and a report, which has three decimals
 _STEPS = 100  # setting, steps in a millimetre
@@ -24,7 +25,7 @@ class GrblAxes:
         controller: Controller,
         blocks: GrblBlocks,
         pump: Callable[[], None],
-        reopen: Callable[[], Opening],
+        reopen: Callable[[], Opening[Wire]],
     ) -> None:
         """``reopen`` begins to open the wire anew."""
         self._c = controller

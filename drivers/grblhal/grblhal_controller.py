@@ -14,7 +14,8 @@ from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig
 from drivers.grblhal.grblhal_dialogue import Ask, Runner, Script, Stream
 from drivers.grblhal.grblhal_report import Identity, Report, read_report
-from drivers.grblhal.grblhal_wire import Opening, Wire, WireLostError
+from drivers.grblhal.grblhal_wire import Wire, WireLostError
+from drivers.reopening import Opening
 
 _LINE = 1024  # bytes; the controller sends no longer line
 _RUNNING, _RESTING, _ASKING = 0.1, 0.2, 0.05  # s between two questions for a report
@@ -83,7 +84,7 @@ class Controller:
         self.hurry_until = 0.0  # somebody wants to know as often as it may be asked
         self._sees_overrides = False
         self._halted = False
-        self._opening: Opening | None = None  # of a wire that was lost
+        self._opening: Opening[Wire] | None = None  # of a wire that was lost
         self._asks_modes = False
         self._then: Callable[[], Script] | None = None  # once it is open
         self.modes = ""  # as it has told them to a real-time question
@@ -131,7 +132,7 @@ class Controller:
         self.modes, self._asks_modes = "", True
         self.realtime(grblhal_codes.TELL_MODES)
 
-    def reconnect(self, opening: Opening, script: Callable[[], Script]) -> None:
+    def reconnect(self, opening: Opening[Wire], script: Callable[[], Script]) -> None:
         """Begin to open the wire anew, and then the script; why that fails becomes the fault."""
         self.fault, self.ready = "", False
         self._opening, self._then = opening, script
@@ -401,7 +402,7 @@ class Controller:
         except WireLostError as error:
             self._gone(error)
 
-    def _reopen(self, opening: Opening) -> None:
+    def _reopen(self, opening: Opening[Wire]) -> None:
         """What was said or asked on the old wire counts no more, and what was heard is of before."""
         try:
             wire = opening.take()

@@ -13,8 +13,9 @@ from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_probe import GrblProbe
 from drivers.grblhal.grblhal_spindle import GrblEncoder, GrblSpindle
 from drivers.grblhal.grblhal_terminals import LETTERS, GrblInputs, GrblIO
-from drivers.grblhal.grblhal_wire import Opening, Wire, open_wire
+from drivers.grblhal.grblhal_wire import Wire, open_wire
 from drivers.operator_station import PanelStation
+from drivers.reopening import Opening
 
 _ROUND = 0.005  # s between two looks while it connects
 _CONNECTING = 15.0
@@ -100,7 +101,7 @@ class GrblMachine:
         if trip.number == self._trips:
             self._trips, self.controller.found_on = self._trips + 1, None
 
-    def _reopen(self) -> Opening:
+    def _reopen(self) -> Opening[Wire]:
         """The old wire is let go first: a port that somebody has open cannot be opened."""
         close, config = self.controller.close, self.controller.config
 

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import queue
 import re
 import socket
-import threading
-from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING, Protocol
 
@@ -48,37 +45,6 @@ def open_wire(port: str, baud: int) -> Wire:
     """A serial device by its path, or a TCP port. Raises DriverError."""
     address = tcp_address(port)
     return SerialWire(port, baud) if address is None else TcpWire(*address)
-
-
-class Opening:
-    """A wire that is opened by a thread of its own: nobody waits for a port that does not answer.
-
-    ``at_once``: in this thread, where it cannot wait.
-    """
-
-    def __init__(self, open_: Callable[[], Wire], *, at_once: bool = False) -> None:
-        self._open = open_
-        self._found: queue.SimpleQueue[Wire | DriverError] = queue.SimpleQueue()
-        if at_once:
-            self._run()
-        else:
-            threading.Thread(target=self._run, name="wire", daemon=True).start()
-
-    def take(self) -> Wire | None:
-        """The wire once it is open, None until then. Raises DriverError when it cannot be opened."""
-        try:
-            found = self._found.get_nowait()
-        except queue.Empty:
-            return None
-        if isinstance(found, DriverError):
-            raise found
-        return found
-
-    def _run(self) -> None:
-        try:
-            self._found.put(self._open())
-        except DriverError as error:
-            self._found.put(error)
 
 
 class SerialWire:

@@ -107,6 +107,11 @@ class Attendant:
         self._reset = True
         self.trouble = ""
 
+    def begin_again(self) -> None:
+        """Nothing is known before the next look, which may take a moment."""
+        self.clear()
+        self._told, self.seen, self.grace = None, None, self._clock.now() + _RESTARTS
+
     def close(self) -> None:
         """Stop, and let the line go."""
         self._want = 0.0
@@ -228,11 +233,18 @@ class Keeper:
     def __init__(self, attendant: Attendant) -> None:
         self._attendant = attendant
         self._ended = threading.Event()
-        self.thread = threading.Thread(target=self._keep, name="inverter", daemon=True)
+        self.thread = self._made()
 
     def start(self) -> None:
         """Once."""
         self.thread.start()
+
+    def revive(self) -> None:
+        """In the place of a thread that has failed another one goes round; the first it says is a stop."""
+        if not self.alive and not self._ended.is_set():
+            self._attendant.begin_again()
+            self.thread = self._made()
+            self.thread.start()
 
     @property
     def alive(self) -> bool:
@@ -245,6 +257,9 @@ class Keeper:
         if self.thread.is_alive():
             self.thread.join(_END)
         self._attendant.close()
+
+    def _made(self) -> threading.Thread:
+        return threading.Thread(target=self._keep, name="inverter", daemon=True)
 
     def _keep(self) -> None:
         while not self._ended.is_set():

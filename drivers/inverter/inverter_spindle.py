@@ -34,8 +34,9 @@ class Encoder(Protocol):
 class InverterSpindle:
     """``core.ports.Spindle``. Without an encoder its speed is what the inverter gives, and it has no angle.
 
-    ``alive`` tells whether somebody still attends the line; ``estop`` whether E-stop is pressed; ``lost``
-    why the encoder is not to be believed, which is a fault as long as the spindle turns or has to.
+    ``alive`` tells whether somebody still attends the line, ``revive`` asks for somebody else; ``estop``
+    whether E-stop is pressed; ``lost`` why the encoder is not to be believed, which is a fault as long as the
+    spindle turns or has to.
     """
 
     def __init__(
@@ -46,12 +47,14 @@ class InverterSpindle:
         *,
         encoder: Encoder | None = None,
         alive: Callable[[], bool] = lambda: True,
+        revive: Callable[[], None] = lambda: None,
         estop: Callable[[], bool] = lambda: False,
         lost: Callable[[], str] = str,
     ) -> None:
         self._config, self._attendant, self._clock = config, attendant, clock
         self._encoder, self._alive, self._estop, self._lost = encoder, alive, estop, lost
         self._agreement = Agreement(config.disagree)
+        self._revive = revive
         self._unmeasured = ""  # why it has stopped measuring; latched until ``clear_fault``
 
     def run(self, rpm: float) -> None:
@@ -77,9 +80,7 @@ class InverterSpindle:
     def clear_fault(self) -> None:
         """Forget a fault; a reset goes to the inverter where it has tripped. Nothing turns."""
         if not self._alive():
-            raise DriverError(
-                "whoever attended the inverter has ended; start the control again", "inverter-silent"
-            )
+            self._revive()
         self._attendant.clear()
         self._unmeasured = ""
 

@@ -9,12 +9,14 @@ from typing import ClassVar
 
 import can
 
+from app.compose.canopen_backend import canopen_machine
 from core.machine.machine_model import Machine
-from core.ports import ALL_UNKNOWN, MachinePorts, Unknown
+from core.ports import ALL_UNKNOWN, DriverError, MachinePorts, Unknown
 from drivers.canopen.canopen_machine import CanopenMachine
-from drivers.feeder.feeder_client import Line, feeder_ports
+from drivers.feeder.feeder_client import Line, Link, cleared, feeder_ports
 from drivers.feeder.feeder_server import Feeder
 from drivers.lookalikes.plant_hands import PlantHands
+from drivers.reopening import Opening
 from tests.drivers.canopen.bench import CanBench, can_machine, cyclic
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.simulated import FEEDER_FAULTS, FEEDER_WORDS, BrokenLink
@@ -23,7 +25,7 @@ from tests.drivers.contract.world import SimWorld
 # Three heartbeats of 100 ms, a round of the bus, and v/a from 120 mm/s.
 _SILENT = Fault(told=0.35, rests=0.45, says="check cable and power")
 # The drives miss our heartbeat.
-_DEAF = Fault(told=0.05, rests=0.45, says="", final=True, unknown=ALL_UNKNOWN)
+_DEAF = Fault(told=0.05, rests=0.45, says="", unknown=ALL_UNKNOWN)
 _SLIDES, _TERMINALS = frozenset({Unknown.SLIDES}), frozenset({Unknown.OUTPUTS, Unknown.INPUTS})
 
 
@@ -199,9 +201,10 @@ class FedCanopen(Canopen):
 
     def __init__(self, *, homing: bool = False, turns: bool = False) -> None:
         super().__init__(homing=homing, turns=turns)
+        self._mended = False
         self.feeder = Feeder(CanDriven(self.bench.machine))
         self.link = BrokenLink(self.feeder)
-        self.ports = feeder_ports(Line(self.link, self.clock))
+        self.ports = feeder_ports(Line(self.link, self.clock, self._again))
 
     def acts(self) -> Mapping[str, Callable[[], None]]:
         """What becomes of the feeder itself, and some of its bus."""
@@ -210,6 +213,25 @@ class FedCanopen(Canopen):
         }
         below = super().acts()
         return {fault: own.get(fault, below[fault]) for fault in self.faults}
+
+    def _again(self) -> Opening[Link]:
+        """Another process opens the bus and configures the drives as at a start."""
+
+        def begun() -> Link:
+            if not self._mended:
+                raise DriverError("the feeder's process does not come up", "feeder-gone")
+            self.bench.machine.bus.close()
+            self.bench.machine = canopen_machine(self.machine, self.clock, self.peers.pump)
+            self.feeder = Feeder(CanDriven(self.bench.machine))
+            self.link = BrokenLink(self.feeder)
+            return cleared(self.link)
+
+        return Opening(begun, at_once=True)
+
+    def mend(self) -> None:
+        """Another feeder can be started."""
+        super().mend()
+        self._mended = True
 
     def feeder_stands(self, seconds: float) -> None:
         """Its process is stopped for so long; drives and modules go on."""

@@ -71,7 +71,7 @@ class OnALine(Simulated):
         "answers too late": dataclasses.replace(_LOST, told=2 * _RTU, rests=2 * _RTU + 0.2),
         "node reboot": _DISOBEYS,
         "dead reader": Fault(
-            0.1, 0.2, "nobody attends the inverter any more: PRESS E-STOP", final=True, unknown=_SPINDLE
+            0.1, 0.2, "nobody attends the inverter any more: PRESS E-STOP", unknown=_SPINDLE
         ),
         "two masters": dataclasses.replace(_DISOBEYS, says="PRESS E-STOP"),
     }
@@ -98,6 +98,7 @@ class OnALine(Simulated):
             self.attendant,
             self.clock,
             alive=lambda: self.keeper.alive,
+            revive=self._revive,
             estop=lambda: ports.station.snapshot().estop,
         )
         self.ports = dataclasses.replace(
@@ -152,6 +153,11 @@ class OnALine(Simulated):
     def _kill(self) -> None:
         threading.excepthook = lambda _: None  # its end is what is tried here
         self.wire.kills = True
+
+    def _revive(self) -> None:
+        assert isinstance(self.clock, LockstepClock)
+        self.keeper.revive()
+        self.clock.attend(self.keeper.thread)
 
     def _another_commands(self) -> None:
         self.inverter.hz = 45.0

@@ -35,16 +35,15 @@ NINE = (
 class Fault:
     """What may be counted on once something has gone wrong on a driver's wires.
 
-    ``told`` and ``rests``: s until the driver ``says`` so, and until every slide stands. ``final``: the
-    control has to be started again. ``spins``, ``flows``: why spindle or coolant stay on, where nothing
-    can be said to them any more. ``homeless``: nobody knows any more where the slides are. ``unknown``: of
-    what nothing is heard as long as it lasts; what is said of that is the last that was.
+    ``told`` and ``rests``: s until the driver ``says`` so, and until every slide stands. ``spins``,
+    ``flows``: why spindle or coolant stay on, where nothing can be said to them any more. ``homeless``:
+    nobody knows any more where the slides are. ``unknown``: of what nothing is heard as long as it lasts;
+    what is said of that is the last that was. Behind each of them Reset leads back.
     """
 
     told: float
     rests: float
     says: str
-    final: bool = False
     spins: str = ""
     flows: str = ""
     homeless: bool = False

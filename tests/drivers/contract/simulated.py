@@ -12,11 +12,12 @@ from app.compose.simulated_backend import simulated
 from core.machine.machine_model import InputModel, Machine
 from core.ports import ALL_UNKNOWN, DriverError, MachinePorts
 from drivers.clocks import StepClock
-from drivers.feeder.feeder_client import Line, feeder_ports
+from drivers.feeder.feeder_client import Line, Link, cleared, feeder_ports
 from drivers.feeder.feeder_links import LoopLink
 from drivers.feeder.feeder_messages import Message
 from drivers.feeder.feeder_server import Feeder
 from drivers.lookalikes.plant_hands import PlantHands
+from drivers.reopening import Opening
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import SimWorld
 
@@ -141,8 +142,7 @@ FEEDER_WORDS = {
     "garbage": "the feeder's socket carries something that is no message",
 }
 FEEDER_FAULTS = {
-    fault: Fault(told=0.02, rests=1.5, says=says, final=True, unknown=ALL_UNKNOWN)
-    for fault, says in FEEDER_WORDS.items()
+    fault: Fault(told=0.02, rests=1.5, says=says, unknown=ALL_UNKNOWN) for fault, says in FEEDER_WORDS.items()
 }
 FEEDER_MISSING = {
     "cable out": "the feeder hangs on a socket pair inside one computer",
@@ -165,14 +165,32 @@ class Fed(Simulated):
 
     def __init__(self, *, homing: bool = False) -> None:
         super().__init__(homing=homing)
+        self.inner, self._mended = self.ports, False
         self.feeder = Feeder(SimDriven(self.ports, self.hands))
         self.link = BrokenLink(self.feeder)
-        self.ports = feeder_ports(Line(self.link, self.clock))
+        self.ports = feeder_ports(Line(self.link, self.clock, self._again))
 
     def alone(self, dt: float) -> None:
         """The feeder's loop goes on."""
         self.clock.advance(dt)
         self.feeder.tick()
+
+    def _again(self) -> Opening[Link]:
+        """Another one on the same machine; as long as nothing is mended it does not come up."""
+
+        def begun() -> Link:
+            if not self._mended:
+                raise DriverError("the feeder's process does not come up", "feeder-gone")
+            self.feeder = Feeder(SimDriven(self.inner, self.hands))
+            self.link = BrokenLink(self.feeder)
+            return cleared(self.link)
+
+        return Opening(begun, at_once=True)
+
+    def mend(self) -> None:
+        """Another feeder can be started."""
+        super().mend()
+        self._mended = True
 
     def feeder_stands(self, seconds: float) -> None:
         """Its process is stopped for so long, and the control waits for its answer."""

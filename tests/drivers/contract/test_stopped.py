@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 
+import pytest
+
 from core.alarms.bus_alarms import CUT_OFF
 from core.executor.commands import EnableDrives, Reset
 from core.executor.snapshot import State
+from core.ports import Unknown
 from tests.drivers.contract.conftest import Broken
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.rig import STILL, Fault
@@ -65,19 +68,11 @@ def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None
     control.post(Reset())
     # an inverter's fault leaves the drives their power: they hold the slides
     on = State.IDLE if powered else State.DISABLED
-    if outcome.final:
-        control.run(0.5)
-        control.post(EnableDrives())
-        on = State.FAULT
     control.until(on, limit=2.0)
-    control.until_true(lambda _: control.world.rpm() == 0.0 or outcome.final, limit=2.0)
+    control.until_true(lambda shot: control.world.rpm() == 0.0 and not shot.unknown, limit=2.0)
     control.run(0.5)
     assert math.dist(control.world.place(), stood) < STILL
-    assert control.world.rpm() == 0.0 or (outcome.spins and outcome.final)
-    if outcome.final:
-        return
     assert control.shot.alarms == ()
-    assert control.shot.unknown == frozenset()
     parts = control.shot.parts
     control.start(SHORT)
     if outcome.homeless:
@@ -85,3 +80,27 @@ def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None
         return
     control.until(State.IDLE, limit=20.0)
     assert control.shot.parts == parts + 1
+
+
+def test_reset_before_the_wire_is_mended_gives_nothing_free(broken: Broken) -> None:
+    """Whatever it tries: no power, no motion, and what is not heard stays unknown."""
+    rig, fault = broken
+    outcome = rig.faults[fault]
+    if not outcome.unknown:
+        pytest.skip("everything is heard all the while")
+    control = Control(rig)
+    cutting(control)
+    rig.acts()[fault]()
+    control.until(State.FAULT, limit=outcome.told + 0.01)
+    control.run(outcome.rests + 1.0)
+    stood = control.world.place()
+    control.post(Reset())
+    for _ in range(400):
+        control.tick()
+        assert control.shot.rpm_command == 0.0
+        if control.shot.unknown:
+            control.post(EnableDrives())
+            assert control.state in {State.FAULT, State.DISABLED, State.IDLE}
+            assert not (control.state is State.IDLE and Unknown.SLIDES in control.shot.unknown)
+    assert math.dist(control.world.place(), stood) < STILL
+    assert bool(control.shot.unknown) is (control.state is State.FAULT)
