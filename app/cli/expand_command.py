@@ -51,5 +51,5 @@ def run(args: argparse.Namespace) -> int:
 def report_diagnostics(path: Path, timeline: Timeline) -> int:
     """Write the findings to stderr, a line each; the exit status they make."""
     findings = timeline.diagnostics
-    sys.stderr.write("".join(f"{d.shown(str(path))}\n" for d in findings))
+    sys.stderr.write("".join(f"{d.in_one_line(str(path))}\n" for d in findings))
     return EXIT_ERRORS if any(d.severity == "error" for d in findings) else EXIT_OK

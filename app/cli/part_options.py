@@ -79,14 +79,14 @@ def with_kept(setting: PartSetting, program: str, kept: KeptPart, args: argparse
 def _said(
     text: str, args: argparse.Namespace, around: Circumstances, setting: PartSetting
 ) -> Stock | StockSpec:
-    from app.compose.said_stock import Around, said_stock
+    from app.compose.said_stock import ProgramBefore, said_stock
     from core.part.stock_spec import StockError
 
     def read(path: Path) -> Source:
         return read_source(path, args)
 
     try:
-        return said_stock(text, Around(read, around.setup, around.machine, setting))
+        return said_stock(text, ProgramBefore(read, around.setup, around.machine, setting))
     except StockError as error:
         raise CommandError(f"--stock {error}") from error
 

@@ -200,7 +200,7 @@ def _sheet(path: Path, report: Report, part: PartReport | None) -> str:
     inch = report.dialect is Dialect.OMNITURN
     length, unit, scale = (inches, "in", 1.0) if inch else (millimetres, "mm", MM_PER_INCH)
 
-    findings = "".join(f"{d.shown(str(path))}\n" for d in report.diagnostics)
+    findings = "".join(f"{d.in_one_line(str(path))}\n" for d in report.diagnostics)
     times, reach = report.times, report.reach
     slow, fast = (per_minute(speed) * scale for speed in reach.feed)
     tools = " ".join(f"T{n}" for n in report.tools) or "no tool"

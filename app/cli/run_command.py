@@ -57,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
     around = circumstances(args)
     job = make_job(read_source(path, args), around.setup)
     report = _proved(args, around, job)
-    sys.stderr.write("".join(f"{d.shown(str(path))}\n" for d in report.diagnostics))
+    sys.stderr.write("".join(f"{d.in_one_line(str(path))}\n" for d in report.diagnostics))
     if report.errors:
         return _refused(args, f"{path} has {len(report.errors)} errors and will not run", report)
     if report.missing_tools:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 Shapes = Callable[[], Mapping[int, "ToolShape"]]
 """The shapes of tools, by T, as they are when it is called; on the worker."""
-Kept = Callable[[str], KeptPart]
+KeptOfProgram = Callable[[str], KeptPart]
 """What is kept of a program's part, by its name; on the worker."""
 
 _log = logging.getLogger(__name__)
@@ -48,13 +48,13 @@ class PartDesk:
 
     machine: Machine
     shapes: Shapes
-    kept: Kept
+    kept: KeptOfProgram
     read: Callable[[Path], Source]
 
     def setting(self, job: Job, watch: Watch) -> tuple[PartSetting, Diagnostic | None]:
         """What has been said of stock, tools and clamping, and what of it cannot be used."""
         from app.compose.known_part import known_part, with_kept_clamping
-        from app.compose.said_stock import Around, said_stock
+        from app.compose.said_stock import ProgramBefore, said_stock
 
         setting = known_part(self.machine, job.setup.tools, self.shapes())
         try:
@@ -65,7 +65,7 @@ class PartDesk:
         if not kept.stock:
             return setting, None
         try:
-            around = Around(self.read, job.setup, self.machine, setting, watch)
+            around = ProgramBefore(self.read, job.setup, self.machine, setting, watch)
             return replace(setting, stock=said_stock(kept.stock, around)), None
         except ValueError as error:  # of the words, or of a program that cannot be read
             return setting, _unusable(str(error))

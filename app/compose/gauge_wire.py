@@ -70,7 +70,7 @@ class GaugeWire:
         self._thread.start()
         return ""
 
-    def taken(self) -> Sequence[Reading | str]:
+    def received(self) -> Sequence[Reading | str]:
         """What has come since the last look."""
         found = []
         while not self._heard.empty():

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from core.proving.prove_program import Progress
 
 
-class Around(NamedTuple):
+class ProgramBefore(NamedTuple):
     """What a program before is proved with: how it is read, and its circumstances.
 
     ``read`` may raise what its caller takes; ``go_on`` is told how far that proof has come.
@@ -31,7 +31,7 @@ class Around(NamedTuple):
     go_on: Progress | None = None
 
 
-def said_stock(text: str, around: Around) -> Stock | StockSpec:
+def said_stock(text: str, around: ProgramBefore) -> Stock | StockSpec:
     """What the words mean. Raises StockError with what is wrong in them."""
     spec = stock_spec(text)
     if spec.after:
@@ -48,7 +48,7 @@ def said_stock(text: str, around: Around) -> Stock | StockSpec:
     return profile_stock(spec.given, points, 25.4, spec.allowance)
 
 
-def _left_by(path: Path, around: Around, spec: StockSpec) -> Stock:
+def _left_by(path: Path, around: ProgramBefore, spec: StockSpec) -> Stock:
     """What the program before leaves: its last part."""
     from core.part.stock import Stock
     from core.proving.part_proof import prove_with_part

@@ -8,7 +8,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.compose.desk_part import Kept, PartDesk, Shapes, nothing_kept
+from app.compose.desk_part import KeptOfProgram, PartDesk, Shapes, nothing_kept
 from app.compose.journal import Journal
 from app.compose.machine_setup import setup_for
 from app.compose.stored_offsets import Offsets
@@ -53,7 +53,7 @@ def workshop(
     *,
     left: Callable[[], Modal] | None = None,
     shapes: Shapes = dict,
-    kept: Kept = nothing_kept,
+    kept: KeptOfProgram = nothing_kept,
     pictures: bool = True,
 ) -> LoadingSteps:
     """What loading needs; offsets, shapes of tools, and unit and rapid rate that the job before has ``left``,
@@ -150,7 +150,7 @@ def proof_of(job: Job, report: Report) -> Proof:
     """The proof of this job; the report must be of this job's text and circumstances."""
     return Proof(
         digest=job.digest,
-        errors=tuple(d.shown(job.source.name) for d in report.errors),
+        errors=tuple(d.in_one_line(job.source.name) for d in report.errors),
         blocks=report.elementary,
         cycle_time=report.times.cycle,
         tools=report.tools,
@@ -161,12 +161,12 @@ def proof_of(job: Job, report: Report) -> Proof:
 # --- Drawing a program in the frame of other offsets than its own: what a change of offsets does to its path.
 
 
-def part_comparer(machine: Machine, shapes: Shapes = dict, kept: Kept = nothing_kept) -> ComparePart:
+def part_comparer(machine: Machine, shapes: Shapes = dict, kept: KeptOfProgram = nothing_kept) -> ComparePart:
     """Compares the parts that two offsets make of a job on this machine."""
     return PartDesk(machine, shapes, kept, _read).compared
 
 
-def thumbnails(machine: Machine, shapes: Shapes, kept: Kept) -> DrawThumbnail:
+def thumbnails(machine: Machine, shapes: Shapes, kept: KeptOfProgram) -> DrawThumbnail:
     """Draws the finished part of a job small, and keeps it in the data folder."""
     return Thumbnails(data_folder() / "thumbnails", machine, PartDesk(machine, shapes, kept, _read)).of
 

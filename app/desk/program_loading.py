@@ -61,7 +61,7 @@ class PartProved:
 
     def completes(self, proof: Proof, name: str) -> Proof:
         """The proof of the program with that of its part."""
-        errors = tuple(d.shown(name) for d in self.diagnostics if d.severity is Severity.ERROR)
+        errors = tuple(d.in_one_line(name) for d in self.diagnostics if d.severity is Severity.ERROR)
         return replace(proof, errors=(*proof.errors, *errors), warned=self.warned)
 
     def among(self, diagnostics: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:

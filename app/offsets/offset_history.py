@@ -60,7 +60,7 @@ class OffsetHistory:
     kind: Kind
     mode: Mode = field(default_factory=Mode)  # of the control, as it was looked at last
     last: tuple[Change, ...] = ()  # the changes of the last step that was saved while the page was open
-    shown: tuple[Change, ...] | None = None  # the history while it is looked at
+    listed: tuple[Change, ...] | None = None  # the history while it is looked at
     _seen: int = 0
     _newest: int = 0  # id of the newest change that was read
 
@@ -88,8 +88,8 @@ class OffsetHistory:
         fresh = bool(changes) and changes[0].id != self._newest
         self._newest = changes[0].id if changes else 0
         self.last = tuple(change for change in changes if fresh and change.step == changes[0].step)
-        if self.shown is not None:
-            self.shown = changes
+        if self.listed is not None:
+            self.listed = changes
         self.desk.say(self._saved() + _behind_saved(snapshot))
 
     def _saved(self) -> str:
@@ -118,7 +118,7 @@ class OffsetHistory:
 
     def toggle(self) -> None:
         """The history instead of the table, or the table again."""
-        self.shown = None if self.shown is not None else self._read()
+        self.listed = None if self.listed is not None else self._read()
 
     def undo(self, why_not: str) -> None:
         """Take the last change of this table back, unless there is a reason not to."""

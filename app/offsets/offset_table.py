@@ -116,7 +116,7 @@ class OffsetTable(ABC):
         """The page's own words on the prompt line."""
         if why := self.barred(snapshot, correction=self.corrects):
             return why
-        if self.history.shown is not None:
+        if self.history.listed is not None:
             return tr("F5 OR ESC LEAVES THE HISTORY; PAGE UP AND PAGE DOWN LOOK ON")
         return self.hint(snapshot)
 
@@ -155,8 +155,8 @@ class OffsetTable(ABC):
 
     def escape(self) -> bool:
         """Esc closes the history, keeps the offsets, takes an entry back; False when the page may be left."""
-        if self.history.shown is not None:
-            self.history.shown = None
+        if self.history.listed is not None:
+            self.history.listed = None
         elif self.desk.asked:
             self.desk.clear()
         else:
@@ -171,4 +171,4 @@ class OffsetTable(ABC):
         """The page goes: nothing stays half entered."""
         self.drop()
         self.desk.clear()
-        self.history.shown = None
+        self.history.listed = None

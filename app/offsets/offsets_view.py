@@ -165,7 +165,7 @@ class OffsetPage(ModelPage):
         self.history.look_at(0)
 
     def _turn_effect(self) -> None:
-        self.model.history.shown = None
+        self.model.history.listed = None
         self.effect_model.turn()
 
     def typed(self, key: str) -> bool:
@@ -207,7 +207,7 @@ class OffsetPage(ModelPage):
         """The table as the store has it, and the question."""
         model, effect = self.model, self.effect_model
         model.look(snapshot)
-        changes = model.history.shown
+        changes = model.history.listed
         self.history.setVisible(changes is not None)
         self.table.setVisible(changes is None and not effect.open)
         part = effect.part

@@ -110,7 +110,7 @@ class ToolEntry(OffsetTable):
 
     @property
     @abstractmethod
-    def before(self) -> str:
+    def value_before(self) -> str:
         """The field as it is, without what is typed."""
 
     def cell_barred(self) -> str:
@@ -137,7 +137,7 @@ class ToolEntry(OffsetTable):
             new = shown_value(self.name, value_typed(self.name, self.text, self.mode), self.mode)
         except EntryError:
             new = "…"  # half a sum is no mistake yet
-        return f"{self.before}  →  {new}"
+        return f"{self.value_before}  →  {new}"
 
     def takes(self, key: str) -> bool:
         """Figures and signs; every character while a text is written."""

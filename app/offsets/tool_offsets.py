@@ -54,7 +54,7 @@ class ToolOffsets(ToolEntry):
         return shown_value(name, getattr(row, name), mode)
 
     @property
-    def before(self) -> str:
+    def value_before(self) -> str:
         """The cell as it is, without what is typed."""
         return self.cell(self.number, self.name) or (not_set() if self.tool is None else "")
 

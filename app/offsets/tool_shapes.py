@@ -75,7 +75,7 @@ class ToolShapes(ToolEntry):
         return None if self.row is None or self.mistakes else outline(shape_of(self.row, self.tool))
 
     @property
-    def before(self) -> str:
+    def value_before(self) -> str:
         """The field as it is, without what is typed."""
         return self.cell(self.name)
 

@@ -104,7 +104,7 @@ class PartSheet:
         return self.findings[self.marked]
 
     @property
-    def here(self) -> StockField:
+    def marked_field(self) -> StockField:
         """The marked field of the stock."""
         return self.entry.fields[min(self.at.get(Section.STOCK, 0), len(self.entry.fields) - 1)]
 
@@ -164,7 +164,7 @@ class PartSheet:
 
     @property
     def _figures(self) -> bool:
-        return bool(self.name) and self.here not in {StockField.KIND, StockField.FILE}
+        return bool(self.name) and self.marked_field not in {StockField.KIND, StockField.FILE}
 
     def typed(self, key: str) -> bool:
         """Arrows mark, Return takes or shows, figures and letters are typed where one is asked."""
@@ -172,7 +172,7 @@ class PartSheet:
             self._enter()
         elif self.takes(key) or (key in {"Back", "Delete"} and self._asked):
             self.text = edited(self.text, key, 200)
-        elif key in _TURNS and self.section is Section.STOCK and self.here is StockField.KIND:
+        elif key in _TURNS and self.section is Section.STOCK and self.marked_field is StockField.KIND:
             self.turn_kind(_TURNS[key])
         elif key in STEPS and not self.has_keyboard:
             self.choose(self.marked + STEPS[key])
@@ -197,7 +197,7 @@ class PartSheet:
         """A finger marks a row; on the marked one it turns the kind, or opens the name of a file."""
         if row != self.marked or self.section is Section.FINDINGS:
             self.choose(row)
-        elif self.here in {StockField.KIND, StockField.FILE} and not self.writing:
+        elif self.marked_field in {StockField.KIND, StockField.FILE} and not self.writing:
             self._enter()
 
     def _enter(self) -> None:
@@ -206,9 +206,9 @@ class PartSheet:
         elif self.section is Section.FINDINGS:
             if self.finding is not None:
                 self.shows(self.finding)
-        elif self.here is StockField.KIND:
+        elif self.marked_field is StockField.KIND:
             self.turn_kind()
-        elif self.here is StockField.FILE and not self.writing:
+        elif self.marked_field is StockField.FILE and not self.writing:
             self.writing = not self._barred()
         else:
             self._take()
@@ -248,7 +248,7 @@ class PartSheet:
             return tr("TYPE THE NAME OF THE FILE; RETURN TAKES IT, ESC LEAVES IT AS IT WAS")
         if self.section is Section.FINDINGS:
             return tr("UP AND DOWN SHOW THE PLACE OF A FINDING; F2: STOCK, F4 SILENCES A CHECK")
-        if self.here is StockField.KIND:
+        if self.marked_field is StockField.KIND:
             return tr("LEFT AND RIGHT TURN THE KIND OF STOCK; F6: NOTHING IS SAID ANY MORE")
         return tr("TYPE A LENGTH OR A SUM, RETURN KEEPS IT WITH THE PROGRAM; 0: NOT SAID")
 
@@ -298,7 +298,7 @@ class PartSheet:
             if self.writing:
                 entry = replace(self.entry, file=self._found(self.text.strip()))
             else:
-                entry = self.entry.typed(self.here, self.text, self.metric)
+                entry = self.entry.typed(self.marked_field, self.text, self.metric)
         except EntryError as error:
             self.desk.refuse(str(error))
             return

@@ -109,16 +109,16 @@ def _assumed(page: PartSheet, name: StockField) -> str:
 
 
 def _question(page: PartSheet) -> str:
-    if not page.name or page.here is StockField.KIND:
+    if not page.name or page.marked_field is StockField.KIND:
         return ""
-    return f"{_word(page.here)}?"
+    return f"{_word(page.marked_field)}?"
 
 
 def _stock_notes(page: PartSheet) -> tuple[str, ...]:
     lacks = page.entry.lacks
     if lacks is not None:
         return (tr("{field} IS STILL TO BE SAID").format(field=_word(lacks)),)
-    if page.here is StockField.STICK_OUT and not page.holds:
+    if page.marked_field is StockField.STICK_OUT and not page.holds:
         return (tr("COUNTS ONLY WITH [clamping] IN THE MACHINE FILE"),)
     part = page.loaded.part
     told = part.report.assumed if part is not None and part.report is not None else ()

@@ -78,7 +78,7 @@ class PartBar:
         painter.setPen(look.colour("soft" if player.bound else "text"))
         words = QRectF(right + 1.6 * u, room.y(), _WORDS * u, room.height() / 2)
         put(painter, words, LEFT, _clock(player.t) + " / " + _clock(player.duration))
-        shown = player.shown
+        shown = player.played
         if shown is not None and shown.instant.line:
             painter.setFont(look.font(1.6))
             text = tr("LINE {line}").format(line=shown.instant.line)

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QPainter, QPolygonF
 
-from app.path.part_player import PartPlayer, Shown
+from app.path.part_player import PartPlayer, PlayedInstant
 from app.path.part_section import Line, Metal, clamping_areas, hit_areas, metal_of, stock_outline
 from app.path.path_aspects import Aspect
 from app.path.path_layers_view import polygon
@@ -31,7 +31,7 @@ class PartPane(Pane):
 
     def __init__(self, look: Look, aspect: Aspect, polyline: Polyline, player: PartPlayer) -> None:
         self.player = player
-        self._drawn: tuple[Shown, Projection] | None = None  # what the outlines are of
+        self._drawn: tuple[PlayedInstant, Projection] | None = None  # what the outlines are of
         self._metal: list[tuple[QPolygonF, list[QPolygonF]]] = []
         self._hits: list[QPolygonF] = []
         self._stock: list[QPolygonF] = []
@@ -49,7 +49,7 @@ class PartPane(Pane):
     def whole(self) -> Projection:
         """The stock, and what is cut beside it."""
         z0, z1, x0, x1 = self.polyline.bounds
-        shown = self.player.shown
+        shown = self.player.played
         if shown is not None and (stock := shown.instant.stock) is not None:
             beside = _BESIDE * (stock.front - stock.back + 2.0 * stock.radius)
             z0, z1, x0, x1 = stock.back, stock.front + beside, 0.0, stock.radius + 0.5 * beside
@@ -72,7 +72,7 @@ class PartPane(Pane):
     def advance(self) -> bool:
         """Take up what the worker has made; whether there is anything new."""
         new = self.player.look()
-        if self.player.shown is not None and not self._fitted:
+        if self.player.played is not None and not self._fitted:
             self._fitted = True
             if not self.by_hand:
                 self.fit()
@@ -92,7 +92,7 @@ class PartPane(Pane):
 
     def draw_path(self, painter: QPainter) -> None:
         """The section; the painter's origin is the corner of the pane."""
-        shown, projection = self.player.shown, self.projection
+        shown, projection = self.player.played, self.projection
         if shown is None or projection is None:
             return
         self._outline(shown, projection)
@@ -119,7 +119,7 @@ class PartPane(Pane):
 
     def draw_run(self, painter: QPainter) -> None:
         """The tool, and the outline of what was hit over all else."""
-        shown, projection = self.player.shown, self.projection
+        shown, projection = self.player.played, self.projection
         if shown is None or projection is None:
             return
         look = self.look
@@ -131,7 +131,7 @@ class PartPane(Pane):
         self._tool(painter, shown, projection)
         self._scales(painter, projection)
 
-    def _outline(self, shown: Shown, projection: Projection) -> None:
+    def _outline(self, shown: PlayedInstant, projection: Projection) -> None:
         if self._drawn is not None and self._drawn[0] is shown and self._drawn[1] == projection:
             return
         self._drawn = shown, projection
@@ -158,7 +158,7 @@ class PartPane(Pane):
         for area in areas:
             painter.drawPolygon(area)
 
-    def _reach(self, painter: QPainter, shown: Shown) -> None:
+    def _reach(self, painter: QPainter, shown: PlayedInstant) -> None:
         """How far the machine lets the tip go, where that is in sight."""
         if shown.instant.reach is None:
             return
@@ -166,7 +166,7 @@ class PartPane(Pane):
         corners = [self.spot(z, x) for z, x in ((z0, x0), (z1, x0), (z1, x1), (z0, x1), (z0, x0))]
         draw_reach(painter, self.look, corners)
 
-    def _tool(self, painter: QPainter, shown: Shown, projection: Projection) -> None:
+    def _tool(self, painter: QPainter, shown: PlayedInstant, projection: Projection) -> None:
         tool, look = shown.instant.tool, self.look
         if tool is None:
             return

@@ -51,7 +51,7 @@ class Moment(NamedTuple):
     solid: SolidLook | None = None
 
 
-class Shown(NamedTuple):
+class PlayedInstant(NamedTuple):
     """What the worker has made: the part, and what was found in the whole program."""
 
     instant: PartInstant
@@ -73,7 +73,7 @@ class PartPlayer:
     _picture: Picture | None = None
     _wanted: Moment = field(default_factory=Moment)
     _asked: Moment | None = None
-    _shown: Shown | None = None
+    _played: PlayedInstant | None = None
     _looked: float = 0.0
     _turned: float = 0.0  # when it was last looked at from elsewhere
     _history: tuple[Picture, PartHistory] | None = None  # the worker's, as is what follows
@@ -92,7 +92,7 @@ class PartPlayer:
         before, self._picture = self._picture, picture
         self._asked, self.playing, self.trouble = None, False, picture.no_part if picture is not None else ""
         if picture is None or before is None:
-            self._shown = None
+            self._played = None
         if not self.bound:
             self.want(self.duration)
 
@@ -106,9 +106,9 @@ class PartPlayer:
         return float(self._picture.ends[-1]) if self._picture is not None else 0.0
 
     @property
-    def shown(self) -> Shown | None:
+    def played(self) -> PlayedInstant | None:
         """The latest that the worker has made; None: nothing yet."""
-        return self._shown
+        return self._played
 
     @property
     def behind(self) -> bool:
@@ -119,7 +119,7 @@ class PartPlayer:
 
     def look(self) -> bool:
         """Take up what the worker has made, and want the next; whether there is something new to be seen."""
-        shown, now = self._shown, self.clock()
+        shown, now = self._played, self.clock()
         gone, self._looked = now - self._looked, now
         self.worker.poll()
         if self.playing:
@@ -127,7 +127,7 @@ class PartPlayer:
         self._draw_finely()
         if not self.worker.busy:
             self._ask()
-        return self._shown is not shown or self.playing
+        return self._played is not shown or self.playing
 
     def settle(self, timeout: float) -> None:
         """Wait for what is wanted; for scripts and tests, never for the screen."""
@@ -212,10 +212,10 @@ class PartPlayer:
 
     def marks(self) -> npt.NDArray[np.float64]:
         """When errors of the part come up, s."""
-        if self._shown is None or self._picture is None:
+        if self._played is None or self._picture is None:
             return np.zeros(0)
         ends = self._picture.ends
-        errors = [each.n for each in self._shown.findings if each.severity is Severity.ERROR]
+        errors = [each.n for each in self._played.findings if each.severity is Severity.ERROR]
         return np.array([ends[min(n, len(ends) - 1)] for n in errors])
 
     def want(self, t: float) -> None:
@@ -241,7 +241,7 @@ class PartPlayer:
         self._asked = self._wanted
         self.worker.ask(partial(self._make, picture, self._wanted), self._take, self._failed)
 
-    def _make(self, picture: Picture, wanted: Moment, request: Request) -> Shown:
+    def _make(self, picture: Picture, wanted: Moment, request: Request) -> PlayedInstant:
         """On the worker. A new program is first gone through to its end: then it is known what is wrong."""
         history = self._history_of(picture)
         watch = partial(self._tell, history, request, [self.clock()])
@@ -254,7 +254,7 @@ class PartPlayer:
         instant = self._instant(history, wanted.block, share, watch)
         if wanted.solid is not None:
             image = self._image(history, instant, wanted.solid)
-        return Shown(instant, self._findings, image)
+        return PlayedInstant(instant, self._findings, image)
 
     def _instant(
         self, history: PartHistory, block: int, share: float, watch: Callable[[], None]
@@ -262,7 +262,7 @@ class PartPlayer:
         """The same as before where it is only turned."""
         if self._solid is not None:
             last = self._solid[0]
-            if (last.block, last.share) == (block, share) and history.made(last):
+            if (last.block, last.share) == (block, share) and history.is_current(last):
                 return last
         return history.at(block, share, watch)
 
@@ -290,7 +290,7 @@ class PartPlayer:
             version=self._draws,
             hits=spans,
             quick=look.quick,
-            around=history.around(instant),
+            around=history.scene_at(instant),
         )
 
     def _history_of(self, picture: Picture) -> PartHistory:
@@ -308,13 +308,13 @@ class PartPlayer:
         now = self.clock()
         if now - told[0] > _TELL:
             told[0] = now
-            request.publish(partial(self._take, Shown(history.now(), self._findings or ())))
+            request.publish(partial(self._take, PlayedInstant(history.now(), self._findings or ())))
 
-    def _take(self, shown: Shown) -> None:
-        self._shown = shown
+    def _take(self, shown: PlayedInstant) -> None:
+        self._played = shown
 
     def _failed(self, why: str) -> None:
-        self.trouble, self._shown = why, None
+        self.trouble, self._played = why, None
 
 
 class PartPlayers(list[PartPlayer]):

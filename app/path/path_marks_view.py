@@ -185,14 +185,14 @@ def apart_words(apart: Apart, in_mm: bool) -> str:
 
 def errors_of(pane: Pane) -> list[Diagnostic]:
     """What is wrong with the part that a pane shows, by now."""
-    shown = pane.player.shown if pane.player is not None else None
+    shown = pane.player.played if pane.player is not None else None
     found = shown.instant.findings if shown is not None else ()
     return [each for each in found if each.severity is Severity.ERROR]
 
 
 def part_words(pane: Pane) -> str:
     """What is wrong by now, or else which tool cuts."""
-    shown = pane.player.shown if pane.player is not None else None
+    shown = pane.player.played if pane.player is not None else None
     if pane.player is None or shown is None:
         trouble = pane.player.trouble if pane.player is not None else ""
         return trouble or tr("PART  ·  BEING MADE")

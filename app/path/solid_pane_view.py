@@ -33,7 +33,7 @@ class SolidPane(PartPane):
 
     def whole(self) -> Projection:
         """All of the stock."""
-        flat, shown = super().whole(), self.player.shown
+        flat, shown = super().whole(), self.player.played
         if shown is None or (stock := shown.instant.stock) is None:
             return flat
         wide, high = flat.width, max(flat.height - round(3.0 * self.look.u), 1)
@@ -91,7 +91,7 @@ class SolidPane(PartPane):
 
     def draw_path(self, painter: QPainter) -> None:
         """The latest picture; the painter's origin is the corner of the pane."""
-        shown = self.player.shown
+        shown = self.player.played
         if shown is not None and shown.image is not None:
             image = shown.image
             high, wide = image.shape
@@ -101,7 +101,7 @@ class SolidPane(PartPane):
 
     def draw_run(self, painter: QPainter) -> None:
         """The limits of the machine in the plane of turning; the tool is in the picture."""
-        shown, view, projection = self.player.shown, self._view, self.projection
+        shown, view, projection = self.player.played, self._view, self.projection
         if shown is None or shown.instant.reach is None or view is None or projection is None:
             return
         (z0, x0), (z1, x1) = shown.instant.reach

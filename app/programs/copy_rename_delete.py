@@ -109,14 +109,14 @@ class CopyRenameDelete:
     own: Path
     persistence: Persistence
     worker: Latest
-    here: Callable[[], Program | None]
+    marked_program: Callable[[], Program | None]
     changed: Callable[[str], None]
     question: str = ""
     entry: Entry = field(default_factory=lambda: Entry(words=True))
 
     def ask(self, question: str) -> None:
         """Ask for the name of a copy, or for another name."""
-        here = self.here()
+        here = self.marked_program()
         if here is None:
             self.desk.say(NONE)
         elif question == RENAME and self._fixed(here):
@@ -140,7 +140,7 @@ class CopyRenameDelete:
 
     def answer(self) -> None:
         """Return: what was typed is the name."""
-        here, name, question = self.here(), self.entry.text, self.question
+        here, name, question = self.marked_program(), self.entry.text, self.question
         if here is None:
             self.question = ""
         elif question == COPY:
@@ -150,7 +150,7 @@ class CopyRenameDelete:
 
     def delete(self) -> None:
         """The marked program, after asking; its text stays among the versions."""
-        here = self.here()
+        here = self.marked_program()
         if here is None or self._fixed(here):
             self.desk.say(self._fixed(here) if here else NONE)
             return

@@ -34,14 +34,14 @@ class ProgramList:
     marked: int = 0
     find: Entry = field(default_factory=lambda: Entry(words=True))
     all: tuple[Program, ...] = ()
-    shown: tuple[Program, ...] = ()
+    listed: tuple[Program, ...] = ()
     changer: CopyRenameDelete = field(init=False)
     _after: str = ""  # the name to mark when the list has been read again
 
     def __post_init__(self) -> None:
         self.transfer.finished = self.look_again
         self.changer = CopyRenameDelete(
-            self.desk, self.own, self.persistence, self.worker, lambda: self.here, self._changed
+            self.desk, self.own, self.persistence, self.worker, lambda: self.program, self._changed
         )
 
     @property
@@ -71,21 +71,21 @@ class ProgramList:
         self.worker.poll()
 
     def _found(self, found: tuple[Program, ...]) -> None:
-        name = self._after or (self.here.name if self.here else "")
+        name = self._after or (self.program.name if self.program else "")
         self._after, self.all = "", found
         self._narrow(name)
 
     def _narrow(self, mark: str = "") -> None:
         part = self.find.text.strip().lower()
         found = [program for program in self.all if part in program.name.lower()]
-        self.shown = sorted_by(self.order, found)
-        names = [program.name for program in self.shown]
+        self.listed = sorted_by(self.order, found)
+        names = [program.name for program in self.listed]
         self.marked = names.index(mark) if mark in names else 0
 
     @property
-    def here(self) -> Program | None:
+    def program(self) -> Program | None:
         """The marked program; None where the list is empty."""
-        return self.shown[self.marked] if self.marked < len(self.shown) else None
+        return self.listed[self.marked] if self.marked < len(self.listed) else None
 
     def sheet(self) -> Sheet:
         """The list, or the chooser of folders over it."""
@@ -126,16 +126,16 @@ class ProgramList:
         elif self.may_type and (self.entry if self.question else self.find).type(key):
             self.desk.clear()
             if not self.question:
-                self._narrow(self.here.name if self.here else "")
+                self._narrow(self.program.name if self.program else "")
         else:
             return False
         return True
 
     def choose(self, row: int) -> None:
         """Mark a row."""
-        if not self.question and self.shown:
+        if not self.question and self.listed:
             self.desk.clear()
-            self.marked = max(0, min(len(self.shown) - 1, row))
+            self.marked = max(0, min(len(self.listed) - 1, row))
 
     def escape(self) -> bool:
         """One step back; False when the page may be left."""
@@ -147,7 +147,7 @@ class ProgramList:
             self.changer.question = ""
         elif self.find.text:
             self.find.text = ""
-            self._narrow(self.here.name if self.here else "")
+            self._narrow(self.program.name if self.program else "")
         else:
             return False
         return True
@@ -157,34 +157,38 @@ class ProgramList:
         self.changer.question = self.find.text = ""
         self.transfer.shut()
         self.preview.of(None)
-        self._narrow(self.here.name if self.here else "")
+        self._narrow(self.program.name if self.program else "")
 
     def sort(self) -> None:
         """F2: sort the list by the next of the orders."""
         self.order = following(ORDERS, self.order)
-        self._narrow(self.here.name if self.here else "")
+        self._narrow(self.program.name if self.program else "")
 
     def may_load(self) -> bool:
         """Whether the marked program can become that of the desk; why not is said."""
-        if self.here is None:
+        if self.program is None:
             self.desk.say(NONE)
             return False
-        return self.desk.may_choose() and self.desk.program_folders.find(str(self.here.path)) is not None
+        return self.desk.may_choose() and self.desk.program_folders.find(str(self.program.path)) is not None
 
     def load(self) -> bool:
         """The marked program becomes that of the desk, or that is asked; True when it can."""
-        return self.may_load() and self.here is not None and self.desk.choose(str(self.here.path))
+        return self.may_load() and self.program is not None and self.desk.choose(str(self.program.path))
 
     def _changed(self, name: str) -> None:
         self._after = name
         self.look_again()
 
     def _transfer(self, *, out: bool) -> None:
-        if out and self.here is None:
+        if out and self.program is None:
             self.desk.say(NONE)
         else:
             self.desk.clear()
-            self.transfer.begin(tuple(p.path for p in self.shown), self.here.path if self.here else None, out)
+            self.transfer.begin(
+                tuple(p.path for p in self.listed),
+                self.program.path if self.program else None,
+                out,
+            )
 
     def prompt(self) -> str:
         """What the keys do now, for the prompt line."""
@@ -209,8 +213,10 @@ Detail = tuple[str, str]
 
 def sheet_of(model: ProgramList) -> Sheet:
     """The list: name, date, last run, parts, best cycle."""
-    rows = tuple(_row(program) for program in model.shown)
-    count = f"{len(model.shown)} OF {len(model.all)} PROGRAMS" if model.find.text else f"{len(rows)} PROGRAMS"
+    rows = tuple(_row(program) for program in model.listed)
+    count = (
+        f"{len(model.listed)} OF {len(model.all)} PROGRAMS" if model.find.text else f"{len(rows)} PROGRAMS"
+    )
     question, text = model.question, model.entry.text
     if not question and model.find.text:
         question, text = "FIND", model.find.text

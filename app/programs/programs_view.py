@@ -116,7 +116,7 @@ class ProgramsPage(ListPage):
 
     def _edit(self) -> None:
         """The marked program, and no other one; to look at it there does not load it."""
-        here = self.model.here
+        here = self.model.program
         editor = self.desk.attached(Editor)
         if here is None or editor is None:
             self.desk.say(NONE)
@@ -156,7 +156,7 @@ class ProgramsPage(ListPage):
         model = self.model
         model.look()
         self.table.show_sheet(model.sheet())
-        here = model.here
+        here = model.program
         self._show_picture(model.preview.of(here))
         self.letters.setVisible(bool(model.question or model.find.text) and not model.transfer.open)
         self.record.program = here

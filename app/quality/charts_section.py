@@ -11,7 +11,7 @@ from app.desk.sheet import Row, Sheet
 from app.desk.translation import tr
 from app.quality.parts_book import feature_of
 from app.quality.parts_watch import PartsWatch
-from app.quality.plots import Drawing, control_plots
+from app.quality.plots import ChartDrawing, control_plots
 from app.quality.section import QualitySection, mark_of, size
 from core.executor.snapshot import Snapshot
 from core.quality.capability import capability
@@ -32,7 +32,7 @@ class ChartsSection(QualitySection):
 
     def __init__(self, desk: Desk, watch: PartsWatch) -> None:
         super().__init__(desk, watch)
-        self._made: tuple[object, Drawing] = (None, Drawing())
+        self._made: tuple[object, ChartDrawing] = (None, ChartDrawing())
         self._rows: tuple[object, tuple[Row, ...]] = (None, ())
 
     @property
@@ -97,7 +97,7 @@ class ChartsSection(QualitySection):
         late = [each for each in findings(chart) if each.point >= len(chart.points) - 10]
         return tr(late[-1].words) if late else ""
 
-    def drawing(self) -> Drawing:
+    def drawing(self) -> ChartDrawing:
         """Location over spread of the marked feature, made when something has changed."""
         row, mode = self.feature, self.mode
         of = (self.watch.book.loads, self.program, row.id if row is not None else 0, mode)
@@ -105,20 +105,20 @@ class ChartsSection(QualitySection):
             self._made = of, self._drawn(row, of)
         return self._made[1]
 
-    def _drawn(self, row: FeatureRow | None, of: object) -> Drawing:
+    def _drawn(self, row: FeatureRow | None, of: object) -> ChartDrawing:
         taken = self._newest(row) if row is not None else ()
         if row is None or not taken:
-            return Drawing((), of)
+            return ChartDrawing((), of)
         parts = [each.part for each in taken]
         if any(after <= before for before, after in pairwise(parts)):
             parts = list(range(1, len(taken) + 1))  # counted anew, or measured twice: by turns
         try:
             pair = charts_of([each.value for each in taken], row.sample)
         except QualityError:
-            return Drawing((), of)
+            return ChartDrawing((), of)
         names = (tr("SINGLE PARTS"), tr("MOVING RANGE")) if row.sample == 1 else (tr("AVERAGE"), tr("RANGE"))
         titled = (f"{row.name}  {names[0]}", names[1])
-        return Drawing(control_plots(pair, parts, feature_of(row).limits, titled, self.mode.unit), of)
+        return ChartDrawing(control_plots(pair, parts, feature_of(row).limits, titled, self.mode.unit), of)
 
     def prompt(self) -> str:
         """What the lines are."""

@@ -13,7 +13,7 @@ from app.offsets.offset_book import secondary_offsets, tool_offsets
 from app.offsets.offset_effect import Effect, Tables
 from app.offsets.offset_values import Mode
 from app.offsets.part_effect import part_table
-from app.quality.plots import Drawing, correction_plot
+from app.quality.plots import ChartDrawing, correction_plot
 from app.quality.section import signed_size
 from app.quality.wear_correction import Correction
 from core.quality.wear_proposal import Proposal
@@ -30,7 +30,7 @@ class CorrectionEffect:
     question: str = ""
     found: Proposal | None = None
     _readings: tuple[tuple[int, float], ...] = ()  # part and size, mm
-    _drawn: tuple[object, Drawing] = field(default=(None, Drawing()))
+    _drawn: tuple[object, ChartDrawing] = field(default=(None, ChartDrawing()))
 
     @property
     def stands(self) -> bool:
@@ -79,11 +79,11 @@ class CorrectionEffect:
             return tr("MAKING THE PART WITH THE OFFSETS BEFORE AND AFTER")
         return tr("THE PART CANNOT BE COMPARED: {why}").format(why=effect.trouble) if effect.trouble else ""
 
-    def drawing(self, mode: Mode) -> Drawing:
+    def drawing(self, mode: Mode) -> ChartDrawing:
         """The readings between their limits, their mean, and what the next parts will measure."""
         found = self.found
         if found is None or not self._readings:
-            return Drawing()
+            return ChartDrawing()
         of = (self.question, self._readings, mode)
         if self._drawn[0] != of:
             change = signed_size(found.expected - found.mean, mode)
@@ -92,5 +92,5 @@ class CorrectionEffect:
             )
             newest = self._readings[-SHOWN:]
             plot = correction_plot(newest, found, title, (tr("NOW"), tr("THEN")), mode.unit)
-            self._drawn = of, Drawing((plot,), of)
+            self._drawn = of, ChartDrawing((plot,), of)
         return self._drawn[1]

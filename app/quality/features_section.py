@@ -56,7 +56,7 @@ class Draft:
         """The field under the mark."""
         return FIELDS[self.at]
 
-    def shown(self, field: str, mode: Mode) -> str:
+    def cell(self, field: str, mode: Mode) -> str:
         """A field as the operator reads it."""
         feature = self.feature
         if field == "NAME":
@@ -140,7 +140,7 @@ class FeaturesSection(QualitySection):
 
     def _fields(self, draft: Draft) -> Sheet:
         mode = self.mode
-        rows = tuple(Row((field, draft.shown(field, mode))) for field in FIELDS)
+        rows = tuple(Row((field, draft.cell(field, mode))) for field in FIELDS)
         turned = draft.field in _TURNED
         question = "" if turned else f"{tr(draft.field)}?"
         way = "Return takes what is typed and goes on; F6 keeps the feature, Esc leaves it as it was."

@@ -82,7 +82,7 @@ class Gauge(Protocol):
         """Listen, or no more; why not, empty when it does."""
         ...
 
-    def taken(self) -> Sequence[Reading | str]:
+    def received(self) -> Sequence[Reading | str]:
         """What has come since the last look: readings, and sentences of what is wrong."""
         ...
 
@@ -105,7 +105,7 @@ class NoGauge:
         """There is none."""
         return tr("THE MACHINE FILE NAMES NO GAUGE: [gauge] port = …")
 
-    def taken(self) -> Sequence[Reading | str]:
+    def received(self) -> Sequence[Reading | str]:
         """Nothing ever comes."""
         return ()
 

@@ -55,14 +55,14 @@ class Plot:
 
 
 @dataclass(frozen=True, slots=True)
-class Drawing:
+class ChartDrawing:
     """Plots below one another; two of the same ``of`` are the same drawing, and are not drawn again."""
 
     plots: tuple[Plot, ...] = ()
     of: object = field(default=None)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Drawing) and self.of == other.of
+        return isinstance(other, ChartDrawing) and self.of == other.of
 
     def __hash__(self) -> int:
         return hash(self.of)

@@ -9,7 +9,7 @@ from PySide6.QtGui import QPainter, QPaintEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.quality.plots import Curve, Drawing, Level, Plot
+from app.quality.plots import ChartDrawing, Curve, Level, Plot
 from app.screen import chart
 from app.screen.chart import Chart, curve_colour, line_pen, set_curve
 from app.screen.look import CENTRE, Look, Painter, put_raw
@@ -34,11 +34,11 @@ class PlotsPane(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self._chart = Chart(look, self)
         self._bars = BarsPane(look, self)
-        self._shown: Drawing | None = None
+        self._shown: ChartDrawing | None = None
         self._theme = ""
         self._u = 0.0
 
-    def show_drawing(self, drawing: Drawing) -> None:
+    def show_drawing(self, drawing: ChartDrawing) -> None:
         """Draw it where it is another one than before."""
         look = self.look
         if drawing == self._shown and (self._theme, self._u) == (look.palette.name, look.u):

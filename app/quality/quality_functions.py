@@ -34,13 +34,13 @@ class QualityFunctions(SpecialFunctions):
     def look(self) -> None:
         """Once a frame: of which feature and part a reading is must be seen when it comes."""
         for section in self.functions:
-            section.heard(seen=section is self.shown)
+            section.listen(seen=section is self.current)
 
     def opened(self) -> None:
         """The page comes up: what a gauge has sent meanwhile is of nobody knows which part."""
         super().opened()
         for section in self.functions:
-            section.heard(seen=False)
+            section.listen(seen=False)
 
     def close(self) -> None:
         """End what a section has under way; the worker is the book's."""

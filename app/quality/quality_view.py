@@ -42,7 +42,7 @@ class MeasuredPartsPage(SpecialPage):
     def refresh(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
         """Table and chart of this snapshot."""
         super().refresh(snapshot, view, loaded)
-        shown = self.model.shown
+        shown = self.model.current
         share = shown.chart_share if isinstance(shown, QualitySection) else 0.0
         if share != self._share:
             self._share = share

@@ -17,7 +17,7 @@ from app.quality.correction_effect import CorrectionEffect
 from app.quality.gauge_line import Gauge, NoGauge, Reading
 from app.quality.parts_book import feature_of
 from app.quality.parts_watch import PartsWatch
-from app.quality.plots import Drawing
+from app.quality.plots import ChartDrawing
 from app.quality.readings_file import write_readings
 from app.quality.section import QualitySection, mark_of, signed_size, size, typed_length
 from app.quality.wear_correction import correction, proposal
@@ -33,7 +33,7 @@ MM = {"mm": 1.0, "in": 25.4}
 
 
 @dataclass(frozen=True, slots=True)
-class Taken:
+class NewReading:
     """A reading that is to be kept."""
 
     feature: FeatureRow
@@ -126,9 +126,9 @@ class ReadingsSection(QualitySection):
         """How to enter a reading."""
         return self.missing() or "TYPE THE MEASURED SIZE AND PRESS RETURN; ESC GOES BACK TO THE LIST"
 
-    def drawing(self) -> Drawing:
+    def drawing(self) -> ChartDrawing:
         """What a proposed correction does to the feature."""
-        return self.effect.drawing(self.mode) if self.effect.stands else Drawing()
+        return self.effect.drawing(self.mode) if self.effect.stands else ChartDrawing()
 
     # --- readings ------------------------------------------------------------------------------------
 
@@ -140,9 +140,9 @@ class ReadingsSection(QualitySection):
             return False
         mode = self.mode
         value = typed_length(value_of(text), mode)
-        return self._offer(Taken(feature, self.part, value, mode.name, "typed"))
+        return self._offer(NewReading(feature, self.part, value, mode.name, "typed"))
 
-    def _offer(self, taken: Taken) -> bool:
+    def _offer(self, taken: NewReading) -> bool:
         """Keep it; what no part of this feature can measure is asked about first."""
         row, feature = taken.feature, feature_of(taken.feature)
         if taken.value <= 0.0:
@@ -156,7 +156,7 @@ class ReadingsSection(QualitySection):
         self._keep(taken)
         return True
 
-    def _keep(self, taken: Taken) -> None:
+    def _keep(self, taken: NewReading) -> None:
         row = ReadingRow(
             0, taken.feature.id, taken.part, taken.value, taken.unit, "", taken.source, taken.gauge
         )
@@ -164,7 +164,7 @@ class ReadingsSection(QualitySection):
             lambda c: measured_parts.add_reading(c, row), partial(self._kept, taken), self.watch.refuse
         )
 
-    def _kept(self, taken: Taken) -> None:
+    def _kept(self, taken: NewReading) -> None:
         """It is on the disk: say so, and go on to the next feature."""
         text = tr("{name} OF PART {part}: {size} KEPT")
         self.desk.say(
@@ -199,9 +199,9 @@ class ReadingsSection(QualitySection):
         if why:
             self.desk.say(why)
 
-    def heard(self, *, seen: bool) -> None:
+    def listen(self, *, seen: bool) -> None:
         """Once a frame: what the gauge has sent goes to the marked feature, where that is seen."""
-        for found in self.gauge.taken():
+        for found in self.gauge.received():
             if isinstance(found, Reading) and not seen:
                 self.desk.say(tr("A READING CAME WHILE THE READINGS WERE NOT SHOWN: MEASURE AGAIN"))
             elif isinstance(found, Reading):
@@ -216,7 +216,9 @@ class ReadingsSection(QualitySection):
             return
         unit = found.unit or self.gauge.unit
         try:
-            self._offer(Taken(feature, self.part, found.value * MM[unit], unit, "gauge", self.gauge.name))
+            self._offer(
+                NewReading(feature, self.part, found.value * MM[unit], unit, "gauge", self.gauge.name)
+            )
         except EntryError as error:
             self.desk.refuse(str(error))
 

@@ -7,7 +7,7 @@ from app.desk.formats import fixed
 from app.offsets.offset_values import Mode, to_mm
 from app.quality.parts_book import PartsData
 from app.quality.parts_watch import PartsWatch
-from app.quality.plots import Drawing
+from app.quality.plots import ChartDrawing
 from app.special.special_functions import FigureFunction
 from core.store.measured_parts import FeatureRow
 
@@ -45,9 +45,9 @@ class QualitySection(FigureFunction):
         rows = self.data.features
         return rows[self.marked] if self.marked < len(rows) else None
 
-    def drawing(self) -> Drawing:
+    def drawing(self) -> ChartDrawing:
         """What is drawn below the table."""
-        return Drawing()
+        return ChartDrawing()
 
     def typed(self, key: str) -> bool:
         """Arrows move the mark, whatever is typed; the rest is the entry's."""

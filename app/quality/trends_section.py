@@ -15,7 +15,7 @@ from app.desk.translation import tr
 from app.offsets.offset_values import signed
 from app.quality.cycle_recorder import COMPLETE
 from app.quality.parts_watch import PartsWatch
-from app.quality.plots import Curve, Drawing, Level, Plot
+from app.quality.plots import ChartDrawing, Curve, Level, Plot
 from app.quality.section import QualitySection
 from core.executor.snapshot import Snapshot
 from core.quality.availability import Availability, Span, availability
@@ -42,7 +42,7 @@ class TrendsSection(QualitySection):
         super().__init__(desk, watch)
         self._now = now
         self._shift: tuple[int, int] | None = None
-        self._made: tuple[object, Drawing] = (None, Drawing())
+        self._made: tuple[object, ChartDrawing] = (None, ChartDrawing())
         self._rows: tuple[object, tuple[Row, ...]] = (None, ())
 
     @property
@@ -170,11 +170,11 @@ class TrendsSection(QualitySection):
 
     # --- drawing -------------------------------------------------------------------------------------
 
-    def drawing(self) -> Drawing:
+    def drawing(self) -> ChartDrawing:
         """Of the marked trend."""
         of = (self.watch.book.loads, self.program, self.kind, self.mode)
         if self._made[0] != of:
-            self._made = of, Drawing(self._plots(), of)
+            self._made = of, ChartDrawing(self._plots(), of)
         return self._made[1]
 
     def _plots(self) -> tuple[Plot, ...]:

@@ -26,7 +26,7 @@ ENDING = ".turndesk.db"
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A folder for backups, or one backup in it."""
+    """A folder that can be written to, or one backup in it."""
 
     label: str
     path: Path

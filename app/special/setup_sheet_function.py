@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +14,7 @@ from app.desk.sheet import Entry, Key, Row, Sheet
 from app.desk.translation import tr
 from app.programs.folder_chooser import Stick, sticks
 from app.report.pdf_file import Paper
+from app.special.backup_and_restore import Place
 from app.special.special_functions import SpecialFunction
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot
@@ -23,20 +23,12 @@ from core.store.program_records import notes_key
 from core.store.store_errors import StoreError
 
 if TYPE_CHECKING:
-    from app.special.setup_sheet_work import Made
+    from app.special.setup_sheet_work import MadeSheet
 
 NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN SETUP SHEET"
 MOST_NOTES, LONGEST = 30, 200
 _PAPER = "paper"  # the setting
 _WIDTHS = (0.15, 0.63, 0.22)
-
-
-@dataclass(frozen=True, slots=True)
-class Place:
-    """A folder that the sheet can be written to."""
-
-    label: str
-    path: Path
 
 
 class SetupSheetFunction(SpecialFunction):
@@ -57,7 +49,7 @@ class SetupSheetFunction(SpecialFunction):
         super().__init__(desk)
         self.machine, self.persistence, self.worker = machine, persistence, worker
         self.folder, self.plugged = folder, plugged
-        self.made: Made | None = None
+        self.made: MadeSheet | None = None
         self.trouble = ""
         self.entry: Entry | None = None  # a note is typed
         self.places: tuple[Place, ...] = ()  # to be chosen from
@@ -286,7 +278,7 @@ class SetupSheetFunction(SpecialFunction):
         setting = picture.part.setting if picture.part is not None else None
         self.worker.ask(partial(made_of, job, self.machine, setting), self._take, self._failed)
 
-    def _take(self, made: Made) -> None:
+    def _take(self, made: MadeSheet) -> None:
         self.made = made
 
     def _failed(self, why: str) -> None:

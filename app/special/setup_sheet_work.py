@@ -24,7 +24,7 @@ from core.proving.part_proof import PartSetting
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
+class MadeSheet:
     """The sheet of one job, and the outlines of its tools by number."""
 
     job: Job
@@ -32,7 +32,7 @@ class Made:
     outlines: Mapping[int, ToolOutline | None]
 
 
-def rows_of(made: Made, remarks: Mapping[int, str]) -> Iterator[Row]:
+def rows_of(made: MadeSheet, remarks: Mapping[int, str]) -> Iterator[Row]:
     """Time, stock, what holds it, tools, offsets, stops."""
     sheet = made.sheet
     if sheet.verdict:
@@ -59,10 +59,10 @@ def rows_of(made: Made, remarks: Mapping[int, str]) -> Iterator[Row]:
         yield Row((f"M0{int(stop.optional)}", f"{stop.message}\n{at}, {clock(stop.at)}", ""))
 
 
-def made_of(job: Job, machine: Machine, setting: PartSetting | None, watch: Request) -> Made:
+def made_of(job: Job, machine: Machine, setting: PartSetting | None, watch: Request) -> MadeSheet:
     """Put it together; on a worker."""
     sheet = setup_sheet(job.reading, job.setup, machine, setting or PartSetting(), watch)
-    return Made(job, sheet, {tool.number: _outline(tool.shape) for tool in sheet.tools})
+    return MadeSheet(job, sheet, {tool.number: _outline(tool.shape) for tool in sheet.tools})
 
 
 def _outline(shape: ToolShape | None) -> ToolOutline | None:
@@ -73,7 +73,7 @@ def _outline(shape: ToolShape | None) -> ToolOutline | None:
 
 
 def page_of(
-    made: Made, program: str, machine: Machine, remarks: Mapping[int, str], notes: Sequence[str]
+    made: MadeSheet, program: str, machine: Machine, remarks: Mapping[int, str], notes: Sequence[str]
 ) -> tuple[str, str, str]:
     """Title, date and body of the page."""
     facts = [(tr("MACHINE"), machine.name), (tr("TEXT (SHA-256)"), text_hash(made.job.source))]

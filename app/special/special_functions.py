@@ -59,7 +59,7 @@ class SpecialFunction(ABC):
     def left(self) -> None:
         """It goes: nothing stays half entered or half asked."""
 
-    def heard(self, *, seen: bool) -> None:
+    def listen(self, *, seen: bool) -> None:
         """Once a frame, where the page asks: what has come by a wire; ``seen``: it is the one shown."""
 
     def close(self) -> None:
@@ -140,7 +140,7 @@ class SpecialFunctions:
     inside: bool = False
 
     @property
-    def shown(self) -> SpecialFunction:
+    def current(self) -> SpecialFunction:
         """The function that is shown."""
         return self.functions[self.at]
 
@@ -148,10 +148,10 @@ class SpecialFunctions:
         """Another function, seen from the list."""
         number = max(0, min(len(self.functions) - 1, number))
         if number != self.at or self.inside:
-            self.shown.desk.clear()
-            self.shown.left()
+            self.current.desk.clear()
+            self.current.left()
             self.at, self.inside = number, False
-            self.shown.opened()
+            self.current.opened()
 
     def enter(self, number: int) -> None:
         """Open a function: the keys are its own now."""
@@ -161,7 +161,7 @@ class SpecialFunctions:
     def typed(self, key: str) -> bool:
         """Arrows and figures in the list; in a function its own keys."""
         if self.inside:
-            return self.shown.typed(key)
+            return self.current.typed(key)
         if key in {"Up", "Down"}:
             self.show(self.at + (1 if key == "Down" else -1))
         elif key in {"Enter", "Tab"}:
@@ -174,11 +174,11 @@ class SpecialFunctions:
 
     def takes(self, key: str) -> bool:
         """Whether a character is text now."""
-        return self.shown.takes(key) if self.inside else key.isdigit()
+        return self.current.takes(key) if self.inside else key.isdigit()
 
     def escape(self) -> bool:
         """One step back; False from the list."""
-        shown = self.shown
+        shown = self.current
         if not self.inside:
             return False
         if shown.desk.notice:
@@ -190,17 +190,17 @@ class SpecialFunctions:
     def prompt(self) -> str:
         """Of the function, or how to choose one."""
         if self.inside:
-            return self.shown.prompt()
+            return self.current.prompt()
         return "ARROWS OR A FIGURE CHOOSE A FUNCTION, RETURN OPENS IT; ESC FOR AUTOMATIC"
 
     def opened(self) -> None:
         """The page comes up with the list."""
         self.inside = False
-        self.shown.opened()
+        self.current.opened()
 
     def leave(self) -> None:
         """The page goes: nothing stays open."""
-        self.shown.left()
+        self.current.left()
         self.inside = False
 
     def look(self) -> None:

@@ -128,14 +128,14 @@ class SpecialPage(ListPage):
         return taken
 
     def _page_instead(self) -> None:
-        shown = self.model.shown
+        shown = self.model.current
         if self.model.inside and shown.page:
             self.model.inside = False
             self.host.go(shown.page)
 
     def _chosen(self, row: int) -> None:
         self.model.inside = True
-        self.model.shown.choose(row)
+        self.model.current.choose(row)
         self._page_instead()
 
     def touched(self, key: str) -> None:
@@ -145,25 +145,25 @@ class SpecialPage(ListPage):
 
     def labels(self) -> tuple[str, ...]:
         """Those of the function that is shown, beside the page's own."""
-        return self.labels_of({}, self.model.shown.keys())
+        return self.labels_of({}, self.model.current.keys())
 
     def key_actions(self) -> KeyActions:
         """The keys of the function that is shown; pressing one goes into it."""
-        keys = self.model.shown.keys()
+        keys = self.model.current.keys()
         return {name: partial(self._do, name) for name in keys}
 
     def has_field(self) -> bool:
         """The question of a function that is open."""
-        return self.model.inside and self.model.shown.takes("1")
+        return self.model.inside and self.model.current.takes("1")
 
     def _do(self, name: str) -> None:
         self.model.inside = True
-        self.model.shown.keys()[name].action()
+        self.model.current.keys()[name].action()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
         """The table of this snapshot."""
         self.model.look()
-        shown = self.model.shown
+        shown = self.model.current
         sheet = shown.sheet(snapshot)
         self.items.mark = (self.model.at, self.model.inside)
         self.table.show_sheet(sheet)

@@ -40,7 +40,7 @@ class Diagnostic:
         """The sentence, and how often it would have to be said."""
         return self.message if self.count == 1 else f"{self.message} ({self.count} times)"
 
-    def shown(self, name: str) -> str:
+    def in_one_line(self, name: str) -> str:
         """The finding in the one line that goes to a person: place, weight, code, message, what to do."""
         place = f"{name}:{self.line}:{max(self.column, 1)}" if self.line else name
         hint = f" — {self.hint}" if self.hint else ""

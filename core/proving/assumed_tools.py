@@ -123,7 +123,7 @@ class Assumed:
     shape: ToolShape | None
     words: str
 
-    def sized(self, bore: Sequence[TipMove]) -> Assumed:
+    def with_diameter(self, bore: Sequence[TipMove]) -> Assumed:
         """A drill without a diameter gets one: just under what is cut in the ``bore`` behind it."""
         shape = self.shape
         if shape is None or not shape.turns_itself or shape.diameter:
@@ -134,7 +134,7 @@ class Assumed:
         words = f"{self.words}, its diameter as {diameter / 25.4:.3f} in"
         return Assumed(replace(shape, diameter=diameter), words)
 
-    def widened(self, use: ToolUse, threads: Sequence[TipMove]) -> Assumed:
+    def with_width(self, use: ToolUse, threads: Sequence[TipMove]) -> Assumed:
         """A grooving or parting tool without a width gets one: see ``groove_width``."""
         shape = self.shape
         if shape is None or shape.kind not in GROOVERS or shape.width:

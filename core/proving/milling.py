@@ -74,7 +74,7 @@ class Milling:
             return part.meets_axial(move.path - [0.0, 0.0, _DEEPER], radius, length, point)
         return part.meets_radial(move.path - [_DEEPER, 0.0, 0.0], radius, length, point=point)
 
-    def fallen(self, piece: Piece) -> Piece:
+    def less_milled(self, piece: Piece) -> Piece:
         """A piece that has just been parted off, less what live tools had taken out of it before it fell."""
         if not piece.outside:
             return piece

@@ -53,7 +53,7 @@ class PartFindings:
     silenced: Mapping[str, str] = field(default_factory=dict)  # why, by check
     parted_at: float | None = None  # Z of the deepest part-off
     _left: tuple[int, TipMove] | None = None  # T, and its part-off that has stopped before the axis
-    held: dict[tuple[str, int], Cut] = field(default_factory=dict)  # of chuck or tailstock, by check and line
+    into_clamping: dict[tuple[str, int], Cut] = field(default_factory=dict)  # by check and line
     _edges: EdgeChecks = field(init=False)
     _airs: AirChecks = field(init=False)
     _found: dict[tuple[str, int], Diagnostic] = field(default_factory=dict)
@@ -72,7 +72,7 @@ class PartFindings:
         self._tailstock = TurnedPart(tailstock, _CHUCK_STEP) if tailstock is not None else None
 
     @property
-    def found(self) -> tuple[Diagnostic, ...]:
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The findings, each once a line."""
         return tuple(self._found.values())
 
@@ -83,7 +83,7 @@ class PartFindings:
             self._found_by(move, self._airs.rapid(move, NOTHING, tool))
             self._before = move  # out of its groove, wherever round the part that ends
             return
-        self.threads.before(move, part)
+        self.threads.before_cut(move, part)
         met, struck = _executed(move, cutter, part)
         if struck:
             text = f"The holder of T{tool} runs into metal, {_depth(struck, move)}."
@@ -117,10 +117,10 @@ class PartFindings:
         if self.clamping is None:
             return
         if met := _reached(self._chuck, move, cutter):
-            self.held["into-chuck", move.line] = met
+            self.into_clamping["into-chuck", move.line] = met
             self._add("into-chuck", move, f"T{tool} runs into the chuck, {_depth(met, move)}.")
         if met := _reached(self._tailstock, move, cutter):
-            self.held["into-tailstock", move.line] = met
+            self.into_clamping["into-tailstock", move.line] = met
             self._add("into-tailstock", move, f"T{tool} runs into the tailstock, {_depth(met, move)}.")
         highest = self.clamping.max_rpm
         if highest and abs(move.rpm) > highest:

@@ -205,7 +205,7 @@ class PartHistory:
         done = self._done
         return self._instant(int(self._numbers[done - 1]) if done else 0, 0.0, None)
 
-    def made(self, instant: PartInstant) -> bool:
+    def is_current(self, instant: PartInstant) -> bool:
         """Whether the part is still as it was at this instant, the last that was given out."""
         return instant is self._last
 
@@ -218,7 +218,7 @@ class PartHistory:
             return solid_of(milling.field)
         return turned_solid(*instant.near)
 
-    def around(self, instant: PartInstant) -> Scene:
+    def scene_at(self, instant: PartInstant) -> Scene:
         """What stands round the part at an instant: chuck or collet, and the tool."""
         tool = instant.tool
         if tool is None or not (tool.cutting or tool.body):
@@ -246,19 +246,19 @@ class PartHistory:
 
     def _see(self, step: Step) -> None:
         """The next block; what it hits is kept, to be seen."""
-        making, known = self._making, len(self._making.findings.found)
+        making, known = self._making, len(self._making.findings.diagnostics)
         before = _copy_of(making.part)
         making.see(step)
-        for found in making.findings.found[known:]:
+        for found in making.findings.diagnostics[known:]:
             if found.severity is not Severity.ERROR:
                 continue
             hit = None
             if found.check in _OF_CLAMPING:
-                hit = self._held_hit(found, making.findings.held.get((found.check, found.line)))
+                hit = self._held_hit(found, making.findings.into_clamping.get((found.check, found.line)))
             elif found.check not in _OF_METAL:
                 pass
             elif isinstance(step, LiveStep):
-                hit = _milled_hit(found, making.met)
+                hit = _milled_hit(found, making.milled_last)
             elif before is not None and making.part is not None:
                 hit = _hit(found, before, making.part)
             if hit is not None:
@@ -289,7 +289,7 @@ class PartHistory:
                 making.see(cut)
         elif isinstance(under_way, LiveStep):
             making, place = self._milled(under_way, share), _at(under_way, share)
-        self._seen, found = making, making.findings.found
+        self._seen, found = making, making.findings.diagnostics
         near, far = _halves(making)
         return PartInstant(
             block=block,
@@ -303,7 +303,7 @@ class PartHistory:
                 self._hits[each.check, each.line] for each in found if (each.check, each.line) in self._hits
             ),
             findings=found,
-            pieces=making.fallen,
+            pieces=making.parted_off,
             clamping=self._clamping,
             is_open=making.is_open,
             reach=self._reach(under_way),

@@ -8,6 +8,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -242,7 +243,7 @@ class Tools:
         bore = [m for n, use in self.uses.items() if (s := self.shape(n)) and s.internal for m in use.moves]
         threads = [m for use in self.uses.values() for m in use.moves if m.kind is Kind.THREAD]
         for number, each in self.assumed.items():
-            self.assumed[number] = each.sized(bore).widened(self.uses[number], threads)
+            self.assumed[number] = each.with_diameter(bore).with_width(self.uses[number], threads)
 
     def shape(self, number: int) -> ToolShape | None:
         """The tool's shape; None for a bar stop, and where nothing is known that would cut."""
@@ -355,7 +356,7 @@ class Making:
         )
         self._unchecked = unchecked(tools.uses, setting.shapes, setting.clamping, setting.gang)
         self.milling: Milling | None = None  # from the first cut of a live tool on
-        self.met = NOTHING  # by the last block of a live tool
+        self.milled_last = NOTHING  # by the last block of a live tool
         self._turned = False  # the spindle has
         self._in_cut = False  # of a spindle that stands
         self._standing: dict[int, int] = {}  # by T: the first line that cuts while it stands again
@@ -372,7 +373,7 @@ class Making:
         return self._is_open
 
     @property
-    def fallen(self) -> int:
+    def parted_off(self) -> int:
         """How many pieces have been parted off."""
         return len(self._pieces) + (len(self.part.pieces) if self.part is not None else 0)
 
@@ -393,7 +394,7 @@ class Making:
         """The same once more, to be gone on with later; what never changes is shared."""
         found = self.findings
         shared: tuple[object, ...] = (self._tools, self._stock, found.clamping, found.neighbours)
-        shared += (*self._cutters.values(), *found.found)
+        shared += (*self._cutters.values(), *found.diagnostics)
         return copy.deepcopy(self, {id(each): each for each in shared})
 
     def see(self, step: Step) -> None:
@@ -443,10 +444,9 @@ class Making:
             self.milling = Milling(self.part)
         self._milled = True
         milling = self.milling
-        self.met = milling.cut(move, shape)
-        self.findings.milled(
-            move, self.met, shape, step.block.modal, self._tool, touches=lambda: milling.touches(move, shape)
-        )
+        self.milled_last = milling.cut(move, shape)
+        modal, touches = step.block.modal, partial(milling.touches, move, shape)
+        self.findings.milled(move, self.milled_last, shape, modal, self._tool, touches=touches)
 
     def mill_move(self, step: LiveStep) -> MillMove | None:
         """The way of a live tool in the part's frame; None where nothing is known that would cut."""
@@ -471,7 +471,7 @@ class Making:
         before = len(part.pieces)
         self.findings.look(move, cutter, part, self._tool)
         if self.milling is not None:
-            part.pieces[before:] = [self.milling.fallen(piece) for piece in part.pieces[before:]]
+            part.pieces[before:] = [self.milling.less_milled(piece) for piece in part.pieces[before:]]
         for piece in part.pieces[before:]:
             self.findings.parted(move, piece)
 
@@ -528,7 +528,7 @@ class Making:
             milled=self._milled,
             pieces=tuple(self._pieces),
             assumed=tuple(assumed),
-            findings=self.findings.found,
+            findings=self.findings.diagnostics,
             unchecked=(*self._unchecked, *_cut_standing(self._standing)),
             shapes={n: self._tools.shape(n) for n, use in self._tools.uses.items() if use.moves},
         )

@@ -46,7 +46,7 @@ UNKNOWN = Drives()
 
 @dataclass(slots=True)
 class ThreadChecks:
-    """Goes with the moves in their order; ``before`` and ``look`` stand around the cut of each.
+    """Goes with the moves in their order; ``before_cut`` and ``look`` stand around the cut of each.
 
     ``releases`` tells by T whether the holder of a tap turns it back, or lets it go, by itself.
     """
@@ -58,7 +58,7 @@ class ThreadChecks:
     _fed: TipMove | None = None  # the last feed of a tap into its hole
     _entry: float = 0.0  # Z of the metal that it has met first
 
-    def before(self, move: TipMove, part: TurnedPart) -> None:
+    def before_cut(self, move: TipMove, part: TurnedPart) -> None:
         """The radii of the metal, before the first pass of a thread is cut into it."""
         if move.kind is not Kind.THREAD or (self._crest is not None and self._crest[0] == move.line):
             return

@@ -180,7 +180,7 @@ def test_the_interrupted_program_keeps_its_name_and_its_file(
     files.opened()
     files.worker.settle(10)
     files.look()
-    files.choose([program.name for program in files.shown].index("PIN.NC"))
+    files.choose([program.name for program in files.listed].index("PIN.NC"))
     if question == "rename":
         files.changer.ask(RENAME)
     else:

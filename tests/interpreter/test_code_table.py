@@ -81,7 +81,7 @@ def test_the_example_proves(code: Code) -> None:
     }
     setup = setup_for(machine, tools={n: ToolOffset() for n in range(1, 9)}, secondary=secondary)
     report = prove(Source(code.name, code.program), setup, machine)
-    assert [d.shown("") for d in report.diagnostics if d.severity is Severity.ERROR] == []
+    assert [d.in_one_line("") for d in report.diagnostics if d.severity is Severity.ERROR] == []
     assert report.elementary > 0
 
 

@@ -177,13 +177,13 @@ def test_the_history_has_time_from_to_and_reason(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".5-.002", "", "")
     page.history.toggle()
-    assert page.history.shown is not None
-    at, which, change, why = page.history.in_words(page.history.shown[0])
+    assert page.history.listed is not None
+    at, which, change, why = page.history.in_words(page.history.listed[0])
     assert at.startswith("20")
     assert (which, why) == ("D1", "X .5-.002")
     assert change == "not set  →  X +0.24900  Z +0.00000  R 0.00000"
     assert page.escape()
-    assert page.history.shown is None
+    assert page.history.listed is None
 
 
 def test_a_change_loads_the_program_again(room: Room) -> None:

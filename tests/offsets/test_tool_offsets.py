@@ -261,8 +261,8 @@ def test_undo_and_history(room: Room) -> None:
     assert room.store.tools()[1].wear_x == 0.0
     assert room.desk.notice == "T1 TAKEN BACK"
     grid.history.toggle()
-    assert grid.history.shown is not None
-    at_, which, change, why = grid.history.in_words(grid.history.shown[1])
+    assert grid.history.listed is not None
+    at_, which, change, why = grid.history.in_words(grid.history.listed[1])
     assert (which, why) == ("T1", "WEAR X -.001")
     assert change == "WEAR X +0.00000 → −0.00100"
     assert at_.startswith("20")

@@ -55,7 +55,7 @@ def settled(player: PartPlayer) -> PartPlayer:
 
 
 def line(player: PartPlayer) -> int:
-    shown = settled(player).shown
+    shown = settled(player).played
     assert shown is not None
     return shown.instant.line
 
@@ -71,7 +71,7 @@ def test_without_a_program_nothing_is_shown_and_no_key_does_anything(player: Par
     player.step(1)
     player.to_line(3)
     player.look()
-    assert (player.shown, player.playing, player.t, player.behind) == (None, False, 0.0, False)
+    assert (player.played, player.playing, player.t, player.behind) == (None, False, 0.0, False)
 
 
 def test_a_program_that_is_taken_away_is_gone(player: PartPlayer) -> None:
@@ -79,7 +79,7 @@ def test_a_program_that_is_taken_away_is_gone(player: PartPlayer) -> None:
     settled(player)
     player.show(None)
     player.look()
-    assert player.shown is None
+    assert player.played is None
 
 
 def test_playing_begins_anew_at_the_end_and_goes_with_the_clock(player: PartPlayer, clock: Clock) -> None:
@@ -135,7 +135,7 @@ def test_to_a_line(player: PartPlayer) -> None:
     player.show(picture(SHAFT))
     player.to_line(6)
     assert line(player) == 6
-    shown = player.shown
+    shown = player.played
     assert shown is not None
     assert shown.instant.tool is not None
     assert shown.instant.tool.at == pytest.approx((-12.7, 10.16))
@@ -156,7 +156,7 @@ def test_the_run_is_followed_to_where_the_tool_is(player: PartPlayer) -> None:
     player.bound = True
     turning = player._picture.block_of_line(6) if player._picture else 0
     player.follow(turning, (0.55 * 25.4 / 2, 0.0))
-    shown = settled(player).shown
+    shown = settled(player).played
     assert shown is not None
     assert shown.instant.tool is not None
     assert shown.instant.tool.at == pytest.approx((-0.225 * 25.4, 10.16))
@@ -177,7 +177,7 @@ def test_what_cannot_be_made_is_told(player: PartPlayer, monkeypatch: pytest.Mon
     monkeypatch.setattr("core.proving.part_history.PartHistory.__init__", broken)
     player.show(picture(SHAFT))
     settled(player)
-    assert (player.shown, player.trouble) == (None, "no such tool")
+    assert (player.played, player.trouble) == (None, "no such tool")
 
 
 def test_a_program_with_errors_is_shown_as_far_as_it_goes(player: PartPlayer) -> None:
@@ -209,7 +209,7 @@ def test_of_a_program_that_is_too_long_the_view_says_why(
     assert views_of(made) == [(Aspect.PATH,)]
     player.show(made)
     assert player.trouble.startswith("12 blocks")
-    assert settled(player).shown is None
+    assert settled(player).played is None
 
 
 def test_blocks_before_a_line_are_those_of_the_lines_before() -> None:
@@ -244,7 +244,7 @@ def test_what_a_live_tool_hits_at_a_rapid_is_red_in_space(
 ) -> None:
     player.show(picture(program))
     player.look_at(SolidLook(SolidView(scale=5.0, centre=-10.0), 200, 150))
-    shown = settled(player).shown
+    shown = settled(player).played
     assert shown is not None
     assert shown.image is not None
     r, g = ((shown.image >> off) & 255 for off in (16, 8))

@@ -114,7 +114,7 @@ def test_the_worked_examples_have_no_error_by_a_check() -> None:
         pytest.skip(f"the worked examples are not here: {FOLDER}")
     for path in sorted(FOLDER.glob("*.nc")):
         report = proved(*path.read_text("utf-8").splitlines())
-        assert [d.shown(path.name) for d in report.errors if d.check] == []
+        assert [d.in_one_line(path.name) for d in report.errors if d.check] == []
 
 
 def test_json_names_check_block_and_count(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

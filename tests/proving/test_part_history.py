@@ -65,7 +65,7 @@ def test_any_block_in_any_order_is_as_made_straight_through(
         assert instant.near is not None
         np.testing.assert_array_equal(instant.near.low, made.part.low)
         np.testing.assert_array_equal(instant.near.high, made.part.high)
-        assert instant.findings == made.findings.found
+        assert instant.findings == made.findings.diagnostics
 
 
 def test_half_of_a_cut_has_taken_half_of_the_metal() -> None:
@@ -297,13 +297,13 @@ def test_copies_of_a_milled_part_share_what_nothing_has_touched(monkeypatch: pyt
 def test_what_stands_round_the_part() -> None:
     seen = history(MILLED, replace(MILL, clamping=Clamping(40.0, 30.0, 5.0, 30.0)))
     instant = seen.at(len(seen.steps))
-    around = seen.around(instant)
+    around = seen.scene_at(instant)
     assert around.chuck is not None
     assert around.chuck.radius == 20.0
     assert float(around.chuck.edges[-1]) == -30.0
     assert around.tool is not None
     assert around.tool.round is Round.ACROSS
-    assert history(MILLED, MILL).around(instant).chuck is None
+    assert history(MILLED, MILL).scene_at(instant).chuck is None
 
 
 @pytest.mark.parametrize(

@@ -81,7 +81,7 @@ class Bench:
         """Look until it is enough."""
         found: list[Reading | str] = []
         for _ in range(2000):
-            found += self.wire.taken()
+            found += self.wire.received()
             if enough(found):
                 return found
             if self.wire._thread is not None:
@@ -113,7 +113,7 @@ def listening(bench: Bench) -> None:
     while not found:
         bench.send(b"1 mm\r\n")
         bench.wire._thread.join(0.05)  # type: ignore[union-attr]
-        found = list(bench.wire.taken())
+        found = list(bench.wire.received())
     bench.send(b"9999 mm\r\n")
     bench.hears(lambda found: Reading(9999.0, "mm") in found)
 
@@ -172,4 +172,4 @@ def test_listening_ends(bench: Bench) -> None:
 def test_a_machine_without_a_gauge() -> None:
     none = NoGauge()
     assert "NAMES NO GAUGE" in none.turn()
-    assert list(none.taken()) == []
+    assert list(none.received()) == []

@@ -83,7 +83,7 @@ def test_a_name_is_found_by_typing_and_loaded_by_return(shop: Shop) -> None:
     assert any(isinstance(command, LoadJob) for command in shop.machine.posted)
     shop.sees(lambda: shop.journal is not None and any(row.proof for row in shop.journal.runs()))
     shop.open_list()
-    shop.sees(lambda: shop.list.model.here is not None and shop.list.model.here.run.proof == "PROVED")
+    shop.sees(lambda: shop.list.model.program is not None and shop.list.model.program.run.proof == "PROVED")
 
 
 def test_no_other_program_while_one_is_under_way_and_h_holds(shop: Shop) -> None:

@@ -64,7 +64,7 @@ def settled(day: Day) -> bool:
 
 def sheet(day: Day) -> Sheet:
     day.window.refresh()
-    return model(day).shown.sheet(day.shot)
+    return model(day).current.sheet(day.shot)
 
 
 def cells(day: Day) -> list[tuple[str, ...]]:
@@ -230,7 +230,7 @@ def test_what_a_correction_would_do_is_shown_before_it_is_taken_over(day: Day) -
     measured(day, ".5012", ".5012")
     day.key(Key.Key_Escape)
     day.sees(lambda: cells(day)[0][2] == "2")
-    shown = model(day).shown
+    shown = model(day).current
     assert isinstance(shown, ReadingsSection)
     assert (shown.chart_share, shown.drawing().plots) == (0.0, ())
     day.key(Key.Key_F8)
@@ -259,7 +259,7 @@ def test_a_refused_proposal_shows_no_effect(day: Day) -> None:
     day.key(Key.Key_Escape)
     day.key(Key.Key_F8)
     assert "dead band" in day.prompt
-    shown = model(day).shown
+    shown = model(day).current
     assert isinstance(shown, ReadingsSection)
     assert not shown.effect.stands
     assert shown.drawing().plots == ()
@@ -485,7 +485,7 @@ def test_a_reading_that_nobody_sees_is_not_kept(day: Day) -> None:
         def __init__(self) -> None:
             self.lines: list[Reading | str] = [Reading(0.5003, "in")]
 
-        def taken(self) -> list[Reading | str]:
+        def received(self) -> list[Reading | str]:
             taken, self.lines = self.lines, []
             return taken
 

@@ -41,12 +41,12 @@ def test_a_finding_stands_the_part_at_its_place(day: Day) -> None:
     day.sees(lambda: shown.path.shows_part)
     player = shown.path.player
     assert player is not None
-    day.sees(lambda: player.shown is not None and player.shown.instant.line == 11)
+    day.sees(lambda: player.played is not None and player.played.instant.line == 11)
     assert shown.model.marked == 1  # what weighs most, not the offset that nobody has set
     day.key(Key.Key_J)
-    day.sees(lambda: player.shown is not None and player.shown.instant.line == 10)
+    day.sees(lambda: player.played is not None and player.played.instant.line == 10)
     day.key(Key.Key_Return)
-    day.sees(lambda: player.shown is not None and player.shown.instant.line == 11)
+    day.sees(lambda: player.played is not None and player.played.instant.line == 11)
 
 
 def test_a_bar_is_said_by_fingers(day: Day) -> None:

@@ -123,7 +123,7 @@ def test_the_tool_stands_where_the_run_is(view: PathView) -> None:
     block = view.picture.block_of_line(6)
     view.show_tip(Tip(block, -0.225 * INCH, 0.4 * INCH))
     settled(view)
-    now = view.player.shown
+    now = view.player.played
     assert now is not None
     assert now.instant.tool is not None
     assert now.instant.tool.at == pytest.approx((-0.225 * INCH, 0.4 * INCH))
@@ -191,7 +191,7 @@ def test_nobody_makes_a_part_that_nobody_looks_at(view: PathView) -> None:
     view.advance()
     assert view.player is not None
     assert not view.player.worker.busy
-    assert view.player.shown is None
+    assert view.player.played is None
 
 
 # --- in space -----------------------------------------------------------------------------------------
@@ -208,7 +208,7 @@ def solid(view: PathView, program: str) -> QImage:
 def drawn(view: PathView) -> int:
     """How many pixels of the picture are part."""
     assert view.player is not None
-    now = view.player.shown
+    now = view.player.played
     assert now is not None
     assert now.image is not None
     return int((now.image >> 24 > 0).sum())
@@ -267,7 +267,7 @@ def test_without_metal_there_is_no_solid(view: PathView) -> None:
         view.next_view()
     settled(view)
     assert view.player is not None
-    now = view.player.shown
+    now = view.player.played
     assert now is not None
     assert now.image is None
 
@@ -300,8 +300,8 @@ def test_the_chuck_is_drawn_where_it_stands(view: PathView) -> None:
         view.next_view()
     image = settled(view)
     assert view.player is not None
-    assert view.player.shown is not None
-    stock = view.player.shown.instant.stock
+    assert view.player.played is not None
+    stock = view.player.played.instant.stock
     assert stock is not None
     edge = -8.0 / INCH, (stock.radius + 0.7) / INCH
     assert len(colour(view, image, *edge)) > 2  # a line, and hatching behind it

@@ -364,6 +364,6 @@ def test_the_stock_is_shown_as_the_line_finds_it(operator: Operator) -> None:
     player.settle(30.0)
     page_of(operator)
     player.settle(30.0)
-    assert player.shown is not None
-    assert player.shown.instant.block == plan.found.checkpoint.blocks
+    assert player.played is not None
+    assert player.played.instant.block == plan.found.checkpoint.blocks
     assert 0 < plan.found.checkpoint.blocks < len(operator.stage.desk.session.now.picture.line)

@@ -40,7 +40,7 @@ def opened(hands: Hands, program: str = "bushing") -> tuple[SpecialPage, SetupSh
     assert isinstance(page, SpecialPage)
     names = [function.name for function in page.model.functions]
     page.model.enter(names.index(SETUP))
-    function = page.model.shown
+    function = page.model.current
     assert isinstance(function, SetupSheetFunction)
     if program:
         hands.sees(lambda: function.made is not None)

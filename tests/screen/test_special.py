@@ -44,7 +44,7 @@ def test_the_list_is_walked_by_arrows_and_left_by_escape(hands: Hands) -> None:
     page = hands.frame.page
     assert isinstance(page, SpecialPage)
     hands.key(Key.Key_Down)
-    assert page.model.shown.name == "PARTS COUNTER"
+    assert page.model.current.name == "PARTS COUNTER"
     hands.key(Key.Key_Return)
     assert page.model.inside
     hands.key(Key.Key_Escape)

@@ -297,8 +297,8 @@ def test_who_only_looks_at_a_program_changes_nothing_on_the_desk(writer: Writer,
     assert model is not None
     for leaves in (Key.Key_F1, Key.Key_F3, Key.Key_Escape):
         writer.frame.go(page_table.PROGRAMS)
-        writer.sees(lambda: "other.nc" in [program.name for program in model.shown])
-        model.choose([program.name for program in model.shown].index("other.nc"))
+        writer.sees(lambda: "other.nc" in [program.name for program in model.listed])
+        model.choose([program.name for program in model.listed].index("other.nc"))
         writer.key(Key.Key_F3)
         writer.sees(lambda: writer.front == page_table.EDITOR and writer.editor.editor.name == "other.nc")
         writer.sees(lambda: writer.editor.editor.stage is Stage.OPEN)
@@ -338,9 +338,9 @@ def test_with_no_program_marked_f3_of_the_list_edits_nothing(writer: Writer, tmp
     writer.frame.go(page_table.PROGRAMS)
     model = writer.desk.attached(ProgramList)
     assert model is not None
-    writer.sees(lambda: bool(model.shown))
+    writer.sees(lambda: bool(model.listed))
     writer.type("NOSUCHNAME")
-    writer.sees(lambda: not model.shown)
+    writer.sees(lambda: not model.listed)
     writer.key(Key.Key_F3)
     assert writer.front == page_table.PROGRAMS
     assert writer.desk.notice == "NO PROGRAM IS MARKED"
