@@ -7,6 +7,7 @@ set -eu
 
 # shellcheck disable=SC2086
 system_packages ca-certificates $QT_LIBRARIES $WINDOW_LIBRARIES $STORY_PACKAGES
+optional_packages linuxcnc-uspace
 find_python
 python_environment "[dev]"
 

@@ -12,6 +12,7 @@ from datetime import UTC, datetime
 from types import FrameType
 from typing import TYPE_CHECKING
 
+from app.cli.machine_hal import add_hal_parser, write_hal
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ def add_parser(subparsers: SubParsers) -> None:
     peer.add_argument("file", metavar="FILE", help="such as gt75-bench.toml")
     accept = actions.add_parser("accept", help="show what has changed in a machine file, and accept it")
     accept.add_argument("file", metavar="FILE")
+    add_hal_parser(actions)
     model = actions.add_parser(
         "mtconnect", help="print the device model (Devices.xml) for an MTConnect agent"
     )
@@ -47,6 +49,8 @@ def run(args: argparse.Namespace) -> int:
     """Checks the file and what it connects to: 0 all is well, 1 something does not answer, 2 bad file."""
     if args.action == "check":
         return check(args.file, json_wanted=args.json)
+    if args.action == "hal":
+        return write_hal(args)
     acts = {"peer": play, "mtconnect": write_model, "accept": accept}
     return acts[args.action](args.file)
 

@@ -11,6 +11,7 @@ from core.table_schema import Driver, Finding, MachineFileError, written
 from drivers.canopen import canopen_table
 from drivers.grblhal import grblhal_table
 from drivers.hal import hal_table
+from drivers.hal.boards import board_table
 from drivers.inverter import inverter_table
 from drivers.mtconnect import mtconnect_table
 from drivers.pendant import pendant_table
@@ -25,6 +26,7 @@ _ENTRIES = (
     (inverter_table.DRIVER, ""),
     (grblhal_table.DRIVER, "grblhal_backend"),
     (hal_table.DRIVER, "hal_backend"),
+    (board_table.DRIVER, ""),
     (serial_table.DRIVER, ""),
     (gauge_table.DRIVER, ""),
     (setter_table.DRIVER, ""),

@@ -37,6 +37,17 @@ system_packages() {
     as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
 }
 
+optional_packages() {
+    # What a test can be skipped without: where apt has it not, or nobody may install, it is said and left out.
+    command -v apt-get >/dev/null || return 0
+    for package in "$@"; do
+        installed "$package" && continue
+        say "Installing $package (tests that need it are skipped without)"
+        (missing=$package; as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq \
+            --no-install-recommends "$package" >/dev/null) || say "$package cannot be installed here"
+    done
+}
+
 new_enough() { "$1" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; }
 
 usable_python() { new_enough "$1" && "$1" -c 'import ensurepip, venv' 2>/dev/null; }

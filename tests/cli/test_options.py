@@ -89,6 +89,8 @@ COVERED = {
     ("offsets undo", "--why"): "tests/cli/test_offsets.py",
     ("store verify", "--json"): "tests/cli/test_store.py",
     ("machine check", "--json"): "tests/cli/test_machine.py",
+    ("machine hal", "--out"): "tests/cli/test_machine_hal.py",
+    ("machine hal", "--json"): "tests/cli/test_machine_hal.py",
     ("alarms", "--json"): "tests/cli/test_alarms.py",
     ("parts", "--csv"): "tests/cli/test_parts.py",
     ("parts", "--json"): "tests/cli/test_parts.py",

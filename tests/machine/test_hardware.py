@@ -69,6 +69,10 @@ def test_shipped_bus_in_model_units() -> None:
         "gt75-vfd.toml",
         "gt75-bench.toml",
         "gt75-hal.toml",
+        "gt75-parport.toml",
+        "gt75-mesa-7i76e.toml",
+        "gt75-mesa-7i97.toml",
+        "gt75-ethercat.toml",
     ],
 )
 def test_every_shipped_file_is_good(name: str) -> None:

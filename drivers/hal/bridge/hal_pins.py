@@ -77,7 +77,7 @@ def trouble(wanted: Wanted, pins: Mapping[str, Pin], signals: Mapping[str, Signa
     kind = pin.kind if pin is not None else signal.kind if signal is not None else ""
     if kind != wanted.kind:
         return f"is {kind}, expected {wanted.kind}"
-    if pin is not None and _wrong_way(wanted, pin):
+    if pin is not None and _wrong_way(wanted, pin, signals):
         expected = "an input, which this control drives" if wanted.drives else "an output, which it reads"
         return f"is an {'output' if pin.way == _OUT else 'input'}, expected {expected}"
     if wanted.drives and pin is not None and pin.signal and signals.get(pin.signal, Signal("", False)).driven:
@@ -93,11 +93,11 @@ def is_on(name: str, pins: Mapping[str, Pin], signals: Mapping[str, Signal]) -> 
     return found.value == "TRUE"
 
 
-def _wrong_way(wanted: Wanted, pin: Pin) -> bool:
-    """An input on a signal may be read all the same: what it hears is heard."""
+def _wrong_way(wanted: Wanted, pin: Pin, signals: Mapping[str, Signal]) -> bool:
+    """An input on a signal that something drives may be read all the same: what it hears is heard."""
     if wanted.drives:
         return pin.way == _OUT
-    return pin.way == _IN and not pin.signal
+    return pin.way == _IN and not signals.get(pin.signal, Signal("", False)).driven
 
 
 def nets(

@@ -1,0 +1,330 @@
+"""[board] of the machine file: what ``turndesk machine hal`` writes the HAL file of LinuxCNC for.
+
+[hal] says at which pins or signals this control begins; [board] says what lies behind them. Scales follow
+from ``axis.….count`` and ``spindle.encoder_ppr``, which the machine file has to say anyway.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from core.table_schema import (
+    Driver,
+    DriverTable,
+    Field,
+    FileReading,
+    Finding,
+    Kind,
+    Unit,
+    expected_table,
+    read_named,
+    read_table,
+    unknown_keys,
+)
+
+SIM, PARPORT, MESA_STEP, MESA_SERVO, ETHERCAT = "sim", "parport", "mesa-7i76e", "mesa-7i97", "ethercat"
+KINDS = (SIM, PARPORT, MESA_STEP, MESA_SERVO, ETHERCAT)
+_AXES, _SPINDLE = "board.axis", "board.spindle"
+_NS = {"low": 100, "high": 1_000_000}
+_GAIN = {"low": 0.0, "high": 100_000.0, "default": 0.0}
+_CHANNEL = {"low": 0, "high": 63, "default": -1}
+_FIELDS = (
+    Field("kind", Kind.CHOICE, choices=KINDS),
+    Field("address", Kind.TEXT, default=""),
+    Field("base_us", Kind.WHOLE, low=10, high=500, default=50),  # period of a parallel port's steps
+)
+_HEX = (Field("vendor", Kind.TEXT, default=""), Field("product", Kind.TEXT, default=""))
+_AXIS = (
+    Field("channel", Kind.WHOLE, **_CHANNEL),  # type: ignore[arg-type]
+    Field("reversed", Kind.FLAG, default=False),
+    Field("mode", Kind.CHOICE, choices=("velocity", "position"), default="velocity"),
+    Field("step_ns", Kind.WHOLE, **_NS, default=5000),  # type: ignore[arg-type]
+    Field("space_ns", Kind.WHOLE, **_NS, default=5000),  # type: ignore[arg-type]
+    Field("setup_ns", Kind.WHOLE, **_NS, default=10000),  # type: ignore[arg-type]
+    Field("hold_ns", Kind.WHOLE, **_NS, default=10000),  # type: ignore[arg-type]
+    Field("step", Kind.TEXT, default=""),
+    Field("direction", Kind.TEXT, default=""),
+    Field("fault_input", Kind.TEXT, default=""),
+    Field("full_speed", Kind.NUMBER, Unit.FEED, 0.1, 10_000.0, default=0.0),
+    *(Field(key, Kind.NUMBER, **_GAIN) for key in ("p", "i", "d", "ff2")),  # type: ignore[arg-type]
+    *_HEX,
+)
+_TURNS = (
+    Field("channel", Kind.WHOLE, **_CHANNEL),  # type: ignore[arg-type]
+    Field("encoder", Kind.WHOLE, **_CHANNEL),  # type: ignore[arg-type]
+    Field("reversed", Kind.FLAG, default=False),
+    Field("full_speed", Kind.NUMBER, Unit.RPM, 1.0, 100_000.0, default=0.0),
+    Field("pwm", Kind.TEXT, default=""),
+    Field("pwm_hz", Kind.WHOLE, low=10, high=50_000, default=1000),
+    *(Field(key, Kind.TEXT, default="") for key in ("phase_a", "phase_b", "phase_z")),
+    Field("velocity_per_rpm", Kind.NUMBER, low=1e-6, high=1e7, default=0.0),
+    *_HEX,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class BoardAxis:
+    """One axis behind a board. Speeds in mm/s, pulse times in nanoseconds; gains by LinuxCNC's ``pid``.
+
+    ``channel`` is the step generator, the encoder and analog output, or the drive's place on EtherCAT; -1:
+    not said. ``full_speed`` is what the drive makes of 10 V; ``step`` and ``direction`` are pins of a
+    parallel port.
+    """
+
+    channel: int
+    reversed: bool
+    mode: str
+    step_ns: int
+    space_ns: int
+    setup_ns: int
+    hold_ns: int
+    step: str
+    direction: str
+    fault_input: str
+    full_speed: float
+    p: float
+    i: float
+    d: float
+    ff2: float
+    vendor: str
+    product: str
+
+
+@dataclass(frozen=True, slots=True)
+class BoardSpindle:
+    """The spindle behind a board. ``full_speed`` rpm is what its drive makes of 10 V.
+
+    ``velocity_per_rpm`` is what object 60FF of a drive on EtherCAT counts for one rpm; ``pwm`` and the phases
+    are pins of a parallel port.
+    """
+
+    channel: int
+    encoder: int
+    reversed: bool
+    full_speed: float
+    pwm: str
+    pwm_hz: int
+    phase_a: str
+    phase_b: str
+    phase_z: str
+    velocity_per_rpm: float
+    vendor: str
+    product: str
+
+
+@dataclass(frozen=True, slots=True)
+class BoardTable:
+    """What the HAL file is written for. ``address``: of an Ethernet card or a parallel port."""
+
+    kind: str
+    address: str
+    base_us: int
+    axes: Mapping[str, BoardAxis]
+    spindle: BoardSpindle
+
+
+def _read(file: FileReading) -> Iterator[Finding]:
+    axes, spindle = file.raw(_AXES), file.raw(_SPINDLE)
+    if isinstance(axes, dict):
+        yield from unknown_keys(axes, list(file.axes), _AXES)
+        axes = {name: entry for name, entry in axes.items() if name in file.axes}
+    yield from read_named({} if axes is None else axes, _AXIS, _AXES, file.values)
+    if spindle is None or isinstance(spindle, dict):
+        yield from read_table(spindle or {}, _TURNS, _SPINDLE, file.values)
+    else:
+        yield expected_table(_SPINDLE, spindle)
+
+
+def _table(file: FileReading) -> BoardTable:
+    axes = {name: file.values.model(BoardAxis, f"{_AXES}.{name}") for name in file.names(_AXES)}
+    return file.values.model(
+        BoardTable, "board", axes=axes, spindle=file.values.model(BoardSpindle, _SPINDLE)
+    )
+
+
+# --- What each kind of board has to be told.
+
+
+_ADDRESS = {
+    PARPORT: (
+        re.compile(r"0x[0-9a-fA-F]{3,4}"),
+        'expected the port\'s address, "0x378" for the first on board',
+    ),
+    MESA_STEP: (
+        re.compile(r"\d{1,3}(\.\d{1,3}){3}"),
+        'expected the card\'s address, such as "192.168.1.121"',
+    ),
+    MESA_SERVO: (re.compile(r"\d{1,3}(\.\d{1,3}){3}"), 'expected the card\'s address, such as "10.10.10.10"'),
+}
+_CHANNELS = {MESA_STEP: range(5), MESA_SERVO: range(4), ETHERCAT: range(64)}
+_WHAT = {
+    MESA_STEP: "a step generator of the 7I76E, 0…4",
+    MESA_SERVO: "an analog output and encoder of the 7I97 with the common enable, 0…3",
+    ETHERCAT: "the drive's place on the bus, from 0",
+}
+_NUMBER = re.compile(r"0x[0-9a-fA-F]{1,8}")
+
+
+def _rules(file: FileReading) -> Iterator[Finding]:
+    values = file.values
+    if "board" not in file.tables or not values.has("board.kind"):
+        return
+    kind = values.text("board.kind")
+    if "hal" not in file.tables:
+        yield Finding("hal", "", "missing; [board] is what lies behind the pins that [hal] names")
+    if kind in _ADDRESS and values.has("board.address"):
+        form, expected = _ADDRESS[kind]
+        if not form.fullmatch(values.text("board.address")):
+            yield Finding("board.address", values.text("board.address"), expected)
+    for axis in file.names("hal.axes"):
+        if kind != SIM and axis in file.axes:
+            yield from _axis_rules(file, kind, axis)
+    yield from _channels_apart(file, kind)
+    if kind != SIM and values.says("spindle.driver", "hal"):
+        yield from _spindle_rules(file, kind)
+    if kind != SIM:
+        yield from _encoder_rules(file, kind)
+
+
+def _axis_rules(file: FileReading, kind: str, axis: str) -> Iterator[Finding]:
+    values, path = file.values, f"{_AXES}.{axis}"
+    if axis not in file.names(_AXES):
+        if path not in values.wrong:
+            yield Finding(path, "", f"missing; what of the board moves {axis}")
+        return
+    if kind in _CHANNELS and values.has(f"{path}.channel"):
+        channel = values.whole(f"{path}.channel")
+        if channel not in _CHANNELS[kind]:
+            said = "" if channel < 0 else str(channel)
+            yield Finding(f"{path}.channel", said, f"{_missing(said)}expected {_WHAT[kind]}")
+    yield from _stated(file, kind, path)
+    if kind in (PARPORT, MESA_STEP):
+        yield from _step_rate(file, kind, axis)
+    if kind == MESA_SERVO:
+        yield from _fast_enough(file, axis)
+
+
+def _missing(said: str) -> str:
+    return "" if said else "missing; "
+
+
+_STATED: Mapping[str, tuple[tuple[str, str], ...]] = {
+    PARPORT: (("step", "the pin of its steps"), ("direction", "the pin of its direction")),
+    MESA_SERVO: (("full_speed", "its speed at 10 V"), ("p", "the gain of its pid, 1/s: measure it")),
+    ETHERCAT: (("vendor", "the drive's vendor, 0x…"), ("product", "the drive's product code, 0x…")),
+}
+
+
+def _stated(file: FileReading, kind: str, path: str) -> Iterator[Finding]:
+    """What this kind of board cannot do without."""
+    for key, what in _STATED.get(kind, ()):
+        place = f"{path}.{key}"
+        if not file.values.has(place):
+            continue
+        said = file.values.found[place]
+        if not said:
+            yield Finding(place, "", f"missing; expected {what}")
+        elif key in ("vendor", "product") and not _NUMBER.fullmatch(str(said)):
+            yield Finding(place, str(said), 'expected a number as `ethercat slaves -v` has it: "0x0000026c"')
+
+
+def _step_rate(file: FileReading, kind: str, axis: str) -> Iterator[Finding]:
+    """Steps that the board cannot make are lost without a word."""
+    values, path = file.values, f"{_AXES}.{axis}"
+    needed = (
+        f"axis.{axis}.vmax",
+        f"axis.{axis}.count",
+        "board.base_us",
+        f"{path}.step_ns",
+        f"{path}.space_ns",
+    )
+    if not values.has(*needed):
+        return
+    rate = values.number(needed[0]) / values.number(needed[1])
+    if kind == PARPORT:
+        most = 1e6 / values.number("board.base_us")
+        of = f"a parallel port with base_us = {values.whole('board.base_us')}"
+    else:
+        most = 1e9 / (values.number(needed[3]) + values.number(needed[4]))
+        of = "step_ns and space_ns"
+    if rate * 1.2 > most:  # the limit of what drives it stands a fifth above vmax
+        yield Finding(
+            f"axis.{axis}.vmax", "", f"asks for {rate:.0f} steps/s; {of} make {most / 1.2:.0f} at the most"
+        )
+
+
+def _fast_enough(file: FileReading, axis: str) -> Iterator[Finding]:
+    values, path = file.values, f"{_AXES}.{axis}.full_speed"
+    if values.has(path, f"axis.{axis}.vmax") and 0.0 < values.number(path) < values.number(
+        f"axis.{axis}.vmax"
+    ):
+        yield Finding(path, "", f"expected axis.{axis}.vmax or more: 10 V is all that the board has")
+
+
+def _channels_apart(file: FileReading, kind: str) -> Iterator[Finding]:
+    """Two things on one channel."""
+    values = file.values
+    paths = [f"{_AXES}.{axis}.channel" for axis in file.names(_AXES)]
+    if kind in (MESA_SERVO, ETHERCAT):
+        paths.append(f"{_SPINDLE}.channel")
+    taken: dict[int, str] = {}
+    for path in paths:
+        channel = values.whole(path) if values.has(path) else -1
+        if channel >= 0 and (first := taken.setdefault(channel, path)) != path:
+            yield Finding(path, str(channel), f"expected a channel of its own; {first} has it")
+
+
+def _spindle_rules(file: FileReading, kind: str) -> Iterator[Finding]:
+    """A speed that is told needs its scale, and an analog output something that tells it."""
+    values = file.values
+    speeds = ("hal.spindle.speed", "hal.spindle.speed_abs")
+    if not values.has(
+        *speeds, f"{_SPINDLE}.full_speed", f"{_SPINDLE}.velocity_per_rpm", f"{_SPINDLE}.channel"
+    ):
+        return
+    told = any(values.text(path) for path in speeds)
+    scale = "velocity_per_rpm" if kind == ETHERCAT else "full_speed"
+    scaled = values.number(f"{_SPINDLE}.{scale}")
+    if told and not scaled:
+        what = "what 60FF counts for one rpm" if kind == ETHERCAT else "the speed at 10 V, rpm"
+        yield Finding(f"{_SPINDLE}.{scale}", "", f"missing; expected {what}")
+    if scaled and not told:
+        yield Finding(speeds[0], "", f"missing; {_SPINDLE}.{scale} says that there is an output for it")
+    channel = values.whole(f"{_SPINDLE}.channel")
+    if told and kind == MESA_SERVO and channel not in (4, 5):
+        said = "" if channel < 0 else str(channel)
+        why = "an analog output with an enable of its own, 4 or 5"
+        yield Finding(f"{_SPINDLE}.channel", said, f"{_missing(said)}expected {why}")
+    if told and kind == ETHERCAT:
+        if channel < 0:
+            yield Finding(f"{_SPINDLE}.channel", "", f"missing; expected {_WHAT[kind]}")
+        yield from _stated(file, kind, _SPINDLE)
+
+
+def _encoder_rules(file: FileReading, kind: str) -> Iterator[Finding]:
+    """The scale of an encoder is said with it, and its channel too."""
+    values = file.values
+    if not values.has("spindle.encoder_ppr", "hal.spindle.position", f"{_SPINDLE}.encoder"):
+        return
+    has, read = values.number("spindle.encoder_ppr"), values.text("hal.spindle.position")
+    if read and not has:
+        yield Finding(
+            "spindle.encoder_ppr", "0", "expected the lines of the encoder that hal.spindle.position reads"
+        )
+    most = {MESA_STEP: 0, MESA_SERVO: 5}.get(kind)
+    channel = values.whole(f"{_SPINDLE}.encoder")
+    if read and has and most is not None and not 0 <= channel <= most:
+        said = "" if channel < 0 else str(channel)
+        what = "0, the one encoder of the 7I76E" if most == 0 else "an encoder of the 7I97, 0…5"
+        yield Finding(f"{_SPINDLE}.encoder", said, f"{_missing(said)}expected {what}")
+    if read and has and kind == PARPORT:
+        for key in ("phase_a", "phase_b"):
+            if values.has(f"{_SPINDLE}.{key}") and not values.text(f"{_SPINDLE}.{key}"):
+                yield Finding(
+                    f"{_SPINDLE}.{key}", "", "missing; expected the encoder's pin of the parallel port"
+                )
+
+
+DRIVER = Driver(tables=(DriverTable("board", _FIELDS, _table, ("axis", "spindle"), _read, _rules),))

@@ -1,0 +1,158 @@
+"""HAL file and bus description of a lathe with EtherCAT drives: lcec, cia402, cyclic synchronous position."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from drivers.hal.boards.hal_lines import HalFile, Lathe, LatheAxis, Terminal
+
+XML = "ethercat-conf.xml"
+_IO = re.compile(r"lcec\.0\.(DI\.din-([0-7])(?:-not)?|DO\.dout-([0-7]))")
+_OUT = (("6040", 16, "cia-controlword", "u32"), ("6060", 8, "opmode", "s32"),
+        ("607A", 32, "target-position", "s32"), ("60FF", 32, "target-velocity", "s32"))  # fmt: skip
+_IN = (("6041", 16, "cia-statusword", "u32"), ("6061", 8, "opmode-display", "s32"),
+       ("6064", 32, "actual-position", "s32"), ("606C", 32, "actual-velocity", "s32"))  # fmt: skip
+
+
+def ethercat_lathe(lathe: Lathe) -> HalFile:
+    """Drives in CSP, a spindle in CSV, one EL1008 and one EL2008 behind them."""
+    hint = "a terminal of the bus: lcec.0.DI.din-0 … din-7 (EL1008), lcec.0.DO.dout-0 … dout-7 (EL2008)"
+    file = HalFile(lathe, "EtherCAT drives in cyclic synchronous position", _terminal, hint)
+    file.notes += [
+        "not in Debian, to be built: the EtherCAT master, linuxcnc-ethercat (lcec) and hal-cia402",
+        "vendor, product, place of every slave: ethercat slaves -v; mapping and clock: the drive's manual",
+        "axis.….count: increments of 6064 against a dial gauge, 10 mm of jog; X counts on the radius",
+        "following error window (6065) in the drive too; what it does when the bus falls silent: quick stop",
+        "spindle: what 60FF counts for one rpm, and the sign; 6064 is 32 bits wide and goes round",
+    ]
+    drives = [axis.name.lower() for axis in lathe.axes]
+    if _turned(lathe):
+        drives.append("spindle")
+    _load(file, drives)
+    for axis in lathe.axes:
+        _axis(file, axis)
+    file.section("Power of the drives")
+    file.enable(*(f"cia402.{axis.name.lower()}.enable" for axis in lathe.axes))
+    if _turned(lathe):
+        _spindle(file)
+    file.rest()
+    file.beside[XML] = bus_xml(lathe)
+    return file
+
+
+def _turned(lathe: Lathe) -> bool:
+    return lathe.board.spindle.channel >= 0
+
+
+def _load(file: HalFile, drives: list[str]) -> None:
+    lathe = file.lathe
+    file.load(f"loadrt threads name1={lathe.thread} period1={lathe.period * 1e9:.0f}")
+    file.load(f"loadusr -W lcec_conf {XML}", "the bus, as the file beside this one describes it")
+    file.load("loadrt lcec")
+    file.load(f"loadrt cia402 names={','.join(f'cia402.{name}' for name in drives)}")
+    if "spindle" in drives:
+        file.load("loadrt scale names=spindle-per-s")
+    file.first += ["lcec.read-all", *(f"cia402.{name}.read-all" for name in drives)]
+    file.first += ["spindle-per-s"] * ("spindle" in drives)
+    file.last += [*(f"cia402.{name}.write-all" for name in drives), "lcec.write-all"]
+
+
+def _terminal(name: str) -> Terminal | None:
+    found = _IO.fullmatch(name)
+    if found is None:
+        return None
+    drives = found[3] is not None
+    number = int(found[3] if drives else found[2])
+    return Terminal(drives, f"{'EL2008' if drives else 'EL1008'} channel {number + 1}")
+
+
+def _drive(file: HalFile, name: str) -> None:
+    """The objects of one drive on its component."""
+    file.net(f"{name}-statusword", f"lcec.0.{name}.cia-statusword", f"cia402.{name}.statusword")
+    file.net(f"{name}-opmode-display", f"lcec.0.{name}.opmode-display", f"cia402.{name}.opmode-display")
+    file.net(f"{name}-drv-pos", f"lcec.0.{name}.actual-position", f"cia402.{name}.drv-actual-position")
+    file.net(f"{name}-drv-vel", f"lcec.0.{name}.actual-velocity", f"cia402.{name}.drv-actual-velocity")
+    file.net(f"{name}-controlword", f"cia402.{name}.controlword", f"lcec.0.{name}.cia-controlword")
+    file.net(f"{name}-opmode", f"cia402.{name}.opmode", f"lcec.0.{name}.opmode")
+    file.net(f"{name}-target-pos", f"cia402.{name}.drv-target-position", f"lcec.0.{name}.target-position")
+    file.net(f"{name}-target-vel", f"cia402.{name}.drv-target-velocity", f"lcec.0.{name}.target-velocity")
+
+
+def _axis(file: HalFile, axis: LatheAxis) -> None:
+    board, name, path = file.lathe.board.axes[axis.name], axis.name.lower(), f"hal.axes.{axis.name}"
+    place, pin = f"slave {board.channel}", f"cia402.{axis.name.lower()}"
+    file.section(f"Axis {axis.name}: slave {board.channel}, cyclic synchronous position")
+    file.setp(f"{pin}.csp-mode", 1)
+    file.setp(
+        f"{pin}.pos-scale", (-1.0 if board.reversed else 1.0) / axis.count, "increments a mm: 1 / count"
+    )
+    file.setp(
+        f"{pin}.auto-fault-reset", 1, "a fault is reset when power is asked for again, by Reset and DRIVES ON"
+    )
+    _drive(file, name)
+    file.role(f"{path}.command", f"{name}-pos-cmd", f"{pin}.pos-cmd", place=place, needed=True)
+    file.role(f"{path}.feedback", f"{name}-pos-fb", f"{pin}.pos-fb", place=place, needed=True)
+    file.role(f"{path}.fault", f"{name}-fault", f"{pin}.drv-fault", place=place)
+
+
+def _spindle(file: HalFile) -> None:
+    board, pin = file.lathe.board.spindle, "cia402.spindle"
+    place, sign = f"slave {board.channel}", -1.0 if board.reversed else 1.0
+    file.section(f"Spindle: slave {board.channel}, cyclic synchronous velocity")
+    file.setp(f"{pin}.csp-mode", 0)
+    file.setp(f"{pin}.velo-scale", sign * board.velocity_per_rpm, "what 60FF and 606C count for one rpm")
+    if file.lathe.encoder_lines:
+        file.setp(
+            f"{pin}.pos-scale", sign * 4 * file.lathe.encoder_lines, "increments of 6064 a turn: 4 x lines"
+        )
+        file.role("hal.spindle.position", "spindle-turns", f"{pin}.pos-fb", place=place)
+    _drive(file, "spindle")
+    file.setp("spindle-per-s.gain", 1.0 / 60.0)
+    file.net("spindle-rpm-fb", f"{pin}.velocity-fb", "spindle-per-s.in")
+    file.role("hal.spindle.velocity", "spindle-rps", "spindle-per-s.out", place=place)
+    file.role("hal.spindle.speed", "spindle-rpm-cmd", f"{pin}.velocity-cmd", place=place, needed=True)
+    file.role("hal.spindle.on", "spindle-on", f"{pin}.enable", place=place, needed=True)
+    file.role("hal.spindle.fault", "spindle-fault", f"{pin}.drv-fault", place=place)
+
+
+# --- The bus.
+
+
+def bus_xml(lathe: Lathe) -> str:
+    """What lcec_conf is given: the drives by their places on the bus, then the terminals behind a coupler."""
+    lines = [
+        "<masters>",
+        f'  <master idx="0" appTimePeriod="{lathe.period * 1e9:.0f}" refClockSyncCycles="1">',
+    ]
+    slaves = [(lathe.board.axes[axis.name], axis.name.lower()) for axis in lathe.axes]
+    drives = [(board.channel, board.vendor, board.product, name) for board, name in slaves]
+    spindle = lathe.board.spindle
+    if _turned(lathe):
+        drives.append((spindle.channel, spindle.vendor, spindle.product, "spindle"))
+    for place, vendor, product, name in sorted(drives):
+        lines += _slave(place, vendor, product, name)
+    behind = 1 + max(place for place, *_ in drives)
+    if any(_IO.fullmatch(name) for name in lathe.names.values()):
+        lines += [
+            f'    <slave idx="{behind}" type="EK1100" name="coupler"/>',
+            f'    <slave idx="{behind + 1}" type="EL1008" name="DI"/>',
+            f'    <slave idx="{behind + 2}" type="EL2008" name="DO"/>',
+        ]
+    return "\n".join((*lines, "  </master>", "</masters>", ""))
+
+
+def _slave(place: int, vendor: str, product: str, name: str) -> Iterator[str]:
+    """One drive; halPin are the pins that the HAL file wires."""
+    ids = f'vid="{int(vendor, 16):08X}" pid="{int(product, 16):08X}"'
+    yield f'    <slave idx="{place}" type="generic" {ids} name="{name}" configPdos="true">'
+    yield '      <dcConf assignActivate="300" sync0Cycle="*1" sync0Shift="0"/>'
+    for number, way, pdo, objects in ((2, "out", "1600", _OUT), (3, "in", "1a00", _IN)):
+        yield f'      <syncManager idx="{number}" dir="{way}">'
+        yield f'        <pdo idx="{pdo}">'
+        for index, bits, pin, kind in objects:
+            words = f'idx="{index}" subIdx="00" bitLen="{bits}" halPin="{pin}" halType="{kind}"'
+            yield f"          <pdoEntry {words}/>"
+        yield "        </pdo>"
+        yield "      </syncManager>"
+    yield "    </slave>"

@@ -1,0 +1,284 @@
+"""A HAL file as it is put together: what is loaded, called, set and wired, with what each is for."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import PurePath
+from typing import NamedTuple
+
+from core.table_schema import Finding, written
+from drivers.hal.boards.board_table import BoardTable
+
+MARK = "#turndesk"
+_WIDTH = 110
+
+
+@dataclass(frozen=True, slots=True)
+class LatheAxis:
+    """One axis that HAL moves: mm or degrees, and seconds. ``count`` is the way of one count or step."""
+
+    name: str
+    count: float
+    vmax: float
+    amax: float
+
+
+@dataclass(frozen=True, slots=True)
+class Lathe:
+    """What of a machine its HAL file depends on.
+
+    ``names`` are the pins and signals that the machine file names, by their keys, in its order. ``period`` is
+    that of the servo thread, s.
+    """
+
+    name: str
+    source: str
+    board: BoardTable
+    thread: str
+    period: float
+    axes: tuple[LatheAxis, ...]
+    rpm_max: float
+    rpm_accel: float
+    encoder_lines: int
+    names: Mapping[str, str]
+
+
+class Terminal(NamedTuple):
+    """A terminal of a board: ``drives`` where this control switches it, ``place`` what is printed at it."""
+
+    drives: bool
+    place: str
+
+
+class Wire(NamedTuple):
+    """One row of the wiring table. ``names`` are keys of the machine file."""
+
+    place: str
+    pin: str
+    signal: str
+    names: tuple[str, ...]
+
+
+class Section(NamedTuple):
+    """Lines that belong together, under a title."""
+
+    title: str
+    lines: list[str]
+
+
+_READS = re.compile(
+    r"io\.in\..*|io\.analog\..*|hal\.axes\.\w+\.(feedback|fault|home|limit_low|limit_high|index_enable)"
+    r"|hal\.spindle\.(position|velocity|at_speed|fault|in_position_mode|index_enable)"
+)
+
+
+@dataclass(slots=True)
+class HalFile:
+    """One HAL file. ``terminal`` says what a pin of the board is, None for what is none of its terminals."""
+
+    lathe: Lathe
+    title: str
+    terminal: Callable[[str], Terminal | None]
+    hint: str = ""  # what the board's terminals are called
+    notes: list[str] = field(default_factory=list)  # what has to be measured or known before anything moves
+    loads: list[str] = field(default_factory=list)
+    base: list[str] = field(default_factory=list)  # called in the thread of the steps
+    first: list[str] = field(default_factory=list)  # called before the setpoints come in
+    last: list[str] = field(default_factory=list)
+    sections: list[Section] = field(default_factory=list)
+    wires: list[Wire] = field(default_factory=list)
+    findings: list[Finding] = field(default_factory=list)
+    beside: dict[str, str] = field(default_factory=dict)  # further files by their names
+    _done: set[str] = field(default_factory=set)
+    _claimed: dict[str, str] = field(default_factory=dict)
+
+    def load(self, line: str, why: str = "") -> None:
+        """A component."""
+        self.loads += [f"# {why}", line] if why else [line]
+
+    def section(self, title: str) -> None:
+        """What follows belongs under this title."""
+        self.sections.append(Section(title, []))
+
+    def say(self, why: str) -> None:
+        """A comment where it stands."""
+        self.sections[-1].lines.append(f"# {why}")
+
+    def setp(self, pin: str, value: float, why: str = "") -> None:
+        """A pin or parameter set to a number."""
+        line = f"setp {pin} {value:.10g}"
+        self.sections[-1].lines.append(f"{line:<58} # {why}" if why else line)
+
+    def net(self, signal: str, *pins: str) -> None:
+        """Pins on a signal, the one that drives it first."""
+        self.sections[-1].lines.append(f"net {signal} {' '.join(pins)}")
+
+    def role(self, path: str, signal: str, *pins: str, place: str = "", needed: bool = False) -> str:
+        """What the machine file calls ``path`` is on these pins; answers the signal.
+
+        It may name the signal, one of the pins, or a terminal of the board, which is then wired to them.
+        """
+        self._done.add(path)
+        name = self.lathe.names.get(path, "")
+        drives = not _READS.fullmatch(path)
+        if not name:
+            if needed:
+                self.findings.append(Finding(path, "", f"missing; expected a signal ({signal}) or a pin"))
+            return signal
+        if "." not in name:
+            return self._on_signal(path, name, pins, place)
+        on = pins
+        if name not in pins:
+            found = self.terminal(name)
+            if found is None or found.drives is not drives:
+                self.findings.append(Finding(path, written(name), self._expected(pins, found)))
+                return signal
+            place = place or found.place
+            if drives:
+                self.claim(name, path)
+            on = (*pins, name) if drives else (name, *pins)
+        self._wire(path, signal, on, place, name)
+        return signal
+
+    def at_terminal(self, path: str, signal: str, name: str, pin: str, *, drives: bool = True) -> None:
+        """A terminal that [board] names, wired to one pin."""
+        found = self.terminal(name)
+        if found is None or found.drives is not drives:
+            self.findings.append(Finding(path, written(name), self._expected((), found)))
+            return
+        if drives:
+            self.claim(name, path)
+        self.net(signal, *((pin, name) if drives else (name, pin)))
+        self.wires.append(Wire(found.place, name, signal, (path,)))
+
+    def signal(self, path: str, name: str) -> None:
+        """A signal without a pin, to be set by hand."""
+        self._done.add(path)
+        self.sections[-1].lines.append(f"newsig {name} bit")
+        self.wires.append(Wire("", "-", name, (path,)))
+
+    def enable(self, *pins: str) -> None:
+        """What lets the drives have power: pins of the board, and of what the machine file names for it.
+
+        One signal for all of them: they are driven alike.
+        """
+        paths = {f"hal.axes.{axis.name}.enable": axis.name for axis in self.lathe.axes}
+        named = [path for path in paths if path in self.lathe.names]
+        for path in named:
+            self._done.add(path)
+            name = self.lathe.names[path]
+            found = self.terminal(name)
+            if name not in pins and found is not None and found.drives:
+                self.claim(name, path)
+                pins = (*pins, name)
+            elif name not in pins:
+                why = f"expected {self.hint}; or leave it out: hal.machine_on enables every axis"
+                self.findings.append(Finding(path, written(name), why))
+                continue
+            self.wires.append(Wire(found.place if found else "", name, "machine-on", (path,)))
+        if named and "hal.machine_on" not in self.lathe.names:
+            self.net("machine-on", *pins)
+        else:
+            self.role("hal.machine_on", "machine-on", *pins, needed=True)
+
+    def claim(self, pin: str, path: str) -> None:
+        """A terminal that is driven is driven by one thing."""
+        first = self._claimed.setdefault(pin, path)
+        if first != path:
+            self.findings.append(Finding(path, written(pin), f"expected a pin of its own; {first} has it"))
+
+    def rest(self) -> None:
+        """Every name of the machine file that no part of the board has taken, on its terminal."""
+        self.section("Inputs and outputs")
+        for path in self.lathe.names:
+            if path not in self._done:
+                self.role(path, signal_of(path))
+
+    def _on_signal(self, path: str, name: str, pins: tuple[str, ...], place: str) -> str:
+        if pins:
+            self._wire(path, name, pins, place, pins[0])
+        else:
+            self.findings.append(
+                Finding(path, written(name), f"is a signal that nothing makes; expected {self.hint}")
+            )
+        return name
+
+    def _wire(self, path: str, signal: str, pins: tuple[str, ...], place: str, pin: str) -> None:
+        """One net; a signal that is there already, such as a switch for home and limit, gets what is new."""
+        for index, wire in enumerate(self.wires):
+            if wire.pin == pin:
+                self.wires[index] = wire._replace(names=(*wire.names, path))
+                return
+        self.net(signal, *pins)
+        self.wires.append(Wire(place, pin, signal, (path,)))
+
+    def _expected(self, pins: tuple[str, ...], found: Terminal | None) -> str:
+        if found is not None:
+            is_one, expected = ("output", "input") if found.drives else ("input", "output")
+            return f"is an {is_one}, expected an {expected}"
+        own = f"{', '.join(pins)}, the name of a signal, or " if pins else ""
+        return f"the board has no such pin; expected {own}{self.hint}"
+
+
+def signal_of(path: str) -> str:
+    """The signal of a key of the machine file: io.in.guard is in-guard, hal.axes.X.limit_low x-limit-low."""
+    word = path.removeprefix("io.").removeprefix("hal.axes.").removeprefix("hal.").removesuffix(".at")
+    return re.sub(r"[^a-z0-9]+", "-", word.lower())
+
+
+# --- As text.
+
+
+def text_of(file: HalFile) -> str:
+    """The whole file: the same for the same machine file."""
+    return "\n".join((*_head(file), *_body(file), ""))
+
+
+def _head(file: HalFile) -> Iterator[str]:
+    lathe = file.lathe
+    yield f"# {lathe.name}: {file.title}."
+    source = PurePath(lathe.source).name
+    yield f"# Written by: turndesk machine hal {source}   After a change of that file write it anew."
+    yield "# Positions in mm, X as a radius; degrees for rotary axes. E-stop, guard, overtravel are hardware:"
+    yield "# docs/hardware.md. From power-off to the first part: docs/wiring.md."
+    if file.notes:
+        yield "#"
+        yield "# Measure on the real machine, before the first part:"
+        for note in file.notes:
+            lines = textwrap.wrap(note, _WIDTH - 5)
+            yield from (f"#  {'-' if n == 0 else ' '} {line}" for n, line in enumerate(lines))
+    yield "#"
+    yield "# What is wired where:"
+    yield from (f"#  {line}".rstrip() for line in table_lines(file.wires))
+
+
+def _body(file: HalFile) -> Iterator[str]:
+    thread = file.lathe.thread
+    yield from ("", *file.loads, "")
+    if file.base:
+        yield "# Steps and counts, in the fast thread."
+        yield from (f"addf {call} base-thread" for call in file.base)
+        yield ""
+    yield "# 1. What is read from the machine comes first in the thread."
+    yield from (f"addf {call} {thread}" for call in file.first)
+    yield from (
+        "",
+        "# 2. Setpoints, gear, E-stop chain: the control puts its own part in the place of the next line.",
+    )
+    yield from (MARK, "", "# 3. What drives the machine comes last.")
+    yield from (f"addf {call} {thread}" for call in file.last)
+    for section in file.sections:
+        if section.lines:
+            yield from ("", f"# --- {section.title}", *section.lines)
+
+
+def table_lines(wires: Iterable[Wire]) -> Iterator[str]:
+    """The wiring table for a person: terminal, pin, signal, what the machine file calls it."""
+    rows = [("terminal", "HAL pin", "signal", "machine file")]
+    rows += [(wire.place or "-", wire.pin, wire.signal, ", ".join(wire.names)) for wire in wires]
+    widths = [max(len(row[column]) for row in rows) for column in range(3)]
+    for *cells, last in rows:
+        yield "".join(f"{cell:<{width}}  " for cell, width in zip(cells, widths, strict=True)) + last

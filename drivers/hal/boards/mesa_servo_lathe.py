@@ -1,0 +1,110 @@
+"""HAL file of a ±10 V servo lathe on a Mesa 7I97: encoders, pid, analog outputs, isolated I/O."""
+
+from __future__ import annotations
+
+import re
+
+from drivers.hal.boards.hal_lines import HalFile, Lathe, LatheAxis, Terminal
+from drivers.hal.boards.mesa_card import NOTES, encoder, load_card, load_pid, spindle_encoder
+
+_CARD = "hm2_7i97.0"
+_IN = re.compile(re.escape(_CARD) + r"\.inmux\.00\.input-(\d\d)(-not)?")
+_OUT = re.compile(re.escape(_CARD) + r"\.ssr\.00\.out-(\d\d)")
+# Terminals as hm2_eth names them: the analog outputs, the A inputs of the encoders, the solid-state relays.
+_ANALOG = ("TB3-04", "TB3-08", "TB3-12", "TB3-16", "TB3-20", "TB3-24")
+_ENCODERS = ("TB1-01", "TB1-09", "TB1-17", "TB2-01", "TB2-09", "TB2-17")
+_RELAYS = ("TB5-13/14", "TB5-15/16", "TB5-17/18", "TB5-19/20", "TB5-21/22", "TB5-23/24")
+_PWM_HZ = 48_000  # of the analog outputs, as the card's own samples have it
+
+
+def mesa_servo_lathe(lathe: Lathe) -> HalFile:
+    """Velocity drives at ±10 V: the place is closed here, by encoder and pid."""
+    hint = f"an input or relay of the card: {_CARD}.inmux.00.input-00 … -15, {_CARD}.ssr.00.out-00 … -05"
+    file = HalFile(lathe, "±10 V servo drives on a Mesa 7I97", _terminal, hint)
+    file.notes += [
+        *NOTES,
+        "direction before power: turn the screw by hand, the place must rise with the axis; first power with"
+        " the belt off: a loop of the wrong sign runs away",
+        "full_speed: the drive's speed at 10 V; p from 5 up until it hums, then half; ff2 last, by the scope",
+        "drift: balance the drive at 0 V until the slide stands with p alone",
+    ]
+    turns = bool(lathe.encoder_lines and lathe.names.get("hal.spindle.position"))
+    spindle = lathe.board.spindle
+    channels = [board.channel for board in lathe.board.axes.values()] + [spindle.channel]
+    encoders = 1 + max((*channels[:-1], spindle.encoder if turns else -1))
+    load_card(file, _CARD, f"num_encoders={encoders} num_pwmgens={1 + max(channels)} num_stepgens=0")
+    load_pid(file, lathe.axes)
+    file.section("Analog outputs")
+    file.setp(f"{_CARD}.pwmgen.pwm_frequency", _PWM_HZ)
+    for axis in lathe.axes:
+        _axis(file, axis)
+    file.section("Power of the drives: the analog outputs 0…3 share one enable")
+    file.enable(*_enables(lathe))
+    if spindle.full_speed:
+        _speed(file)
+    if turns:
+        spindle_encoder(file, _CARD, f"encoder {spindle.encoder}, A at {_ENCODERS[spindle.encoder]}")
+    file.rest()
+    file.last.append(f"{_CARD}.write")
+    return file
+
+
+def _terminal(name: str) -> Terminal | None:
+    if (found := _IN.fullmatch(name)) and int(found[1]) < 16:
+        return Terminal(drives=False, place=f"INPUT{int(found[1])}")
+    if (found := _OUT.fullmatch(name)) and int(found[1]) < len(_RELAYS):
+        return Terminal(drives=True, place=_RELAYS[int(found[1])])
+    return None
+
+
+def _enables(lathe: Lathe) -> list[str]:
+    pids = [f"pid.{axis.name.lower()}.enable" for axis in lathe.axes]
+    channels = sorted({0, *(lathe.board.axes[axis.name].channel for axis in lathe.axes)})  # 0 enables 0…3
+    return pids + [f"{_CARD}.pwmgen.{channel:02d}.enable" for channel in channels]
+
+
+def _analog(file: HalFile, pin: str, full: float, what: str) -> None:
+    file.setp(f"{pin}.output-type", 1, "pulse width on one pin")
+    file.setp(f"{pin}.offset-mode", 1, "half of it is 0 V")
+    file.setp(f"{pin}.scale", full, what)
+
+
+def _axis(file: HalFile, axis: LatheAxis) -> None:
+    board, name, path = file.lathe.board.axes[axis.name], axis.name.lower(), f"hal.axes.{axis.name}"
+    out, counter, pid = (
+        f"{_CARD}.pwmgen.{board.channel:02d}",
+        f"{_CARD}.encoder.{board.channel:02d}",
+        f"pid.{name}",
+    )
+    place = f"{_ANALOG[board.channel]}, encoder {board.channel} A at {_ENCODERS[board.channel]}"
+    file.section(f"Axis {axis.name}: analog output and encoder {board.channel}")
+    _analog(file, out, board.full_speed, "mm/s at 10 V")
+    encoder(file, counter, (-1.0 if board.reversed else 1.0) / axis.count, "counts a mm: 1 / count")
+    for key, value in (("Pgain", board.p), ("Igain", board.i), ("Dgain", board.d), ("FF0", 0.0)):
+        file.setp(f"{pid}.{key}", value)
+    file.setp(f"{pid}.FF1", 1.0, "the speed that is asked for goes out as it is")
+    file.setp(f"{pid}.FF2", board.ff2)
+    file.setp(f"{pid}.maxoutput", board.full_speed, "mm/s: 10 V")
+    file.setp(f"{pid}.error-previous-target", 1)
+    file.role(f"{path}.command", f"{name}-pos-cmd", f"{pid}.command", place=place, needed=True)
+    file.role(
+        f"{path}.feedback",
+        f"{name}-pos-fb",
+        f"{counter}.position",
+        f"{pid}.feedback",
+        place=place,
+        needed=True,
+    )
+    index = f"{path}.index_enable"
+    file.role(index, f"{name}-index", f"{counter}.index-enable", f"{pid}.index-enable", place=place)
+    file.net(f"{name}-output", f"{pid}.output", f"{out}.value")
+
+
+def _speed(file: HalFile) -> None:
+    board = file.lathe.board.spindle
+    pin, place = f"{_CARD}.pwmgen.{board.channel:02d}", _ANALOG[board.channel]
+    file.section(f"Spindle: analog output {board.channel}")
+    _analog(file, pin, board.full_speed, "rpm at 10 V")
+    speed = "speed" if file.lathe.names.get("hal.spindle.speed") else "speed_abs"
+    file.role(f"hal.spindle.{speed}", "spindle-rpm-cmd", f"{pin}.value", place=place, needed=True)
+    file.role("hal.spindle.on", "spindle-on", f"{pin}.enable", place=f"enable of {place}", needed=True)

@@ -1,0 +1,126 @@
+"""HAL file of a step lathe on a Mesa 7I76E: step generators, spindle encoder, analog spindle, field I/O."""
+
+from __future__ import annotations
+
+import re
+
+from drivers.hal.boards.hal_lines import HalFile, Lathe, LatheAxis, Terminal
+from drivers.hal.boards.mesa_card import NOTES, load_card, load_pid, spindle_encoder
+
+_CARD = "hm2_7i76e.0"
+_FIELD = f"{_CARD}.7i76.0.0"  # the card's own field I/O, first port of its smart serial
+_PIN = re.compile(re.escape(_FIELD) + r"\.(input|output)-(\d\d)(-not)?")
+_FF1, _MOST_ERROR = 1.0, 0.0127  # mm by which a period may be off: half a thou
+
+
+def mesa_step_lathe(lathe: Lathe) -> HalFile:
+    """Steps from the card; ``mode = "velocity"`` closes the place here by a pid, as Mesa's own samples do."""
+    hint = f"an input or output of the card: {_FIELD}.input-00 … -31, {_FIELD}.output-00 … -15"
+    file = HalFile(lathe, "step drives on a Mesa 7I76E", _terminal, hint)
+    file.notes += [
+        *NOTES,
+        "step_ns, space_ns, setup_ns, hold_ns: the drive's manual; what it does not see is lost, untold",
+        "spindle: full_speed is what the inverter makes of 10 V",
+    ]
+    encoder = bool(lathe.encoder_lines and lathe.names.get("hal.spindle.position"))
+    steps = 1 + max((board.channel for board in lathe.board.axes.values()), default=0)
+    load_card(
+        file, _CARD, f"num_encoders={int(encoder)} num_pwmgens=0 num_stepgens={steps} sserial_port_0=0xxxxxxx"
+    )
+    load_pid(file, tuple(axis for axis in lathe.axes if lathe.board.axes[axis.name].mode == "velocity"))
+    for axis in lathe.axes:
+        _axis(file, axis)
+    file.section("Power of the drives")
+    file.enable(*_enables(lathe))
+    _speed(file)
+    if encoder:
+        spindle_encoder(file, _CARD, "TB3 encoder")
+    file.rest()
+    file.last.append(f"{_CARD}.write")
+    return file
+
+
+def _terminal(name: str) -> Terminal | None:
+    found = _PIN.fullmatch(name)
+    if (
+        found is None
+        or int(found[2]) > (31 if found[1] == "input" else 15)
+        or (found[1] == "output" and found[3])
+    ):
+        return None
+    return Terminal(drives=found[1] == "output", place=f"{found[1].upper()}{int(found[2])}")
+
+
+def _enables(lathe: Lathe) -> list[str]:
+    pins = []
+    for axis in lathe.axes:
+        board = lathe.board.axes[axis.name]
+        pins += [f"pid.{axis.name.lower()}.enable"] if board.mode == "velocity" else []
+        pins.append(f"{_CARD}.stepgen.{board.channel:02d}.enable")
+    return pins
+
+
+def _axis(file: HalFile, axis: LatheAxis) -> None:
+    board, name, path = file.lathe.board.axes[axis.name], axis.name.lower(), f"hal.axes.{axis.name}"
+    pin = f"{_CARD}.stepgen.{board.channel:02d}"
+    place = f"STEP{board.channel} DIR{board.channel}"
+    file.section(f"Axis {axis.name}: step generator {board.channel}, {board.mode} mode")
+    file.setp(
+        f"{pin}.position-scale", (-1.0 if board.reversed else 1.0) / axis.count, "steps a mm: 1 / count"
+    )
+    for key, value in (
+        ("steplen", "step"),
+        ("stepspace", "space"),
+        ("dirsetup", "setup"),
+        ("dirhold", "hold"),
+    ):
+        file.setp(f"{pin}.{key}", getattr(board, f"{value}_ns"), "ns")
+    file.setp(f"{pin}.step_type", 0, "step and direction")
+    file.setp(f"{pin}.maxvel", 1.5 * axis.vmax, "above what is asked for: a limit here loses the place")
+    file.setp(f"{pin}.maxaccel", 2.5 * axis.amax)
+    if board.mode == "position":
+        file.setp(f"{pin}.control-type", 0)
+        file.role(f"{path}.command", f"{name}-pos-cmd", f"{pin}.position-cmd", place=place, needed=True)
+        file.role(f"{path}.feedback", f"{name}-pos-fb", f"{pin}.position-fb", place=place, needed=True)
+        return
+    file.setp(f"{pin}.control-type", 1)
+    file.setp(
+        f"pid.{name}.Pgain", board.p or 1.0 / file.lathe.period, "1/s: one period makes a difference up"
+    )
+    for key, gain in (
+        ("Igain", board.i),
+        ("Dgain", board.d),
+        ("FF0", 0.0),
+        ("FF1", _FF1),
+        ("FF2", board.ff2),
+    ):
+        file.setp(f"pid.{name}.{key}", gain)
+    file.setp(f"pid.{name}.maxerror", _MOST_ERROR, "mm")
+    file.setp(f"pid.{name}.maxoutput", 1.5 * axis.vmax, "mm/s")
+    file.setp(f"pid.{name}.error-previous-target", 1)
+    file.role(f"{path}.command", f"{name}-pos-cmd", f"pid.{name}.command", place=place, needed=True)
+    file.role(
+        f"{path}.feedback",
+        f"{name}-pos-fb",
+        f"{pin}.position-fb",
+        f"pid.{name}.feedback",
+        place=place,
+        needed=True,
+    )
+    file.net(f"{name}-vel-cmd", f"pid.{name}.output", f"{pin}.velocity-cmd")
+
+
+def _speed(file: HalFile) -> None:
+    """The isolated analog output with its enable and direction."""
+    full = file.lathe.board.spindle.full_speed
+    if not full:
+        return
+    file.section("Spindle: analog output 0…10 V, enable and direction of the 7I76E")
+    file.setp(f"{_FIELD}.spinout-scalemax", full, "rpm at 10 V")
+    file.setp(f"{_FIELD}.spinout-minlim", 0)
+    file.setp(f"{_FIELD}.spinout-maxlim", min(full, file.lathe.rpm_max), "rpm")
+    file.role(
+        "hal.spindle.speed_abs", "spindle-rpm-abs", f"{_FIELD}.spinout", place="TB4 SPINOUT", needed=True
+    )
+    file.role("hal.spindle.on", "spindle-on", f"{_FIELD}.spinena", place="TB4 SPINENA", needed=True)
+    file.role("hal.spindle.reverse", "spindle-reverse", f"{_FIELD}.spindir", place="TB4 SPINDIR")

@@ -1,0 +1,112 @@
+"""HAL file of a lathe with step and direction on a parallel port: software step generators and encoder."""
+
+from __future__ import annotations
+
+import re
+
+from drivers.hal.boards.hal_lines import HalFile, Lathe, LatheAxis, Terminal
+
+_PIN = re.compile(r"parport\.0\.pin-(\d\d)-(in|in-not|out)")
+_OUT = frozenset(("01", "02", "03", "04", "05", "06", "07", "08", "09", "14", "16", "17"))
+_IN = frozenset(("10", "11", "12", "13", "15"))
+
+
+def parallel_port(lathe: Lathe) -> HalFile:
+    """Steps by ``stepgen``, turns of the spindle by ``encoder``, its speed by ``pwmgen`` and a converter."""
+    hint = "a pin of the port: parport.0.pin-02-out … -09-out, 01 14 16 17; parport.0.pin-10-in … -13-in, 15"
+    file = HalFile(lathe, "step and direction on a parallel port", _terminal, hint)
+    file.notes += [
+        "latency-test: the base period must be longer than the worst latency; a real-time kernel is needed",
+        "axis.….count: dial gauge against 10 mm of jog; X counts on the radius",
+        "pulse times: the drive's manual; a direction that is set too late loses a step at each reversal",
+        "E-stop must take the drives' power itself: the port says nothing when this computer hangs",
+    ]
+    encoder = bool(lathe.encoder_lines and lathe.names.get("hal.spindle.position"))
+    _load(file, encoder=encoder)
+    for channel, axis in enumerate(lathe.axes):
+        _axis(file, channel, axis)
+    file.section("Power of the drives")
+    file.enable(*(f"stepgen.{channel}.enable" for channel in range(len(lathe.axes))))
+    if lathe.board.spindle.pwm:
+        _speed(file)
+    if encoder:
+        _encoder(file)
+    file.rest()
+    return file
+
+
+def _load(file: HalFile, *, encoder: bool) -> None:
+    lathe, axes = file.lathe, len(file.lathe.axes)
+    pwm = bool(lathe.board.spindle.pwm)
+    threads = f"name1=base-thread fp1=0 period1={lathe.board.base_us * 1000}"
+    file.load(f"loadrt threads {threads} name2={lathe.thread} period2={lathe.period * 1e9:.0f}")
+    file.load(f'loadrt hal_parport cfg="{lathe.board.address or "0x378"} out"', "pins 2…9 are outputs")
+    file.load(f"loadrt stepgen step_type={','.join('0' * axes)} ctrl_type={','.join('p' * axes)}")
+    if encoder:
+        file.load("loadrt encoder num_chan=1")
+    if pwm:
+        file.load("loadrt pwmgen output_type=0")
+    file.base += ["parport.0.read", "stepgen.make-pulses"]
+    file.base += ["encoder.update-counters"] * encoder + ["pwmgen.make-pulses"] * pwm
+    file.base += ["parport.0.write", "parport.0.reset"]
+    file.first += ["stepgen.capture-position", *["encoder.capture-position"] * encoder]
+    file.last += ["stepgen.update-freq", *["pwmgen.update"] * pwm]
+
+
+def _terminal(name: str) -> Terminal | None:
+    found = _PIN.fullmatch(name)
+    if found is None or found[1] not in (_OUT if found[2] == "out" else _IN):
+        return None
+    return Terminal(drives=found[2] == "out", place=f"DB25 pin {int(found[1])}")
+
+
+def _axis(file: HalFile, channel: int, axis: LatheAxis) -> None:
+    board, name, path = file.lathe.board.axes[axis.name], axis.name.lower(), f"hal.axes.{axis.name}"
+    pin = f"stepgen.{channel}"
+    file.section(f"Axis {axis.name}: step generator {channel}")
+    file.setp(
+        f"{pin}.position-scale", (-1.0 if board.reversed else 1.0) / axis.count, "steps a mm: 1 / count"
+    )
+    file.setp(f"{pin}.maxvel", 1.5 * axis.vmax, "above what is asked for: a limit here loses the place")
+    file.setp(f"{pin}.maxaccel", 2.5 * axis.amax)
+    file.setp(f"{pin}.steplen", 1, "ns, rounded up to a base period: parport.reset ends the step")
+    file.setp(f"{pin}.stepspace", 0)
+    file.setp(f"{pin}.dirsetup", board.setup_ns)
+    file.setp(f"{pin}.dirhold", board.hold_ns)
+    file.role(f"{path}.command", f"{name}-pos-cmd", f"{pin}.position-cmd", needed=True)
+    file.role(f"{path}.feedback", f"{name}-pos-fb", f"{pin}.position-fb", needed=True)
+    for what, port in (("step", board.step), ("dir", board.direction)):
+        file.at_terminal(
+            f"board.axis.{axis.name}.{'step' if what == 'step' else 'direction'}",
+            f"{name}-{what}",
+            port,
+            f"{pin}.{what}",
+        )
+    if _terminal(board.step) is not None:
+        file.setp(f"{board.step}-reset", 1, "a step ends within the base period")
+        file.setp("parport.0.reset-time", board.step_ns)
+
+
+def _speed(file: HalFile) -> None:
+    board = file.lathe.board.spindle
+    file.section("Spindle: its speed as pulses whose width a converter makes 0…10 V of")
+    file.setp("pwmgen.0.scale", board.full_speed, "rpm at 10 V")
+    file.setp("pwmgen.0.pwm-freq", board.pwm_hz, "Hz")
+    file.role("hal.spindle.speed_abs", "spindle-rpm-abs", "pwmgen.0.value", needed=True)
+    file.role("hal.spindle.on", "spindle-on", "pwmgen.0.enable", needed=True)
+    file.at_terminal("board.spindle.pwm", "spindle-pwm", board.pwm, "pwmgen.0.pwm")
+
+
+def _encoder(file: HalFile) -> None:
+    board = file.lathe.board.spindle
+    file.section("Spindle: its encoder")
+    counts = 4 * file.lathe.encoder_lines * (-1 if board.reversed else 1)
+    file.setp("encoder.0.position-scale", counts, "counts a turn: 4 x lines")
+    for phase, port in (("A", board.phase_a), ("B", board.phase_b), ("Z", board.phase_z)):
+        if port:
+            key = f"board.spindle.phase_{phase.lower()}"
+            file.at_terminal(key, f"spindle-{phase.lower()}", port, f"encoder.0.phase-{phase}", drives=False)
+    file.role("hal.spindle.position", "spindle-turns", "encoder.0.position")
+    file.role("hal.spindle.velocity", "spindle-rps", "encoder.0.velocity")
+    if board.phase_z:
+        file.role("hal.spindle.index_enable", "spindle-index", "encoder.0.index-enable")

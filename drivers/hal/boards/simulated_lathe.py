@@ -1,0 +1,78 @@
+"""HAL file of a lathe without hardware: slides and spindle of LinuxCNC's stock simulation components."""
+
+from __future__ import annotations
+
+from drivers.hal.boards.hal_lines import HalFile, Lathe, Terminal, signal_of
+
+_TRAILS = 0.67  # of the way to its setpoint that a slide makes in one period
+_SWITCHES = 0.3  # s for the collet to close, and to open
+
+
+def simulated_lathe(lathe: Lathe) -> HalFile:
+    """Slides that trail their setpoints, a spindle that ramps, inputs that are set by hand."""
+    file = HalFile(
+        lathe, "a lathe of stock simulation components, no hardware", _terminal, "the name of a signal"
+    )
+    names = [axis.name.lower() for axis in lathe.axes]
+    file.load(f"loadrt threads name1={lathe.thread} period1={lathe.period * 1e9:.0f}")
+    file.load(f"loadrt lowpass names={','.join(f'{name}-servo' for name in names)}")
+    file.load(f"loadrt mux2 names={','.join(f'{name}-motor' for name in names)}")
+    file.load("loadrt limit2 names=spindle-ramp")
+    file.load("loadrt scale names=spindle-rps")
+    file.load("loadrt sim_spindle names=spindle")
+    file.load("loadrt timedelay names=collet-switch")
+    file.first += ["spindle-ramp", "spindle-rps", "spindle"]
+    file.last += [f"{name}-{what}" for what in ("servo", "motor") for name in names] + ["collet-switch"]
+    file.section(
+        "Slides: each trails its setpoint by half a period's way; without power it stays where it is"
+    )
+    for axis in lathe.axes:
+        _slide(file, axis.name)
+    file.enable(*(f"{name}-motor.sel" for name in names))
+    _spindle(file)
+    _hands(file)
+    return file
+
+
+def _terminal(name: str) -> Terminal | None:
+    return Terminal(drives=False, place="collet's switch") if name == "collet-switch.out" else None
+
+
+def _slide(file: HalFile, axis: str) -> None:
+    name, path = axis.lower(), f"hal.axes.{axis}"
+    file.setp(f"{name}-servo.gain", _TRAILS)
+    file.role(f"{path}.command", f"{name}-pos-cmd", f"{name}-servo.in", needed=True)
+    file.net(f"{name}-servo-out", f"{name}-servo.out", f"{name}-motor.in1")
+    file.role(f"{path}.feedback", f"{name}-pos-fb", f"{name}-motor.out", f"{name}-motor.in0", needed=True)
+
+
+def _spindle(file: HalFile) -> None:
+    file.section("Spindle: rpm, ramped; turns a second; turns")
+    file.setp("spindle-ramp.maxv", file.lathe.rpm_accel, "rpm/s")
+    file.setp("spindle-rps.gain", 1.0 / 60.0)
+    file.setp("spindle.scale", 1.0)
+    file.role("hal.spindle.speed", "spindle-rpm-cmd", "spindle-ramp.in")
+    file.net("spindle-rpm", "spindle-ramp.out", "spindle-rps.in")
+    file.role("hal.spindle.velocity", "spindle-rps", "spindle-rps.out", "spindle.velocity-cmd")
+    file.role("hal.spindle.position", "spindle-turns", "spindle.position-fb")
+    file.role("hal.spindle.index_enable", "spindle-index", "spindle.index-enable")
+
+
+def _hands(file: HalFile) -> None:
+    """Inputs and outputs as signals: ``halcmd sets in-guard 1`` is a hand at the switch."""
+    file.section("Inputs and outputs are signals, to be set by hand: halcmd sets NAME 1")
+    for path, name in file.lathe.names.items():
+        if path.startswith("io.") and "." not in name:
+            file.signal(path, name)
+    estop = file.lathe.names.get("io.in.estop", "")
+    if "." not in estop:
+        file.say("E-stop released: the chain is whole")
+        file.sections[-1].lines.append(f"sets {estop} 1")
+    collet = file.lathe.names.get("io.out.collet", signal_of("io.out.collet"))
+    if "io.out.collet" in file.lathe.names:
+        file.say("The collet's switch follows its valve; it begins clamped.")
+        for delay in ("on-delay", "off-delay"):
+            file.setp(f"collet-switch.{delay}", _SWITCHES)
+        file.net(collet, "collet-switch.in")
+        file.sections[-1].lines.append(f"sets {collet} 1")
+    file.rest()

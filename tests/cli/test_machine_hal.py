@@ -1,0 +1,79 @@
+"""``turndesk machine hal``: on stdout, in files that must not exist, as JSON."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import resources
+from app.cli.main import main
+
+Captured = pytest.CaptureFixture[str]
+
+
+def test_the_file_alone_on_stdout(capsys: Captured) -> None:
+    assert main(["machine", "hal", "gt75-mesa-7i76e"]) == 0
+    told = capsys.readouterr()
+    assert told.out == resources.hal_file("gt75-mesa-7i76e.hal").read_text(encoding="utf-8")
+    assert told.err == ""
+
+
+def test_out_writes_new_files_and_says_what_to_wire(capsys: Captured, tmp_path: Path) -> None:
+    out = tmp_path / "gt75-ethercat.hal"
+    assert main(["machine", "hal", "gt75-ethercat", "--out", str(out)]) == 0
+    told = capsys.readouterr()
+    assert out.read_text(encoding="utf-8").startswith("# GT-75 EtherCAT")
+    assert (tmp_path / "ethercat-conf.xml").exists()
+    rows = [line.split() for line in told.out.splitlines()]
+    assert ["EL1008", "channel", "2", "lcec.0.DI.din-1", "in-guard", "io.in.guard"] in rows
+    assert "measure: " in told.out
+    assert told.err == ""
+
+
+@pytest.mark.parametrize("there", ["gt75-ethercat.hal", "ethercat-conf.xml"])
+def test_nothing_is_replaced(there: str, capsys: Captured, tmp_path: Path) -> None:
+    (tmp_path / there).write_text("mine", encoding="utf-8")
+    assert main(["machine", "hal", "gt75-ethercat", "--out", str(tmp_path / "gt75-ethercat.hal")]) == 2
+    assert f"{tmp_path / there} is there already and is never replaced" in capsys.readouterr().err
+    assert [each.name for each in tmp_path.iterdir()] == [there]
+    assert (tmp_path / there).read_text(encoding="utf-8") == "mine"
+
+
+def test_another_name_than_the_machine_file_says_is_told(capsys: Captured, tmp_path: Path) -> None:
+    assert main(["machine", "hal", "gt75-parport", "--out", str(tmp_path / "mine.hal")]) == 0
+    assert "[hal] file is gt75-parport.hal; the control loads that one" in capsys.readouterr().err
+
+
+def test_json_has_file_wires_and_what_to_measure(capsys: Captured) -> None:
+    assert main(["machine", "hal", "gt75-mesa-7i97", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["board"] == "mesa-7i97"
+    assert told["hal"] == resources.hal_file("gt75-mesa-7i97.hal").read_text(encoding="utf-8")
+    assert {"place": "INPUT1", "pin": "hm2_7i97.0.inmux.00.input-01", "signal": "in-guard",
+            "names": ["io.in.guard"]} in told["wires"]  # fmt: skip
+    assert (told["beside"], told["out"]) == ({}, None)
+    assert any("dial gauge" in note for note in told["measure"])
+
+
+def test_wrong_pins_are_named_all_at_once(capsys: Captured, tmp_path: Path) -> None:
+    text = resources.machine_file("gt75-mesa-7i97.toml")
+    file = tmp_path / "own.toml"
+    file.write_text(text.replace("input-01", "input-91").replace("out-01", "out-06"), encoding="utf-8")
+    assert main(["machine", "hal", str(file)]) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert len(told.err.splitlines()) == 2
+    assert 'io.in.guard = "hm2_7i97.0.inmux.00.input-91": the board has no such pin' in told.err
+
+
+@pytest.mark.parametrize("name", ["gt75", "gt75-canopen", "no-such-file.toml"])
+def test_what_has_no_hal_file(name: str, capsys: Captured) -> None:
+    assert main(["machine", "hal", name]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+def test_a_folder_that_is_not_there(capsys: Captured, tmp_path: Path) -> None:
+    assert main(["machine", "hal", "gt75-parport", "--out", str(tmp_path / "none" / "gt75-parport.hal")]) == 2
+    assert "cannot be written" in capsys.readouterr().err

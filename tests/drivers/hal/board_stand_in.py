@@ -1,0 +1,34 @@
+"""Pins of a board without the board: ``/usr/bin/python3 board_stand_in.py PINS.json PREFIX`` until ended."""
+
+import json
+import signal
+import sys
+from pathlib import Path
+from typing import Any
+
+
+def main(path: str, prefix: str) -> None:
+    """Every pin and parameter of the file that begins so, doing nothing; what begins as on is on."""
+    import hal  # noqa: PLC0415  of the system's Python
+
+    kinds = {"float": hal.HAL_FLOAT, "bit": hal.HAL_BIT, "s32": hal.HAL_S32, "u32": hal.HAL_U32}
+    ways = {"IN": hal.HAL_IN, "OUT": hal.HAL_OUT, "IO": hal.HAL_IO}
+    said = json.loads(Path(path).read_text(encoding="utf-8"))
+    part: Any = hal.component(f"stand-in-{prefix}", prefix)
+    for name, kind, way in said["pins"]:
+        if not name.startswith(f"{prefix}."):
+            continue
+        if way == "RW":
+            part.newparam(name.removeprefix(f"{prefix}."), kinds[kind], hal.HAL_RW)
+        else:
+            part.newpin(name.removeprefix(f"{prefix}."), kinds[kind], ways[way])
+    for name in said["on"]:
+        if name.startswith(f"{prefix}."):
+            part[name.removeprefix(f"{prefix}.")] = True
+    part.ready()
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.pause()
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,128 @@
+"""The shipped HAL files: what ``turndesk machine hal`` writes, whole, and loaded by a real halrun.
+
+A board that is not here is replaced by its pins (``board_pins``), the parallel port by LinuxCNC's
+``sim_parport``; everything else of the file is loaded, set, called and wired as it stands.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import resources
+from app.compose.hal_file import hal_file
+from app.compose.machine_files import shipped_machine
+from drivers.hal.boards.hal_lines import HalFile, text_of
+from tests.drivers.hal.board_pins import PINS, without_board
+
+FILES = ("gt75-hal", "gt75-parport", "gt75-mesa-7i76e", "gt75-mesa-7i97", "gt75-ethercat")
+STAND_IN = Path(__file__).parent / "board_stand_in.py"
+
+
+def written(name: str) -> HalFile:
+    return hal_file(shipped_machine(name))
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_the_shipped_file_is_what_the_command_writes(name: str) -> None:
+    file = written(name)
+    assert text_of(file) == text_of(written(name))
+    assert resources.hal_file(f"{name}.hal").read_text(encoding="utf-8") == text_of(file)
+    for other, text in file.beside.items():
+        assert resources.hal_file(other).read_text(encoding="utf-8") == text
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_every_name_of_the_machine_file_is_on_a_net(name: str) -> None:
+    file = written(name)
+    wired = set()
+    for line in text_of(file).splitlines():
+        words = line.split("#")[0].split()
+        if words[:1] in (["net"], ["newsig"]):
+            wired |= set(words[1:])
+    missing = [path for path, pin in file.lathe.names.items() if pin not in wired]
+    assert not missing
+    told = {path for wire in file.wires for path in wire.names}
+    assert set(file.lathe.names) <= told
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_no_pin_is_on_two_signals_and_setpoints_come_in_once(name: str) -> None:
+    on: dict[str, str] = {}
+    text = text_of(written(name))
+    for line in text.splitlines():
+        words = line.split("#")[0].split()
+        if words[:1] == ["net"]:
+            for pin in words[2:]:
+                assert on.setdefault(pin, words[1]) == words[1], line
+    assert text.splitlines().count("#turndesk") == 1
+    assert (
+        max(len(line) for line in text.splitlines() if not line.startswith("#")) < 255
+    )  # of a HAL file's line
+
+
+@pytest.mark.parametrize(
+    ("name", "pin", "value"),
+    [
+        # .0001 in a step is .00254 mm; .00005 in a count is .00127 mm; .000002 in is .0000508 mm
+        ("gt75-mesa-7i76e", "hm2_7i76e.0.stepgen.00.position-scale", 1 / 0.00254),
+        ("gt75-parport", "stepgen.1.position-scale", 1 / 0.00254),
+        ("gt75-mesa-7i97", "hm2_7i97.0.encoder.01.scale", 1 / 0.00127),
+        ("gt75-ethercat", "cia402.x.pos-scale", 1 / 0.0000508),
+        # 400 in/min is 169.33 mm/s; four counts a line
+        ("gt75-mesa-7i97", "hm2_7i97.0.pwmgen.00.scale", 400 * 25.4 / 60),
+        ("gt75-mesa-7i97", "hm2_7i97.0.encoder.02.scale", 4096),
+        ("gt75-mesa-7i76e", "hm2_7i76e.0.7i76.0.0.spinout-scalemax", 3500),
+    ],
+)
+def test_scales_in_millimetres_and_turns(name: str, pin: str, value: float) -> None:
+    found = re.search(rf"^setp {re.escape(pin)} (\S+)", text_of(written(name)), re.MULTILINE)
+    assert found
+    assert float(found[1]) == pytest.approx(value, rel=1e-8)
+
+
+@pytest.mark.usefixtures("halrun")
+@pytest.mark.parametrize("name", FILES)
+def test_halrun_loads_it(name: str, tmp_path: Path) -> None:
+    """Every component, parameter, pin, direction and order of the file, by HAL itself; then it is started."""
+    done = load(tmp_path, name, text_of(written(name)))
+    assert done.returncode == 0, done.stderr + done.stdout
+    signals = re.findall(r"^(?:bit|float|s32|u32)\s+\S+\s+(\S+)", done.stdout, re.MULTILINE)
+    assert {wire.signal for wire in written(name).wires} <= set(signals)
+
+
+@pytest.mark.usefixtures("halrun")
+def test_halrun_refuses_a_pin_that_the_board_has_not(tmp_path: Path) -> None:
+    """The trial can fail: one letter of one pin."""
+    text = text_of(written("gt75-mesa-7i97")).replace("encoder.01.position ", "encoder.01.positron ")
+    done = load(tmp_path, "gt75-mesa-7i97", text)
+    assert done.returncode != 0
+    assert "positron" in done.stderr + done.stdout
+
+
+def load(folder: Path, name: str, text: str) -> subprocess.CompletedProcess[str]:
+    """halrun with this text, its board replaced, to its start."""
+    place = folder / name
+    place.mkdir()
+    folder.chmod(0o755)
+    for parent in folder.parents[:3]:
+        if parent.owner() and (parent.stat().st_mode & 0o077) == 0:
+            parent.chmod(0o755)
+    pins = list(PINS.get(name.removeprefix("gt75-"), tuple)())
+    stand_in = ""
+    if pins:
+        (place / "pins.json").write_text(json.dumps({"pins": pins, "on": []}), encoding="utf-8")
+        shutil.copy(STAND_IN, place / STAND_IN.name)
+        prefixes = dict.fromkeys(pin.name.partition(".")[0] for pin in pins)
+        command = f"/usr/bin/python3 {place / STAND_IN.name} {place / 'pins.json'}"
+        stand_in = "\n".join(f"loadusr -Wn stand-in-{each} {command} {each}" for each in prefixes)
+    script = place / "whole.hal"
+    script.write_text(without_board(text, stand_in) + "start\nshow sig\n", encoding="utf-8")
+    return subprocess.run(
+        ["halrun", "-f", str(script)], capture_output=True, text=True, check=False, timeout=60, cwd=place
+    )

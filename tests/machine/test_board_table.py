@@ -1,0 +1,170 @@
+"""[board]: what the HAL file is written for, and what is refused in it and in the pins that [hal] names."""
+
+from __future__ import annotations
+
+import pytest
+
+import resources
+from app.compose.hal_file import hal_file
+from app.compose.machine_files import parse_machine
+from app.desk.command_errors import CommandError
+from core.table_schema import Finding, MachineFileError
+from drivers.hal.boards.hal_lines import text_of
+
+
+def changed(name: str, *pairs: tuple[str, str]) -> str:
+    """A shipped file with texts replaced, which must be there."""
+    text = resources.machine_file(f"gt75-{name}.toml")
+    for old, new in pairs:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    return text
+
+
+def refused(text: str) -> tuple[Finding, ...]:
+    with pytest.raises(MachineFileError) as caught:
+        hal_file(parse_machine(text, "test.toml"))
+    return caught.value.errors
+
+
+STEP, SERVO, BUS, PORT = "mesa-7i76e", "mesa-7i97", "ethercat", "parport"
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "path", "expected"),
+    [
+        (STEP, 'kind = "mesa-7i76e"', 'kind = "mesa-7i77"', "board.kind", 'one of "sim", "parport"'),
+        (STEP, 'address = "192.168.1.121"', 'address = "eth0"', "board.address", "the card's address"),
+        (PORT, 'address = "0x378"', 'address = "lpt1"', "board.address", "0x378"),
+        (STEP, "channel = 1", "channel = 0", "board.axis.Z.channel", "board.axis.X.channel has it"),
+        (STEP, "channel = 1", "channel = 5", "board.axis.Z.channel", "0…4"),
+        (STEP, "channel = 1\n", "", "board.axis.Z.channel", "missing; expected a step generator"),
+        (STEP, "encoder = 0 ", "encoder = 1 ", "board.spindle.encoder", "the one encoder"),
+        (STEP, "full_speed = 3500 ", "# ", "board.spindle.full_speed", "missing; expected the speed at 10 V"),
+        (STEP, 'speed_abs = "spindle-rpm-abs"', "", "hal.spindle.speed", "an output for it"),
+        (STEP, "encoder_ppr = 1024 ", "encoder_ppr = 0 ", "spindle.encoder_ppr", "lines of the encoder"),
+        (STEP, "step_ns = 5000 ", "step_ns = 99000 ", "axis.X.vmax", "33333 steps/s; step_ns and space_ns"),
+        (STEP, "[board.axis.Z]", "[board.axis.Y]", "board.axis.Y", "unknown key"),
+        (STEP, "[board.axis.Z]", "[board.axis.Y]", "board.axis.Z", "missing; what of the board moves Z"),
+        (SERVO, "full_speed = 400 ", "# ", "board.axis.X.full_speed", "missing; expected its speed at 10 V"),
+        (SERVO, "full_speed = 400 ", "full_speed = 299 ", "board.axis.X.full_speed", "axis.X.vmax or more"),
+        (SERVO, "p = 20 ", "# ", "board.axis.X.p", "missing; expected the gain of its pid"),
+        (SERVO, "channel = 4 ", "channel = 2 ", "board.spindle.channel", "4 or 5"),
+        (SERVO, "channel = 1\n", "channel = 4\n", "board.axis.Z.channel", "common enable, 0…3"),
+        (BUS, 'vendor = "0x0000026c"  ', "# ", "board.axis.X.vendor", "missing"),
+        (BUS, 'product = "0x0000003c"', 'product = "60"', "board.axis.X.product", "ethercat slaves -v"),
+        (BUS, "velocity_per_rpm = 68.2666667 ", "# ", "board.spindle.velocity_per_rpm", "60FF counts"),
+        (BUS, "channel = 2", "channel = 1", "board.spindle.channel", "board.axis.Z.channel has it"),
+        (PORT, 'step = "parport.0.pin-02-out"', "", "board.axis.X.step", "the pin of its steps"),
+        (PORT, "vmax = 50 ", "vmax = 200 ", "axis.X.vmax", "base_us = 50 make 16667 at the most"),
+        (PORT, 'phase_b = "parport.0.pin-15-in"', "", "board.spindle.phase_b", "missing"),
+    ],
+)
+def test_what_the_file_says_of_its_board(name: str, old: str, new: str, path: str, expected: str) -> None:
+    with pytest.raises(MachineFileError) as caught:
+        parse_machine(changed(name, (old, new)), "test.toml")
+    found = [each for each in caught.value.errors if each.path == path]
+    assert found, caught.value.errors
+    assert expected in str(found[0])
+
+
+INPUT = "hm2_7i76e.0.7i76.0.0.input"
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "path", "expected"),
+    [
+        (STEP, f"{INPUT}-01", f"{INPUT}-32", "io.in.guard", "the board has no such pin"),
+        (
+            STEP,
+            f'"{INPUT}-01"',
+            '"hm2_7i76e.0.7i76.0.0.output-09"',
+            "io.in.guard",
+            "is an output, expected an",
+        ),
+        (
+            STEP,
+            "7i76.0.0.output-01",
+            "7i76.0.0.input-20",
+            "io.out.coolant",
+            "is an input, expected an output",
+        ),
+        (STEP, f'"{INPUT}-10"', '"x-home"', "hal.axes.X.home", "a signal that nothing makes"),
+        (STEP, '"x-pos-cmd"', '"pid.z.command"', "hal.axes.X.command", "expected pid.x.command, the name of"),
+        (STEP, 'machine_on = "hm2_7i76e.0.7i76.0.0.output-00"', "", "hal.machine_on", "missing"),
+        (SERVO, "input-11-not", "input-16-not", "board.axis.Z.fault_input", "the board has no such pin"),
+        (BUS, "DI.din-1", "DI.din-8", "io.in.guard", "EL1008"),
+        (PORT, "parport.0.pin-08-out", "parport.0.pin-02-out", "io.out.coolant", "board.axis.X.step has it"),
+        (PORT, "parport.0.pin-11-in", "parport.0.pin-14-in", "io.in.collet_closed", "no such pin"),
+        (
+            PORT,
+            'pwm = "parport.0.pin-17-out"',
+            'pwm = "parport.0.pin-15-in"',
+            "board.spindle.pwm",
+            "is an input",
+        ),
+    ],
+)
+def test_pins_that_the_board_has_not(name: str, old: str, new: str, path: str, expected: str) -> None:
+    (found,) = refused(changed(name, (old, new)))
+    assert (found.path, expected in str(found)) == (path, True), found
+
+
+def test_a_pot_is_refused_where_the_board_has_none() -> None:
+    pot = '[io.analog]\nfeed_pot = { at = "hm2_7i76e.0.7i76.0.0.analogin0", range = [0, 1.5] }\n\n[m_codes]'
+    (found,) = refused(changed(STEP, ("[m_codes]", pot)))
+    assert found.path == "io.analog.feed_pot"
+
+
+def test_machines_without_a_board_or_without_hal() -> None:
+    with pytest.raises(CommandError, match=r"\[board\] is missing: kind = \"sim\", \"parport\""):
+        hal_file(parse_machine(changed("hal", ('[board]\nkind = "sim"', "")), "test.toml"))
+    with pytest.raises(CommandError, match="backend is sim"):
+        hal_file(parse_machine(resources.machine_file("gt75.toml"), "gt75.toml"))
+
+
+# --- what the words of the file become
+
+
+def lines(text: str) -> list[str]:
+    return [
+        line.split("#")[0].rstrip()
+        for line in text_of(hal_file(parse_machine(text, "test.toml"))).splitlines()
+    ]
+
+
+def test_reversed_turns_the_sign_of_the_scale() -> None:
+    assert "setp hm2_7i76e.0.stepgen.00.position-scale 393.7007874" in lines(changed(STEP))
+    turned = lines(changed(STEP, ("reversed = false", "reversed = true")))
+    assert "setp hm2_7i76e.0.stepgen.00.position-scale -393.7007874" in turned
+
+
+def test_position_mode_leaves_the_place_to_the_card() -> None:
+    found = lines(changed(STEP, ('mode = "velocity"', 'mode = "position"')))
+    assert "setp hm2_7i76e.0.stepgen.00.control-type 0" in found
+    assert "net x-pos-cmd hm2_7i76e.0.stepgen.00.position-cmd" in found
+    assert "loadrt pid names=pid.z" in found
+
+
+def test_one_switch_may_be_home_and_limit() -> None:
+    both = changed(STEP, (f'home = "{INPUT}-10"', f'home = "{INPUT}-10"\nlimit_high = "{INPUT}-10"'))
+    file = hal_file(parse_machine(both, "test.toml"))
+    (wire,) = [wire for wire in file.wires if wire.pin == f"{INPUT}-10"]
+    assert wire.names == ("hal.axes.X.home", "hal.axes.X.limit_high")
+
+
+def test_all_enables_are_on_one_signal() -> None:
+    relay = 'feedback = "x-pos-fb"\nenable = "hm2_7i76e.0.7i76.0.0.output-15"'
+    found = lines(changed(STEP, ('feedback = "x-pos-fb"', relay)))
+    (net,) = [line for line in found if line.startswith("net machine-on ")]
+    for pin in ("pid.x.enable", "stepgen.01.enable", "output-00", "output-15"):
+        assert pin in net
+
+
+def test_an_inverter_on_its_own_line_leaves_the_analog_output_free() -> None:
+    vfd = 'driver = "vfd"\nvfd = { family = "delta-vfdb", port = "/dev/ttyUSB1", baud = 9600, parity = "N",'
+    vfd += " stop = 2, hz_per_rpm = 0.01667 }\n"
+    found = lines(changed(STEP, ('driver = "hal" ', f"{vfd}# "), ('speed_abs = "spindle-rpm-abs"\n', ""),
+                          ('on = "spindle-on"\n', ""), ('reverse = "spindle-reverse"\n', "")))  # fmt: skip
+    assert not [line for line in found if "spinout" in line]
+    assert "setp hm2_7i76e.0.encoder.00.scale 4096" in found
