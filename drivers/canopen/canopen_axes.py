@@ -8,23 +8,13 @@ from core.ports import AxisSample, DriverError, Segments, Stop, at_rest, code_of
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_homing import Homing
-from drivers.canopen.canopen_objects import CSP, IP, PP, DriveState
+from drivers.canopen.canopen_objects import DriveState
 from drivers.canopen.canopen_setup import check_limits, limits
-from drivers.canopen.cia402_drives import POINT_TARGET, DriveSet, Motion
+from drivers.canopen.cia402_drives import MOTIONS, DriveSet
 from drivers.canopen.cyclic_mode import CyclicFollower, SyncSchedule
 from drivers.canopen.position_modes import Follower, ProfiledFollower
 from drivers.canopen.pvt_mode import PvtFollower
 from drivers.setpoint_queue import SetpointQueue, Tolerance
-
-# --- The ways to follow setpoints, by the word of the machine file.
-
-
-MODES = {
-    "pvt": Motion(IP),
-    "csp": Motion(CSP, cyclic=True),
-    "ip": Motion(IP, POINT_TARGET, cyclic=True),
-    "pp": Motion(PP),
-}
 
 
 def follower_of(
@@ -33,8 +23,8 @@ def follower_of(
     """The one of ``config.mode``."""
     if config.mode == "pp":
         return ProfiledFollower(drives.axes, drives.indices, queue)
-    if MODES[config.mode].cyclic:
-        return CyclicFollower(drives.axes, drives.indices, queue, MODES[config.mode].mode, schedule)
+    if MOTIONS[config.mode].cyclic:
+        return CyclicFollower(drives.axes, drives.indices, queue, MOTIONS[config.mode].mode, schedule)
     return PvtFollower(drives.axes, drives.indices, queue, config.commit, config.record)
 
 
@@ -52,12 +42,12 @@ class CanopenAxes:
         self.config = config
         self.axes = tuple(axis.name for axis in config.axes)
         self.commit = config.commit
-        self.drives = DriveSet(config.axes, bus, MODES[config.mode])
+        self.drives = DriveSet(config.axes, bus, MOTIONS[config.mode])
         tolerance = Tolerance.of(config.axes)
         self.queue = SetpointQueue(self.axes, (0.0,) * len(self.axes), config.commit, tolerance)
         self.schedule = SyncSchedule(config.bus.sync, bus.clock.now())
         self.follower = follower_of(config, self.drives, self.queue, self.schedule)
-        self.cyclic = MODES[config.mode].cyclic
+        self.cyclic = MOTIONS[config.mode].cyclic
         self.homing: Homing | None = None
         self.fault = ""
         self.beside = ""  # what is wrong elsewhere on the bus

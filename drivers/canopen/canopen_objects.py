@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import configparser
+import io
+import logging
+import re
 from collections.abc import Callable
 from enum import StrEnum
+from pathlib import Path
 
 from canopen import ObjectDictionary, import_od
 from canopen.objectdictionary import ODArray, ODRecord, ODVariable
@@ -33,6 +37,8 @@ ENCODER_MODE, ENCODER_STEPS, ENCODER_RANGE, ENCODER_POSITION = 0x6000, 0x6001, 0
 ENCODER_RESOLUTION, ENCODER_TURNS, SECOND_POSITION = 0x6501, 0x6502, 0x60E4
 ANALOG_IN, ANALOG_EVENTS, ANALOG_DELTA = 0x6401, 0x6423, 0x6426
 
+_log = logging.getLogger(__name__)
+_FLAWS = 50  # objects that an EDS file may leave without a type
 _VARIABLES_301 = ((DEVICE_TYPE, U32), (ERROR_REGISTER, U8), (SYNC_PERIOD, U32), (HEARTBEAT, U16))
 _ARRAYS_301 = ((WATCHED, U32, 2), (ON_ERROR, U8, 1))
 _VARIABLES_402 = (
@@ -114,13 +120,32 @@ def dictionary(name: str, eds: str, standard: Callable[[], ObjectDictionary]) ->
     if not eds:
         return standard()
     try:
-        found: ObjectDictionary = import_od(eds)
+        found = _read(Path(eds))
     except (OSError, ValueError, KeyError, configparser.Error) as error:
         reason = str(error).splitlines()[0]
         raise DriverError(f"{name}: the EDS file {eds} cannot be read: {reason}") from error
     if DEVICE_TYPE not in found:
         raise DriverError(f"{name}: the EDS file {eds} has no object 1000h, which every device has")
     return found
+
+
+def _read(path: Path) -> ObjectDictionary:
+    """An EDS or DCF file; an object that it leaves without a type is as good as not there."""
+    text = path.read_text(encoding="latin-1")
+    for _ in range(_FLAWS):
+        stream = io.StringIO(text)
+        stream.name = str(path)  # the library looks for its ending
+        try:
+            found: ObjectDictionary = import_od(stream)
+        except configparser.NoOptionError as error:
+            less = re.sub(rf"(?ims)^\[{re.escape(error.section)}\].*?(?=^\[|\Z)", "", text)
+            if less == text:
+                raise
+            _log.warning("%s: object %s is left out: %s", path, error.section, error.message)
+            text = less
+            continue
+        return found
+    raise ValueError(f"more than {_FLAWS} objects without a type")
 
 
 def _dictionary(

@@ -23,7 +23,8 @@ _PROFILE = 0xFFFF
 _AT_ONCE = 255
 _INVALID, _NO_REMOTE = 1 << 31, 1 << 30  # a PDO that is being mapped; one that cannot be asked for
 _NO_SUCH_OBJECT = frozenset((0x06020000, 0x06090011))  # abort codes of SDO: the object, its sub-index
-_NO_VALUE = frozenset((0x060A0023, 0x08000024))  # it has the object, and nothing was ever put in
+# It has the object, and nothing was ever put in, or something that is none of its values.
+_NO_VALUE = frozenset((0x060A0023, 0x08000024, 0x08000000))
 _MAPS = 0x200  # from the communication record of a PDO to its mapping
 _SYNCS_AWAY, _LEAST_AWAY = 5, 20  # SYNCs, and ms, that setpoints may be away before the node is to stop
 _NAMES = {1: "profile position", 3: "profile velocity", 6: "homing", 7: "interpolated position", 8: "CSP"}

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 from core.ports import Clock, DriverError
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus
-from drivers.canopen.canopen_config import CanopenConfig
+from drivers.canopen.canopen_config import AxisConfig, CanopenConfig
 from drivers.canopen.canopen_objects import MODE_BITS
 from drivers.canopen.canopen_setup import Setup
 from drivers.canopen.canopen_table import CanNode
+from drivers.canopen.cia402_drives import MOTIONS, axis_work
+from drivers.canopen.drive_profiles import DriveProfile
 
 _PATIENCE = 0.4  # s for an answer; nodes of a bus that works need milliseconds
 _IDENTITY = (("vendor", 1), ("product", 2), ("revision", 3), ("serial", 4))
@@ -40,8 +43,9 @@ def survey(config: CanopenConfig, clock: Clock, idle: Callable[[], None] | None 
     Raises DriverError where the bus cannot be opened.
     """
     bus = _Quiet(config.bus, clock, idle)
+    axes = {axis.name: axis for axis in config.axes}
     try:
-        return [_asked(bus, wanted) for wanted in _wanted(config)]
+        return [_asked(bus, wanted, axes.get(wanted.name), config.mode) for wanted in _wanted(config)]
     finally:
         bus.close()
 
@@ -55,19 +59,39 @@ def _wanted(config: CanopenConfig) -> Iterator[CanNode]:
     yield from config.modules
 
 
-def _asked(bus: Bus, config: CanNode) -> Answer:
+def _asked(bus: Bus, config: CanNode, axis: AxisConfig | None, mode: str) -> Answer:
     name, number, profile = config.name, config.id, config.profile
-    objects = {402: od.drive_objects, 406: od.encoder_objects}.get(profile, od.module_objects)
-    setup = Setup(bus, name, number, objects())
-    setup.node.sdo.RESPONSE_TIMEOUT = _PATIENCE
+    family: DriveProfile | None = None
     try:
+        if profile == 402:
+            objects, family = od.drive_dictionary(config)
+        else:
+            objects = od.encoder_objects() if profile == 406 else od.module_objects()
+        setup = Setup(bus, name, number, objects)
+        setup.node.sdo.RESPONSE_TIMEOUT = _PATIENCE
         setup.demand_profile(profile)
+        said = [_shown(word, setup, sub) for word, sub in _IDENTITY]
+        more = [] if family is None else [*_modes(setup, family), *_fits(setup, family, axis, mode, bus)]
     except DriverError as error:
         return Answer(name, number, str(error), "")
-    said = [_shown(word, setup, sub) for word, sub in _IDENTITY]
-    return Answer(
-        name, number, "", ", ".join([f"CiA {profile}", *filter(None, said), *_modes(setup, profile)])
-    )
+    title = family.title if family is not None else f"CiA {profile}"
+    return Answer(name, number, "", ", ".join([title, *filter(None, said), *more]))
+
+
+def _fits(setup: Setup, family: DriveProfile, axis: AxisConfig | None, mode: str, bus: Bus) -> Iterator[str]:
+    """The mode it would run in, and the objects that it has not. Raises DriverError without that mode."""
+    if axis is None:
+        return
+    work = axis_work(replace(axis, profile=family), bus.config, MOTIONS[mode])
+    setup.demand_modes(work.modes, family.modes)
+    setup.demand(MOTIONS[mode].target)
+    yield f"runs {mode}"
+    watched = ((od.SYNC_PERIOD, 0), (od.COMMANDED, 5)) if work.period else ()
+    lacking = {index for index, sub, _ in work.standing if not setup.has(index, sub)}
+    if watched and not any(setup.has(*each) for each in watched):
+        lacking.add(od.COMMANDED)
+    if lacking:
+        yield f"has not {' '.join(f'{index:04X}h' for index in sorted(lacking))}"
 
 
 def _shown(word: str, setup: Setup, sub: int) -> str:
@@ -75,8 +99,8 @@ def _shown(word: str, setup: Setup, sub: int) -> str:
     return f"{word} {value:08X}h" if value else ""
 
 
-def _modes(setup: Setup, profile: int) -> Iterator[str]:
-    offered = _read(setup, od.SUPPORTED, 0) if profile == 402 else 0
+def _modes(setup: Setup, family: DriveProfile) -> Iterator[str]:
+    offered = _read(setup, od.SUPPORTED, 0) | family.modes
     if offered:
         yield "modes " + " ".join(_SHORT[mode] for mode, bit in MODE_BITS.items() if offered & bit)
 

@@ -13,9 +13,11 @@ from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import AxisConfig
 from drivers.canopen.canopen_objects import (
+    CSP,
     HM,
     IP,
     MODE_BITS,
+    PP,
     QUICK,
     DriveState,
     reset_step,
@@ -23,7 +25,7 @@ from drivers.canopen.canopen_objects import (
     towards_enabled,
 )
 from drivers.canopen.canopen_setup import Setup, axis_objects
-from drivers.canopen.canopen_table import CanNode, Objects
+from drivers.canopen.canopen_table import BusConfig, CanNode, Objects
 from drivers.canopen.drive_profiles import Entry
 from drivers.canopen.pvt_records import RecordQueue
 
@@ -253,6 +255,14 @@ class Motion:
     cyclic: bool = False
 
 
+MOTIONS = {  # by the words of the machine file
+    "pvt": Motion(IP),
+    "csp": Motion(CSP, cyclic=True),
+    "ip": Motion(IP, POINT_TARGET, cyclic=True),
+    "pp": Motion(PP),
+}
+
+
 @dataclass(slots=True)
 class DrivenAxis:
     """One axis and its drive; homed: its counts mean machine positions."""
@@ -413,28 +423,31 @@ class DriveSet:
             axis.last = axis.drive.position
 
     def _connect(self, axis: DrivenAxis) -> None:
-        config, how = axis.config, self._how
-        own = config.node.sdo if config.node is not None else ()
-        queue = config.profile.queue if how.mode == IP and not how.cyclic else None
-        submode: Objects = ((od.IP_SUBMODE, 0, queue.submode if queue is not None else 0),)
-        work = DriveWork(
-            modes=MODE_BITS[how.mode] | (0 if config.absolute else MODE_BITS[HM]),
-            standing=(
-                *axis_objects(config, self._bus.config),
-                *(submode if how.mode == IP else ()),
-                *(every(self._bus.config.sync) if how.cyclic else ()),
-            ),
-            own=own,
-            records=queue.object if queue is not None else 0,
-            period=self._bus.config.sync if how.cyclic else 0.0,
-        )
-        axis.drive.connect(work)
+        config = axis.config
+        axis.drive.connect(axis_work(config, self._bus.config, self._how))
         if config.counts_per_rev:
             axis.drive.setup.demand_turn(config.counts_per_rev)
         if not config.absolute:
             axis.drive.setup.demand_homing(config.home_method)
         axis.homed, axis.last = config.absolute, axis.drive.position
-        axis.drive.mode = how.mode
+        axis.drive.mode = self._how.mode
+
+
+def axis_work(config: AxisConfig, bus: BusConfig, how: Motion) -> DriveWork:
+    """What the drive of an axis is configured for."""
+    queue = config.profile.queue if how.mode == IP and not how.cyclic else None
+    submode: Objects = ((od.IP_SUBMODE, 0, queue.submode if queue is not None else 0),)
+    return DriveWork(
+        modes=MODE_BITS[how.mode] | (0 if config.absolute else MODE_BITS[HM]),
+        standing=(
+            *axis_objects(config, bus),
+            *(submode if how.mode == IP else ()),
+            *(every(bus.sync) if how.cyclic else ()),
+        ),
+        own=config.node.sdo if config.node is not None else (),
+        records=queue.object if queue is not None else 0,
+        period=bus.sync if how.cyclic else 0.0,
+    )
 
 
 def _driven(config: AxisConfig, drive: Drive402) -> DrivenAxis:

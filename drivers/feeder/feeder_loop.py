@@ -73,11 +73,11 @@ def _rounds(sock: socket.socket, feeder: Feeder, driven: Driven) -> None:
     inbox = Inbox()
     sock.setblocking(False)
     due = clock.now()
-    gone = 0.0
+    gone: float | None = None  # since when the control has been
     while not feeder.done:
         feeder.late(clock.now() - due)
         feeder.tick()
-        woken, set_by_driver = due, driven.wake()
+        set_by_driver = driven.wake()
         due = max(due + PERIOD, clock.now()) if set_by_driver is None else set_by_driver
         heard = False  # who is always late still listens, once a round
         while (left := due - clock.now()) > 0.0 or not heard:
@@ -88,8 +88,8 @@ def _rounds(sock: socket.socket, feeder: Feeder, driven: Driven) -> None:
                 feeder.orphaned = not _talk(sock, inbox, feeder)
         if feeder.orphaned:
             sock.close()
-            gone += max(due - woken, 0.0)
-            if gone > _LAST:
+            gone = clock.now() if gone is None else gone
+            if clock.now() - gone > _LAST:
                 break
 
 

@@ -68,6 +68,7 @@ def test_shipped_bus_in_model_units() -> None:
         "gt75-grblhal.toml",
         "gt75-vfd.toml",
         "gt75-bench.toml",
+        "gt75-epos4.toml",
         "gt75-hal.toml",
         "gt75-parport.toml",
         "gt75-mesa-7i76e.toml",

@@ -42,8 +42,21 @@ def test_every_node_says_what_it_is() -> None:
     found = surveyed()
     assert {name: answer.node for name, answer in found.items()} == {"X": 1, "Z": 2, "spindle": 3, "io": 10}
     assert not any(answer.trouble for answer in found.values())
-    assert found["X"].detail == "CiA 402, modes PP homing IP CSP"
+    # EPOS2 has no option of its quick stop, and no time for its window
+    assert found["X"].detail == "maxon EPOS2, modes PP homing IP CSP, runs pvt, has not 605Ah 6066h"
     assert found["io"].detail == "CiA 401"
+
+
+def test_a_family_that_has_not_the_mode_is_wrong_before_anything_is_written() -> None:
+    csp = (
+        ('mode = "pvt"', 'mode = "csp"'),
+        ('drive = "epos2"', 'drive = "epos4"'),
+        ("sync_ms = 10 ", "sync_ms = 4 "),
+    )
+    found = surveyed(*csp)
+    assert "runs csp" in found["X"].detail
+    interpolated = (('mode = "pvt"', 'mode = "ip"'), *csp[1:])
+    assert "X: node 1 cannot be used in this mode, it has not: 60C1:1" in surveyed(*interpolated)["X"].trouble
 
 
 def test_one_that_is_silent_hides_no_other() -> None:
