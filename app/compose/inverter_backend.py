@@ -86,7 +86,9 @@ def _attended(
         axes=ClearingAxes(ports.axes, spindle.clear_fault),
         spindle=spindle,
         gear=ports.gear if encoder else None,
-        samples=SlidesAlone(ports.samples, len(ports.axes.axes)) if ports.samples is not None else None,
+        samples=SlidesAlone(ports.samples, len(ports.axes.axes), lambda: spindle.load)
+        if ports.samples is not None
+        else None,
         warnings=(*ports.warnings, *said),
         wakeup=None,  # nobody rings for what the inverter does by itself
         halt=partial(halt_with, ports, spindle),
@@ -114,14 +116,15 @@ class SlidesAlone:
     Of that one the record has what is measured at each tick.
     """
 
-    def __init__(self, inner: SampleSource, axes: int) -> None:
-        self.rate, self._inner = inner.rate, inner
+    def __init__(self, inner: SampleSource, axes: int, load: Callable[[], float]) -> None:
+        self.rate, self._inner, self._load = inner.rate, inner, load
         self._spindle = slice(1 + 3 * axes, 4 + 3 * axes)
 
     def take(self, most: int = 8192) -> FloatArray:
-        """Speed, turns and load of the spindle are not known."""
+        """Speed and turns of the spindle are not known; its load is what the inverter said last."""
         rows = self._inner.take(most)
         rows[:, self._spindle] = float("nan")
+        rows[:, self._spindle.stop - 1] = self._load()
         return rows
 
 

@@ -93,7 +93,9 @@ class CycleRecorder:
         if cycle.restarted and outcome == COMPLETE:
             outcome = RESTARTED
         seconds = max(0.0, event.t - cycle.began - cycle.stood)
-        row = cycle.row._replace(part=event.part, ended=self._now(), seconds=seconds, outcome=outcome)
+        row = cycle.row._replace(
+            part=event.part, ended=self._now(), seconds=seconds, outcome=outcome, load=event.load
+        )
         self._save(store, row)
 
     @staticmethod

@@ -27,9 +27,18 @@ class Counters:
     last_cycle: float = 0.0
     cutting: Mapping[int, float] = field(default_factory=dict)  # by tool: at feed, dry runs not counted
 
-    def cut(self, tool: int, seconds: float) -> None:
+    borne: tuple[float, float] = (0.0, 0.0)  # by the spindle at feed, in this part: per cent · s, and s
+
+    def cut(self, tool: int, seconds: float, load: float | None = None) -> None:
         """So long at feed with this tool; whoever has the figures of before keeps them as they were."""
         self.cutting = {**self.cutting, tool: self.cutting.get(tool, 0.0) + seconds}
+        if load is not None:
+            self.borne = self.borne[0] + load * seconds, self.borne[1] + seconds
+
+    def take_load(self) -> float | None:
+        """The mean load of the spindle at feed in the part that ends, per cent; None where nobody tells."""
+        (borne, seconds), self.borne = self.borne, (0.0, 0.0)
+        return borne / seconds if seconds > 0.0 else None
 
 
 @dataclass(slots=True)

@@ -195,6 +195,7 @@ class Executor:
             now, source = self._context.now, self._ports.samples
             late, self._late = self._late, 0.0
             samples = source.take() if source is not None else None
+            self._context.note_load(samples)
             queued = math.nan if source is not None else max(self._ports.axes.horizon() - now, 0.0)
             turns, rests = self._context.spindle.angle.turns, self._rest.holds
             self._tell(Tick(self.snapshot, late, queued, turns, samples, rests))

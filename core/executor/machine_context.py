@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -15,7 +16,7 @@ from core.executor.spindle_control import SpindleControl
 from core.executor.station_signals import StationSignals
 from core.machine.machine_model import Machine
 from core.machine.station_rules import ENABLE
-from core.ports import AxisSample, MachinePorts, Unknown
+from core.ports import AxisSample, FloatArray, MachinePorts, Unknown
 
 _log = logging.getLogger(__name__)
 _QUIET = StationSignals(estop=False, start=False, hold=False, feed=1.0, spindle=1.0, auto=True, trouble="")
@@ -51,6 +52,18 @@ class MachineContext:
     line: int = 0  # of the block being executed, for the log
     stop: Alarm | None = None  # why the machine stands, where no alarm says it
     _noted: Code | None = None  # the last that went into the log
+    _borne: float | None = None  # by the spindle's drive, per cent, as its samples said last
+
+    @property
+    def spindle_load(self) -> float | None:
+        """Per cent: of the machine's own input, else as the driver samples it; None where nobody tells."""
+        return self._borne if self.signals.spindle_load is None else self.signals.spindle_load
+
+    def note_load(self, samples: FloatArray | None) -> None:
+        """The newest that the driver's samples tell, (n, 5 + 3 axes); ``core.ports.SampleSource``."""
+        if samples is not None and len(samples):
+            load = float(samples[-1, -2])
+            self._borne = load if math.isfinite(load) else None
 
     @property
     def feed_override(self) -> float:

@@ -62,15 +62,18 @@ class PartCount:
     def ended(self) -> None:
         """The program has come to its end. The time of a restart is not that of a cycle."""
         counters, seconds, why = self.counters, self.counters.cycle, self.why_none
-        counters.cycle = 0.0
+        counters.cycle, load = 0.0, counters.take_load()
         counters.ends += 1
         if not self.piece.restarted:
             counters.last_cycle = seconds
         if why:
-            self._context.log("uncounted", f"{why}; {seconds:.2f} s")
+            text, line = f"{why}; {seconds:.2f} s", self._context.line
+            self._context.log_event(Event(self._context.now, "uncounted", text, line, load=load))
         else:
             counters.parts += 1
             counters.made += 1
             text, line = f"part {counters.parts}, {seconds:.2f} s", self._context.line
-            self._context.log_event(Event(self._context.now, "part", text, line, part=counters.made))
+            self._context.log_event(
+                Event(self._context.now, "part", text, line, part=counters.made, load=load)
+            )
         self.piece.end()

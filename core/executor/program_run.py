@@ -91,7 +91,7 @@ class ProgramRun:
         """So much time has gone by: at feed it wears the tool. In a dry run nothing is cut."""
         block = self.cycle.current if self.cycle is not None and not self.cycle.at_rest else None
         if block is not None and block.moves and not block.rapid and not self._context.switches.no_count:
-            self.counters.cut(block.modal.tool, seconds)
+            self.counters.cut(block.modal.tool, seconds, self._context.spindle_load)
 
     def leave(self) -> bool:
         """A cycle that was reset is over as soon as the slides rest; True once it is."""

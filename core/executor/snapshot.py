@@ -210,6 +210,7 @@ class Event:
     alarm: Alarm | None = None  # of an alarm, an E-stop and a stop: what the catalogue says of it
     record: str = ""  # file of the scope's record of the seconds before it, in the folder records
     part: int = 0  # of a part: its number among those of the program
+    load: float | None = None  # of a part: mean load of the spindle at feed, per cent
 
 
 # --- which state may follow which -----------------------------------------------------------------------

@@ -103,7 +103,7 @@ class Publisher:
             drive_test=control.drive_test.state,
             touching=control.touch.phase,
             touched=control.touch.touched,
-            spindle_load=context.signals.spindle_load,
+            spindle_load=context.spindle_load,
         )
 
     def _system(self, block: Block | None, *, under_way: bool) -> Swivel | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Protocol
 
@@ -100,6 +101,14 @@ class InverterSpindle:
         """rpm, signed, as the inverter last said."""
         seen = self._attendant.seen
         return seen.look.signed / self._config.hz_per_rpm if seen else 0.0
+
+    @property
+    def load(self) -> float:
+        """Per cent of the motor's rated current that the inverter gives; nan where nobody tells."""
+        seen, rated = self._attendant.seen, self._config.rated
+        if not rated or seen is None or self._attendant.unheard:
+            return math.nan
+        return 100.0 * seen.look.current / rated
 
     def angle(self) -> tuple[float, float] | None:
         """By the encoder; None without one, and of one that is not to be believed."""

@@ -21,6 +21,7 @@ _FIELDS = (
     Field("id", Kind.WHOLE, low=1, high=247, default=1),
     Field("comm_loss_s", Kind.NUMBER, Unit.SECONDS, 0.2, 10.0, default=1.5),
     Field("hz_per_rpm", Kind.NUMBER, Unit.PLAIN, 0.001, 1.0),
+    Field("rated_a", Kind.NUMBER, Unit.PLAIN, 0.1, 1000.0, default=0.0),
     Field("disagree_pct", Kind.NUMBER, Unit.PERCENT, 0.05, 0.5, default=0.15),
 )
 
@@ -35,6 +36,7 @@ class InverterConfig:
     rpm_max: float
     comm_loss: float
     character: float  # s that one character takes on the line
+    rated: float = 0.0  # A of the motor, by its plate; 0: not known, and no load is told
     disagree: float = 0.15  # fraction by which an encoder may differ from what the inverter gives
 
 
@@ -54,7 +56,7 @@ def _table(file: FileReading) -> InverterTable:
     config = values.model(
         InverterConfig,
         _PATH,
-        {"unit": "id", "comm_loss": "comm_loss_s", "disagree": "disagree_pct"},
+        {"unit": "id", "comm_loss": "comm_loss_s", "disagree": "disagree_pct", "rated": "rated_a"},
         rpm_max=values.pair("spindle.rpm")[1],
         character=line.character,
     )

@@ -101,7 +101,7 @@ class Plant:
         self._homing: tuple[Servo, float] | None = None
         self.due: Callable[[float], None] | None = None  # what breaks by itself as time passes
         self.log: SampleLog | None = None  # samples of every grid point, once somebody takes them
-        self._turned = (0.0, 0.0)  # speed and turns of the spindle at the present grid point
+        self._turned = (0.0, 0.0, 0.0)  # speed, turns and load of the spindle at the present grid point
         self._changed = True  # something was sampled that is not at rest
         self._k = int(clock.now() / config.step)
         self.spindle.t = clock.now()
@@ -259,6 +259,7 @@ class Plant:
             if self.t >= self._off_at:
                 self._power_off()
             if self._resting():
+                self.spindle.cuts = False
                 if self.spindle.slips:
                     self.spindle.cut_load(self.t, cutting=False)
                 until = max(self._k + 1, int(min(self._off_at / self.config.step + 1, last)))
@@ -297,8 +298,9 @@ class Plant:
         if self.terminals.setter is not None:
             x, z = (self.servos[self.names.index(name)].where for name in "XZ")
             self.terminals.setter.look(self.t, x, z, self._readings())
+        self.spindle.cuts = self.cuts()
         if self.spindle.faults.belt:
-            self.spindle.cut_load(self.t, cutting=self.cuts())
+            self.spindle.cut_load(self.t, cutting=self.spindle.cuts)
         self._turn()
 
     def cuts(self) -> bool:
@@ -331,7 +333,7 @@ class Plant:
         actual = [servo.reading for servo in self.servos]
         load = [servo.load for servo in self.servos]
         left = self.queue.horizon(t) - t
-        self.log.add(t, *(demand or actual), *actual, *load, *self._turned, _NAN, left)
+        self.log.add(t, *(demand or actual), *actual, *load, *self._turned, left)
         self._changed = True
 
     def _sample_rest(self, until: int) -> None:
@@ -353,7 +355,7 @@ class Plant:
         if self.log is not None and (self._turned[0] or not self.spindle.still):
             if self.t > self.spindle.t:
                 self.spindle.advance(self.t)
-            self._turned = self.spindle.speed, self.spindle.counted
+            self._turned = self.spindle.speed, self.spindle.counted, self.spindle.load
 
     def _reference(self) -> None:
         if self._homing is not None and self.t >= self._homing[1]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from drivers.lookalikes.plant_config import SimSpindle
 
+_BEARINGS, _SPEEDS_UP, _IN_CUT = 10.0, 70.0, 30.0  # per cent
 _GRABS = 5.0  # a second: a belt that slips
 
 
@@ -31,6 +32,7 @@ class SpindleMotor:
         self.faults = SpindleFaults()
         self._even = 0.0  # rpm, without wander
         self.slips = 0.0  # fraction that the belt loses now
+        self.cuts = False  # a tool is in the metal
         self.turns = 0.0
         self.t = 0.0
         self._target = 0.0
@@ -46,6 +48,18 @@ class SpindleMotor:
             return even
         swing = math.sin(2.0 * math.pi * self.t / faults.wander_period)
         return even * (1.0 + faults.wander * swing)
+
+    @property
+    def load(self) -> float:
+        """Per cent of what the motor can: bearings by the speed, speeding up, and a tool in the metal.
+
+        No more than a picture of a real one: how much metal is cut does not count.
+        """
+        if not self._even:
+            return 0.0
+        faster = abs(self._target) * self.faults.bog > abs(self._even) + 1e-9 and not self._coasting
+        turning = _BEARINGS * abs(self._even) / self.config.rpm_max
+        return min(100.0, turning + (_SPEEDS_UP if faster else 0.0) + (_IN_CUT if self.cuts else 0.0))
 
     @property
     def still(self) -> bool:

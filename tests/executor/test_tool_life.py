@@ -149,3 +149,43 @@ def test_the_same_bar_again_is_told_once() -> None:
     rig.post(BarNextPart(SPENT))
     rig.post(BarNextPart(""))
     assert rig.said("switch") == [f"no other part: {SPENT}", "parts may go on"]
+
+
+# --- the load of the spindle ------------------------------------------------------------------------------
+
+
+def recorded(rig: Rig) -> Rig:
+    """With somebody who takes what the driver samples, as the product has it."""
+    rig.executor._tell = lambda _tick: None
+    return rig
+
+
+def loads(rig: Rig) -> list[float | None]:
+    return [event.load for event in rig.events if event.kind in {"part", "uncounted"}]
+
+
+def test_a_part_tells_the_mean_load_of_its_spindle_at_feed() -> None:
+    """500 rpm need their share of 10 % for the bearings, and 30 % more in the cut."""
+    rig = recorded(Rig())
+    for _ in range(2):
+        rig.start(PART.replace("G73\n", "G73\nM03S500\n"), TOOLS)
+        rig.until(State.IDLE)
+    expected = 30.0 + 10.0 * 500.0 / rig.machine.spindle.rpm_max
+    assert loads(rig) == [pytest.approx(expected, rel=0.1)] * 2
+    assert rig.shot.spindle_load is not None
+
+
+def test_the_next_part_begins_with_no_load_of_the_one_before() -> None:
+    rig = recorded(Rig())
+    rig.start(PART.replace("G73\n", "G73\nM03S500\n"), TOOLS)
+    rig.until(State.IDLE)
+    rig.start("G90G94F300\nG00X1\nM30\n", TOOLS)
+    rig.until(State.IDLE)
+    assert loads(rig)[1] is None, "nothing was cut"
+
+
+def test_a_machine_that_tells_no_load_has_none() -> None:
+    rig = Rig()  # nobody takes the samples
+    rig.start(PART, TOOLS)
+    rig.until(State.IDLE)
+    assert (loads(rig), rig.shot.spindle_load) == ([None], None)

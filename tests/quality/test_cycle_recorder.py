@@ -196,3 +196,12 @@ def test_events_without_a_cycle_leave_nothing(recorded: Recorded) -> None:
         recorded.recorder.hear(Event(0.0, kind, text), recorded.store)
     assert recorded.cycles == ()
     assert recorded.stops == ()
+
+
+def test_the_load_that_a_part_tells_is_kept_with_its_cycle(recorded: Recorded) -> None:
+    for kind, text in (("load", "peg.nc"), ("start", "peg.nc")):
+        recorded.recorder.hear(Event(0.0, kind, text), recorded.store)
+    recorded.recorder.hear(Event(9.0, "part", "part 1", part=1, load=31.5), recorded.store)
+    recorded.recorder.hear(Event(10.0, "start", "peg.nc"), recorded.store)
+    recorded.recorder.hear(Event(19.0, "part", "part 2", part=2), recorded.store)
+    assert [row.load for row in recorded.cycles] == [31.5, None]
