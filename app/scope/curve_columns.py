@@ -108,6 +108,7 @@ def points_of(times: FloatArray, values: FloatArray, width: float) -> Points:
 
 # --- the range of a lane --------------------------------------------------------------------------------
 
+_EDGE = 0.01
 _ROUND = (1.0, 2.0, 2.5, 5.0, 10.0)
 
 
@@ -125,8 +126,9 @@ def kept_range(
 ) -> tuple[float, float]:
     """The range of before as long as the curve lies in it and fills a quarter: a lane does not twitch."""
     if before is not None:
-        inside = before[0] <= low and high <= before[1]
         wide = before[1] - before[0]
+        edge = _EDGE * wide  # a curve on the edge itself is half a line beyond it, and not seen
+        inside = before[0] + edge <= low and high <= before[1] - edge
         if inside and (4.0 * (high - low) >= wide or wide <= 4.0 * least):
             return before
     return round_range(low, high, least)

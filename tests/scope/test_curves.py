@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -97,6 +99,7 @@ def test_a_lane_keeps_its_range_as_long_as_it_fits() -> None:
     assert kept_range(first, -0.5, 0.8, 0.1) == first
     assert kept_range(first, -0.5, 1.7, 0.1)[1] >= 1.7
     assert kept_range(first, 0.0, 0.01, 0.01) != first  # too small to be read in it
+    assert kept_range(first, -0.5, first[1], 0.1)[1] > first[1]  # on the edge it would not be seen
 
 
 # --- of a record ----------------------------------------------------------------------------------------
@@ -163,6 +166,18 @@ def test_live_curves_are_those_of_the_record() -> None:
         for time, value in zip(points.times[middle] + sight.zero, points.values[middle], strict=True):
             near = np.abs(whole.record.times - time) <= 0.5 * asked.width + 0.0011
             assert np.nanmin(column[near]) - 1e-9 <= value <= np.nanmax(column[near]) + 1e-9
+
+
+@pytest.mark.parametrize(("armed", "released"), [(100.0, 34.0 * np.pi - np.arccos(0.762)), (107.0, None)])
+def test_a_trigger_counts_from_where_it_was_armed(armed: float, released: float | None) -> None:
+    """.01·cos t rises through .00762 at 106.1; the worker looks at 108 for the first time."""
+    played = PlayedSamples(now=108.0)
+    trigger = Trigger(When.RISES, "X following error", 0.00762)
+    asked = replace(wanted("X following error"), trigger=trigger, armed=armed)
+    found = LiveCurves(played).sight(asked).released
+    assert found == (
+        None if released is None else pytest.approx(32.0 * np.pi + 2 * np.pi - np.arccos(0.762), abs=0.002)
+    )
 
 
 def test_nothing_but_level_lines_is_told() -> None:
