@@ -41,9 +41,12 @@ _FIRST = 0.5  # s in which everything must have answered a first SYNC
 class CanopenSamples:
     """``core.ports.SampleSource``: what the drives have answered to each SYNC."""
 
-    def __init__(self, axes: CanopenAxes, spindle: Spindle, sync: float) -> None:
+    def __init__(
+        self, axes: CanopenAxes, spindle: Spindle, sync: float, spindle_drive: Drive402 | None
+    ) -> None:
         self.rate = 1.0 / sync
-        self._axes, self._spindle = axes, spindle
+        self._axes, self._spindle, self._spindle_drive = axes, spindle, spindle_drive
+        self._drives = {axis.config.name: axis.drive for axis in axes.drives.axes}
         self._log = SampleLog(len(axes.axes))
 
     def note(self, now: float) -> None:
@@ -52,10 +55,11 @@ class CanopenSamples:
             return
         sample, angle = self._axes.sample(), self._spindle.angle()
         turns = angle[1] if angle is not None else _NAN
-        load = (_NAN,) * len(sample.actual)
+        load = [self._drives[name].load if name in self._drives else _NAN for name in self._axes.axes]
+        turning = self._spindle_drive.load if self._spindle_drive is not None else _NAN
         left = self._axes.queue.horizon(now) - now
         self._log.add(
-            sample.t, *sample.demand, *sample.actual, *load, self._spindle.speed(), turns, _NAN, left
+            sample.t, *sample.demand, *sample.actual, *load, self._spindle.speed(), turns, turning, left
         )
 
     def take(self, most: int = KEPT) -> FloatArray:
@@ -85,7 +89,12 @@ class CanopenMachine:
             self.encoder = self._encoder(drives)
             self.c = self._spindle_c()
             self.touch = CanopenProbe(self.axes, self.io, config.bus.sync) if PROBE in config.inputs else None
-            self.samples = CanopenSamples(self.axes, self._turning, config.bus.sync)
+            self.samples = CanopenSamples(
+                self.axes,
+                self._turning,
+                config.bus.sync,
+                self.spindle.drive if self.spindle is not None else None,
+            )
             self.axes.reconnect = self._reconnect
             self._connect()
         except DriverError:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import canopen
@@ -33,6 +34,9 @@ _FOLLOWING = 0x8611  # EMCY
 SYNCS = 3  # answers that may be missing before a drive counts as silent
 _COMMAND = struct.Struct("<Hbi")  # control word, mode, target
 _SHOWN = struct.Struct("<Hbi")  # status word, mode, position
+_TORQUE = struct.Struct("<h")  # per mille of the rated one
+_NAN = float("nan")
+_RARER, _MOST_RARE = 5, 240  # times what need not be known at each SYNC; SYNCs, as CiA 301 counts them
 POSITION_TARGET, POINT_TARGET = Entry(od.TARGET, 0, 32), Entry(od.IP_RECORD, 1, 32)
 SPEED_TARGET, SPEED = Entry(od.TARGET_SPEED, 0, 32), Entry(od.VELOCITY, 0, 32, signed=True)
 _NEEDED = (
@@ -70,6 +74,7 @@ class Drive402:
         self.status = 0
         self.shown_mode = 0
         self.position = 0  # counts
+        self._load = _NAN
         self.missing = 0  # SYNCs without an answer
         self.heard = self.asked = self.answered = bus.clock.now()  # answered: the SYNC that it shows
         self.trouble: Fault | str = ""
@@ -107,6 +112,11 @@ class Drive402:
         """What it turns at, in its unit, where it was asked for that."""
         return self.told.get(od.VELOCITY, 0)
 
+    @property
+    def load(self) -> float:
+        """Per cent of the rated torque, signed; nan where it tells none, and while it is silent."""
+        return _NAN if self.silent else self._load
+
     def connect(self, work: DriveWork) -> None:
         """Check, configure and map it in PRE-OPERATIONAL. Raises DriverError with what does not fit."""
         setup, records = self.setup, work.records
@@ -126,12 +136,21 @@ class Drive402:
         if self._told_as:
             more = [_mapped(entry) for entry in self._told_as]
             setup.transmit(2, self._told, *more, every=self.bus.config.seldom)
+        self._ask_load()
         self._beats = od.HEARTBEAT not in setup.lacks
         self.node.nmt.add_heartbeat_callback(self._heartbeat)
         self.node.emcy.add_callback(self._emergency)
         self.status = setup.read(od.STATUS)
         self.position = self.target = setup.read(od.POSITION)
         self.heard, self.missing, self.rebooted, self.trouble = self.bus.clock.now(), 0, False, ""
+
+    def _ask_load(self) -> None:
+        """Have it tell its torque where it can: a figure for the scope, for which no start is refused."""
+        self._load = _NAN
+        if self.setup.has(od.TORQUE, 0):
+            every = min(_RARER * self.bus.config.seldom, _MOST_RARE)
+            with suppress(DriverError):  # some map it nowhere, or have no fourth PDO
+                self.setup.transmit(4, self._torque, (od.TORQUE, 16), every=every)
 
     def operational(self) -> None:
         """NMT start; only after every node has been configured."""
@@ -192,6 +211,9 @@ class Drive402:
     def _shown(self, map_: canopen.pdo.PdoMap) -> None:
         self.status, self.shown_mode, self.position = _SHOWN.unpack(map_.data)
         self.missing, self.answered = 0, self.asked
+
+    def _torque(self, map_: canopen.pdo.PdoMap) -> None:
+        self._load = _TORQUE.unpack(map_.data)[0] / 10.0
 
     def _told(self, map_: canopen.pdo.PdoMap) -> None:
         if len(map_.data) != sum(entry.bits for entry in self._told_as) // 8:

@@ -154,6 +154,7 @@ class AxisDrive:
             od.STATUS: self.status,
             od.MODE_SHOWN: lambda: self.mode,
             od.POSITION: lambda: round(self.servo.reading / count),
+            od.TORQUE: lambda: round(10.0 * self.servo.load),
             od.FOLLOWING: lambda: round((self.p - self.servo.reading) / count) if self.power.powered else 0,
         }
         if index == od.SECOND_POSITION and self.second is not None:

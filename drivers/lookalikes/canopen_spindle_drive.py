@@ -97,6 +97,7 @@ class SpindleDrive:
             od.STATUS: lambda: self.axis.status() if self.as_axis else self.power.word | self._reached(),
             od.MODE_SHOWN: lambda: self.mode,
             od.VELOCITY: lambda: round(self.slide.v / 6.0 if self.as_axis else self.motor.speed),
+            od.TORQUE: lambda: 0 if self.as_axis else round(10.0 * self.motor.load),
             od.POSITION: lambda: (round(counted) + 2**31) % 2**32 - 2**31,
         }
         return live[index]() if index in live else None

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
-from tests.drivers.canopen.bench import CanBench
+from core.ports import DriverError
+from drivers.canopen.canopen_objects import TORQUE
+from drivers.canopen.canopen_setup import Setup
+from drivers.lookalikes.canopen_axis_drive import AxisDrive
+from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.machines import ramp
 
 
@@ -33,4 +40,47 @@ def test_each_sync_is_a_row_with_the_drives_positions(bench: CanBench) -> None:
         assert tuple(row[1 : 1 + len(axes.axes)]) == by_time[row[0]].demand
         assert tuple(row[1 + len(axes.axes) : 1 + 2 * len(axes.axes)]) == by_time[row[0]].actual
     assert rows[:, 1].max() > 14.0
-    assert np.isnan(rows[:, 1 + 2 * len(axes.axes) : 1 + 3 * len(axes.axes)]).all()  # no torque is mapped
+    assert np.isnan(rows[:, 3 * len(axes.axes)]).all()  # C is the spindle, whose drive is none of an axis
+
+
+def test_the_torque_of_a_drive_is_its_load_in_per_cent(
+    bench: CanBench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """6077h counts per mille of the rated torque, signed."""
+    read = AxisDrive.read
+    monkeypatch.setattr(
+        AxisDrive, "read", lambda self, index, sub: -345 if index == TORQUE else read(self, index, sub)
+    )
+    source, axes = bench.machine.ports.samples, bench.machine.axes
+    assert source is not None
+    bench.run(0.2)
+    assert list(source.take()[-1, 1 + 2 * len(axes.axes) : 3 + 2 * len(axes.axes)]) == [-34.5, -34.5]
+
+
+def test_a_drive_that_maps_no_torque_tells_none_and_starts_all_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    transmit = Setup.transmit
+
+    def no_fourth(
+        self: Setup, number: int, heard: Callable[..., None], *entries: tuple[int, int], every: int = 1
+    ) -> None:
+        if number == 4:
+            raise DriverError("X: node 1, object 1A03:1: refused by the node", "drive-setup")
+        transmit(self, number, heard, *entries, every=every)
+
+    monkeypatch.setattr(Setup, "transmit", no_fourth)
+    bench = CanBench(can_machine())
+    bench.machine.axes.enable(True)
+    bench.run(0.2)
+    assert bench.machine.axes.sample().fault == ""
+    assert all(math.isnan(axis.drive.load) for axis in bench.machine.axes.drives.axes)
+    bench.close()
+
+
+def test_what_a_silent_drive_told_last_is_no_load(bench: CanBench) -> None:
+    bench.run(0.2)
+    drive = bench.machine.axes.drives.axes[0].drive
+    assert drive.load == 0.0
+    drive.missing = 10
+    assert math.isnan(drive.load)
