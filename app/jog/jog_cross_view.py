@@ -13,6 +13,7 @@ from app.jog.jog_speeds import JogDirection
 from app.screen.look import CENTRE, Look, Painter, put
 from app.screen.panel import Control, FingerPanel
 
+_LOW = 9.0  # units
 Finger = Callable[[str, str, int], None]  # what it is, axis, sign
 
 
@@ -69,9 +70,14 @@ class JogCross(FingerPanel):
             0.24,
             "run" if moving else "key",
         )
+        low = (
+            box.height() < _LOW * u and arrow[0] == 0
+        )  # too low for an arrow over its name: it stands beside
+        at = box.adjusted(0.12 * box.width(), 0, -0.62 * box.width(), 0) if low else box
         if arrow != (0, 0):
-            draw_arrow(painter, box, arrow, "on_state" if moving else "accent")
-        aside = box.translated(-arrow[0] * 0.16 * box.width(), -arrow[1] * 0.16 * box.height())
+            draw_arrow(painter, at, arrow, "on_state" if moving else "accent")
+        up = 0.0 if low else 0.16
+        aside = box.translated(-arrow[0] * 0.16 * box.width(), -arrow[1] * up * box.height())
         name = f"{axis}{'+' if sign > 0 else '−'}"
         painter.write(aside, name, 3.4, "on_state" if moving else "text", at=CENTRE)
         corner = box.adjusted(0.8 * u, 0.3 * u, 0, 2.4 * u - box.height())

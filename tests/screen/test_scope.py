@@ -212,6 +212,64 @@ def test_a_finger_takes_a_cursor_along(hands: Hands) -> None:
     assert page.scope.cursors.times[0] == pytest.approx(chart.time_at(QPointF(x + 60, y)), abs=1e-6)
 
 
+def spread(page: ScopePage, *steps: tuple[QPoint, QPoint]) -> None:
+    """Two fingers go down on the curves, move, and come up again."""
+    device, last = QTest.createTouchDevice(), steps[-1]
+    down = QTest.touchEvent(page.curves, device, False)
+    down.press(0, steps[0][0], page.curves)
+    down.press(1, steps[0][1], page.curves)
+    down.commit()
+    for one, other in steps[1:]:
+        moved = QTest.touchEvent(page.curves, device, False)
+        moved.move(0, one, page.curves)
+        moved.move(1, other, page.curves)
+        moved.commit()
+    up = QTest.touchEvent(page.curves, device, False)
+    up.release(0, last[0], page.curves)
+    up.release(1, last[1], page.curves)
+    up.commit()
+
+
+def test_two_fingers_beside_each_other_zoom_time_about_their_middle(hands: Hands) -> None:
+    """From 100 to 200 pixels apart: the window is half as wide, and what was between them still is."""
+    page = frozen(hands)
+    hands.key(Key.Key_Z)
+    chart, scope = page.curves.chart, page.scope
+    assert chart is not None
+    hands.sees(lambda: (chart.sight.begin, chart.sight.end) == (scope.window.begin, scope.window.end))
+    x, y = round(chart.room.center().x()), round(chart.room.center().y())
+    span, middle = scope.window.span, chart.time_at(QPointF(x, y))
+    spread(page, (QPoint(x - 50, y), QPoint(x + 50, y)), (QPoint(x - 100, y), QPoint(x + 100, y)))
+    assert scope.window.span == pytest.approx(span / 2.0)
+    assert (middle - scope.window.begin) / (span / 2.0) == pytest.approx(0.5, abs=0.02)
+
+
+def test_two_fingers_over_each_other_stretch_the_lane_between_them(hands: Hands) -> None:
+    page = frozen(hands)
+    chart, scope = page.curves.chart, page.scope
+    assert chart is not None
+    x, y = round(chart.room.center().x()), round(chart.room.y() + 0.15 * chart.room.height())
+    quantity = chart.quantity_at(QPointF(x, y))
+    assert quantity is not None
+    low, high = scope.sight.ranges[quantity]
+    span = scope.window.span
+    spread(page, (QPoint(x, y - 20), QPoint(x, y + 20)), (QPoint(x, y - 40), QPoint(x, y + 40)))
+    hands.sees(lambda: scope.sight.ranges[quantity] != (low, high))
+    near = scope.sight.ranges[quantity]
+    assert near[1] - near[0] == pytest.approx((high - low) / 2.0, rel=0.01)
+    assert scope.window.span == span
+
+
+def test_one_finger_left_of_two_drags_nothing(hands: Hands) -> None:
+    page = frozen(hands)
+    chart, scope = page.curves.chart, page.scope
+    assert chart is not None
+    x, y = round(chart.room.center().x()), round(chart.room.center().y())
+    before = scope.window.begin, scope.window.end
+    spread(page, (QPoint(x - 50, y), QPoint(x + 50, y)), (QPoint(x - 50, y), QPoint(x + 50, y)))
+    assert (scope.window.begin, scope.window.end) == pytest.approx(before)
+
+
 def test_a_drag_goes_through_time(hands: Hands) -> None:
     page = frozen(hands)
     hands.key(Key.Key_Z)
