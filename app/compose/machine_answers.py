@@ -18,6 +18,8 @@ from drivers.clocks import RealClock, StepClock
 from drivers.inverter.inverter_spindle import InverterSpindle
 from drivers.inverter.inverter_table import InverterTable
 from drivers.mtconnect.mtconnect_table import MtconnectTable
+from drivers.pendant.pendant_station import PendantStation
+from drivers.pendant.pendant_table import PendantModel
 
 MISSING = "missing"
 FAILED = (
@@ -100,7 +102,8 @@ def _ask_ports(machine: Machine, clock: Clock, answers: Answers) -> None:
         if real_time(machine):
             _settle(clock, connected.ports, machine)
         rows = list(_rows(machine, connected.ports))
-        answers.warnings += connected.ports.warnings
+        told = {row.detail for row in rows}
+        answers.warnings += [each for each in connected.ports.warnings if each not in told]
     finally:
         connected.close()
     answers.rows += rows
@@ -133,6 +136,10 @@ def _rows(machine: Machine, ports: MachinePorts) -> Iterator[Row]:
     yield _spindle(machine, ports)
     station = ports.station.snapshot()
     yield Row("station", "", "E-stop" if station.estop else "ok", _hands(station))
+    model = machine.hardware.table(PendantModel)
+    if model is not None and isinstance(ports.station, PendantStation):
+        away = ports.station.away
+        yield Row("pendant", model.device, "no answer" if away else "ok", away)
     for kind, states in (("input", ports.io.inputs()), ("output", ports.io.outputs())):
         for name, on in states.items():
             yield Row(f"{kind} {name}", terminals.pop(f"{kind} {name}", ""), "on" if on else "off", "")

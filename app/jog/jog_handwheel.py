@@ -112,13 +112,13 @@ class JogHandwheel:
             self.drop(tr("THE SCREEN WAS AWAY: THE HANDWHEEL IS OFF"))
         elif self.choice is not None and (why := self.barred()):
             self.drop(why)
-        elif self.choice is not None and now - self._asked > BEGINS and not snapshot.wheel:
-            why = snapshot.wheel_ended.upper()  # of the control
-            self.drop(tr("THE HANDWHEEL IS OFF: {why}").format(why=why) if why else "")
         elif wanted != self.choice and self.choice is not None:
             axis = self._by_hand if wanted is not None else ""
             self.drop("")
             self._by_hand, self._left = axis, None  # another step, or another axis at the switch
+        elif self.choice is not None and now - self._asked > BEGINS and not snapshot.wheel:
+            why = snapshot.wheel_ended.upper()  # of the control
+            self.drop(tr("THE HANDWHEEL IS OFF: {why}").format(why=why) if why else "")
         elif wanted is not None and not self.barred():
             self._renew(wanted, now)
 

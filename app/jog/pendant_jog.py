@@ -43,6 +43,8 @@ class PendantJog:
             if name in before and name not in on:
                 self.hold.release(name)
         if away > _AWAY:
+            if self.buttons.keys() & (on - before):
+                self.hold.say(tr("THE SCREEN WAS AWAY: LET THE BUTTON GO, AND PRESS IT AGAIN"))
             return
         if JOG_RAPID in before and JOG_RAPID not in on:
             self.hold.shift_released()

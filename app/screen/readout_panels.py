@@ -168,7 +168,9 @@ class SpindleGauge(Gauge):
         self.figure(painter, surface.adjusted(5 * u, 0, 0, 0), view.surface, 2.5)
         self.bar(painter, self.row(11.2, 2.8), view.override, 1.0)
         if view.load:
-            painter.write(self.row(0.4, 1.9), f"{tr('LOAD')} {view.load}", 1.6, "soft", at=RIGHT)
+            patch = QRectF(self.width() - 11.0 * u, 0.0, 9.8 * u, 2.0 * u)  # in the top line, as its title
+            painter.fill(patch, "panel")
+            painter.write(patch, f"{tr('LOAD')} {view.load}", 1.6, "soft", at=CENTRE)
 
     def _unheard(self, painter: Painter) -> None:
         """Nobody knows whether it stands: that is said instead of any figure."""

@@ -174,7 +174,10 @@ class CommandHandler:
         control, jogger = self._control, self._control.jogger
         if self._may_not_jog():
             return
-        why = control.wheel.bars(control.state) or self._button_up(command.while_on)
+        if command.while_on and not self._context.button(command.while_on):
+            control.stop_jog("its button is up")  # let go a moment ago, which the screen has not seen yet
+            return
+        why = control.wheel.bars(control.state)
         why = why or jogger.refusal(command.axis, command.velocity, command.lease)
         if why:
             jogger.stop()
@@ -225,10 +228,6 @@ class CommandHandler:
             control.stop_jog("something else was asked for")
             return True
         return False
-
-    def _button_up(self, name: str) -> str:
-        """Why a jog that a button holds does not begin; empty when the button is down."""
-        return "" if not name or self._context.button(name) else f"its button {name} is up"
 
     def _touch(self, command: commands.Touch) -> None:
         control = self._control

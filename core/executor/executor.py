@@ -235,7 +235,7 @@ class Executor:
         lost = self._context.signals.lost or self._context.signals.wheel_trouble
         if lost != self._told_lost:
             self._told_lost = lost
-            self._context.log("warning", lost or "the pendant is there again")
+            self._context.log("disturbed", (lost or "the pendant is there again").upper())
 
     def _log_override(self) -> None:
         """A turned pot goes to the log in steps worth reading."""

@@ -241,12 +241,15 @@ class TouchOff:
             self._found()
 
     def _found(self) -> None:
-        """Half of what it may have been seen late is taken off; the other half is how far it may be off."""
+        """Half of what it may have been seen late is taken off; the other half, and half a count of the
+        encoder, is how far it may be off.
+        """
         assert self._latch is not None
         command, place = self._command, self._latch.place[self._index(self._command.axis)]
         assert self._model is not None
         half = self._model.slow * self._latch.late / 2.0
-        self._over("", place - command.sign * half, half)
+        count = self._context.machine.axis(command.axis).count
+        self._over("", place - command.sign * half, half + count / 2.0)
 
     def _over(self, why: str, place: float | None = None, error: float = 0.0) -> None:
         command, count = self._command, self.touched.number if self.touched is not None else 0

@@ -22,6 +22,11 @@ class PendantStation:
         self._station, self._pendant = station, pendant
         self._stops, self._wheel = stops, wheel
 
+    @property
+    def away(self) -> str:
+        """Why the pendant is not read; empty when it is."""
+        return self._pendant.state().away
+
     def snapshot(self) -> StationState:
         """The station now."""
         state, pendant = self._station.snapshot(), self._pendant.state()

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 import resources
+from app.compose.backends import connect
+from app.compose.machine_answers import check_ports
 from app.compose.machine_files import parse_machine
-from app.compose.pendant_wire import wired
+from app.compose.pendant_wire import wired, with_pendant
+from core.machine.machine_model import Machine
 from core.machine.setter_table import SetterModel
 from core.table_schema import MachineFileError
+from drivers.clocks import StepClock
+from drivers.pendant.pendant_buttons import AxisRange
 from drivers.pendant.pendant_table import PendantModel
+from tests.drivers.pendant.made import ABS_HAT0X, Peer
 
 PENDANT = """
 [pendant]
@@ -105,3 +113,36 @@ def test_a_pendant_that_nothing_is_at() -> None:
     found = resources.machine_file("gt75.toml") + '\n[pendant]\ndevice = "Knob"\n'
     with pytest.raises(MachineFileError, match="nothing is at it"):
         parse_machine(found, "test")
+
+
+def test_a_pendant_that_is_not_there_is_a_row_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    """``machine check`` names it, and what to do; the machine answers all the same."""
+    monkeypatch.setattr("app.compose.pendant_wire.entries", list)
+    answers = check_ports(parse_machine(text(), "test"))
+    row = next(each for each in answers.rows if each.name == "pendant")
+    assert (row.at, row.state) == ("0b33:0030", "no answer")
+    assert "not plugged in" in row.detail
+    assert any("pendant" in each for each in answers.trouble)
+    assert {"X", "Z", "spindle"} <= {each.name for each in answers.rows}
+
+
+def test_a_pendant_that_is_there_is_read_beside_the_machine() -> None:
+    peer = Peer({ABS_HAT0X: AxisRange(-1, 1, 0)})
+    machine = parse_machine(text(), "test")
+    connected = with_pendant(
+        machine, connect(wired(replace_pendant(machine)), StepClock()), lambda *_: [peer]
+    )
+    try:
+        assert connected.ports.warnings == ()
+        assert not connected.ports.io.inputs()["wheel_x"]
+        assert "guard" in connected.ports.io.inputs()
+        assert connected.ports.station.snapshot().trouble == ""
+    finally:
+        connected.close()
+    assert peer.closed
+
+
+def replace_pendant(machine: Machine) -> Machine:
+    """The same without its table: what is behind the pendant."""
+    tables = {path: each for path, each in machine.hardware.tables.items() if path != "pendant"}
+    return replace(machine, hardware=replace(machine.hardware, tables=tables))
