@@ -78,7 +78,7 @@ def hal_driven(machine: Machine, clock: Clock) -> Driven:
     ports = owned.ports
     if has_station(machine):
         return Driven(ports, owned.tick, owned.close)
-    wired = ports.station if "handwheel" in machine.hardware.analog else None
+    wired = ports.station if {"handwheel", "spindle_load"} & machine.hardware.analog.keys() else None
     panel = PanelStation(clock, ports.io.inputs, wired)
     return Driven(replace(ports, station=panel), owned.tick, owned.close, panel)
 

@@ -206,6 +206,14 @@ class MachineControl:
         self.touch.end(why)
         self.jogger.stop()
 
+    def _ran_into_setter(self) -> None:
+        why = "the tool setter is touched: jog away from it"
+        self.stop_jog(why)
+        if self.wheel.axis:
+            self.wheel.end(why, self.state)
+        else:
+            self._context.log("refused", f"jog: {why}")
+
     def follow_wheel(self) -> None:
         """Where the handwheel is turned, its axis goes. Raises DriverError."""
         if self.wheel.turn(self.state):
@@ -228,7 +236,8 @@ class MachineControl:
         self._finish_stopping()
         self._forget_refusal()
         self.program_run.look()
-        self.touch.mind(self.state)
+        if self.touch.mind(self.state):
+            self._ran_into_setter()
         if self.cycle is not None and self.state in CYCLE:
             if self._giving_up:
                 self._leave()

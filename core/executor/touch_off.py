@@ -35,6 +35,7 @@ class TouchOff:
         self._until = 0.0  # end of the lease
         self._start = self._first = 0.0  # where the axis stood at the beginning, and at the first touch
         self._target = 0.0
+        self._was_made = False  # the input, a tick ago
         self._braking = False  # it has touched, and comes to rest
         self._renewed = self._rested = 0.0
         self._seen = (0.0, 0.0)  # time and place of the last look
@@ -65,10 +66,15 @@ class TouchOff:
         self._jogger.stop()
         self._over(why)
 
-    def mind(self, state: State) -> None:
-        """Whatever has stopped the machine has ended it too."""
+    def mind(self, state: State) -> bool:
+        """Once a tick: whatever has stopped the machine has ended it too. True when a jog runs into the
+        setter: that has to stop, and the next one leads away.
+        """
+        before, self._was_made = self._was_made, self._made
         if self.phase is not None and state is not State.JOG:
             self._over(f"the machine is in state {state.value}")
+        runs_in = self._was_made and not before and self._model is not None
+        return runs_in and self.phase is None and state is State.JOG
 
     def step(self) -> None:
         """Once a tick. Raises DriverError."""

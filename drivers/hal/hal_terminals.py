@@ -130,7 +130,15 @@ class HalTerminals:
             feed_pot=self._pot("feed_pot"),
             handwheel=round(self._analog("handwheel", 0.0)),
             age=self._link.age,
+            spindle_load=self._load(),
         )
+
+    def _load(self) -> float | None:
+        """Per cent; its pin is 1 where the machine file's range ends."""
+        load = self._config.pots.get("spindle_load")
+        if load is None:
+            return None
+        return load.low + (load.high - load.low) * max(self._analog("spindle_load", 0.0), 0.0)
 
     def _pot(self, name: str) -> float:
         pot = self._config.pots.get(name)

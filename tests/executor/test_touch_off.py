@@ -7,8 +7,9 @@ import dataclasses
 import pytest
 
 from app.compose.machine_files import load_machine
-from core.executor.commands import EnableDrives, Jog, JogStep, JogStop, Reset, Touch
+from core.executor.commands import EnableDrives, Jog, JogStep, JogStop, Reset, Touch, Wheel
 from core.executor.snapshot import State, TouchPhase
+from core.machine.hardware_model import AnalogModel
 from core.machine.machine_model import InputModel, Machine
 from core.machine.setter_table import SetterModel, runs_on
 from drivers.simulated.simulated_table import SimulatedTable
@@ -28,6 +29,12 @@ def with_setter(setter: SetterModel = SETTER, *inputs: str, tip: tuple[float, fl
     tables = {**machine.hardware.tables, "setter": setter, "sim": SimulatedTable(tips=(tip,))}
     hardware = dataclasses.replace(machine.hardware, tables=tables)
     return dataclasses.replace(machine, inputs={**machine.inputs, **wired}, hardware=hardware)
+
+
+def wheeled(machine: Machine) -> Machine:
+    """With a handwheel."""
+    analog = {"handwheel": AnalogModel("handwheel", "wheel", 0.0, 1.0)}
+    return dataclasses.replace(machine, hardware=dataclasses.replace(machine.hardware, analog=analog))
 
 
 class TouchRig(Rig):
@@ -237,6 +244,34 @@ def test_a_button_that_comes_up_ends_it_though_the_screen_goes_on_asking() -> No
     rig.until(State.IDLE)
     assert rig.shot.touched is not None
     assert rig.shot.touched.place is None
+
+
+def test_a_jog_into_the_setter_stops_and_the_next_leads_away() -> None:
+    rig = ready(x=15.0)
+    jog = Jog("X", -8.0, LEASE)
+    while not rig.said("refused"):
+        rig.post(jog)
+    assert "tool setter is touched" in rig.said("refused")[0]
+    rig.until(State.IDLE)
+    assert rig.deepest < 8.0 * 0.05 + 0.1  # a tick, what is committed, the braking
+    for _ in range(30):
+        rig.post(Jog("X", 8.0, LEASE))
+    assert rig.shot.demand[0] > 13.0 + TIP[0]
+    assert len(rig.said("refused")) == 1
+
+
+def test_the_handwheel_is_taken_away_at_the_setter() -> None:
+    rig = ready(wheeled(with_setter()), x=13.5)
+    wheel = Wheel("X", 0.1, LEASE)
+    rig.post(wheel)
+    for _ in range(12):
+        rig.post(wheel)
+    for _ in range(30):
+        rig.sim.machine.turn_handwheel(-1)
+        rig.post(wheel)
+    rig.run(0.3)
+    assert "tool setter is touched" in rig.shot.wheel_ended
+    assert rig.deepest < 0.5
 
 
 # --- what refuses it --------------------------------------------------------------------------------------
