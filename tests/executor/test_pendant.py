@@ -139,6 +139,17 @@ def test_a_jog_ends_with_its_button_and_with_the_enabling_switch(name: str) -> N
     assert rig.said("refused") == []
 
 
+def test_a_screen_that_stands_still_cannot_hold_a_button() -> None:
+    """Nobody posts any more: the lease would go on for a quarter of a second."""
+    rig = ready("jog_x_plus")
+    rig.sim.machine.set_input("jog_x_plus", True)
+    rig.tick()
+    rig.post(Jog("X", 5.0, 0.25, "jog_x_plus"))
+    rig.sim.machine.set_input("jog_x_plus", False)
+    rig.run(0.1)
+    assert rig.state is State.IDLE
+
+
 def test_a_jog_whose_button_is_up_never_begins() -> None:
     rig = ready("jog_x_plus")
     rig.post(Jog("X", 5.0, 0.25, "jog_x_plus"))

@@ -74,6 +74,10 @@ def test_the_place_of_the_touch_is_found_as_near_as_is_said(bench: Bench) -> Non
     assert touched.place == pytest.approx(FACE, abs=touched.error + SLOW * TICK + COUNT)
     assert touched.error <= SLOW * 0.06 / 2 + COUNT / 2
     assert bench.rig.world.place()[0] == pytest.approx(FACE + SETTER.back_off, abs=0.02)
+    if bench.rig.ports.touch is not None:
+        kept = bench.rig.ports.touch.latched()
+        assert kept is not None
+        assert touched.error == pytest.approx(SLOW * kept.late / 2 + bench.rig.machine.axis("X").count / 2)
     assert bench.shot.alarms == ()
 
 
