@@ -164,16 +164,9 @@ class AutomaticPage(Page):
 
     def _part_keys(self) -> KeyActions:
         """Keys of the time line; they mean something while the part is looked at."""
-        player = self.path.player
-        if player is None or not self.path.shows_part:
+        if self.path.player is None or not self.path.shows_part:
             return {}
-        return {
-            "Play": player.play_or_pause,
-            "Play fast": player.faster,
-            "Step back": partial(player.step, -1),
-            "Step on": partial(player.step, 1),
-            "To line": self._part_to_line,
-        }
+        return {**self.path.play_keys(), "To line": self._part_to_line}
 
     def _part_to_line(self) -> None:
         """The part as the first line that the program window shows leaves it."""

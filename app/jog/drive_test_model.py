@@ -39,8 +39,8 @@ from core.executor.drive_test_path import DriveTestPath, Limits, Shape
 from core.executor.jogging import room_to_limit
 from core.executor.snapshot import BY_HAND, Snapshot, State
 from core.machine.machine_model import Axis, Machine
-from core.records.analysis_errors import AnalysisError
 from core.records.record import Record
+from core.records.record_errors import AnalysisError
 
 SHAPES = {Shape.STEP: "STEP", Shape.RAMP: "RAMP", Shape.SINE: "SINE"}
 INCH_SIZES, MM_SIZES = (0.002, 0.005, 0.01, 0.02, 0.05, 0.1), (0.05, 0.1, 0.2, 0.5, 1.0, 2.5)

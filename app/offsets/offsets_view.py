@@ -58,17 +58,6 @@ class EffectView(PathView):
             factor = NEAR * self.width() / (apart * frame.scale)
             self.zoom(max(0, math.ceil(math.log(factor, ZOOM_STEP))))
 
-    def key_actions(self) -> KeyActions:
-        """Looking around by keys, as on the Automatic page."""
-        return {
-            "Zoom in": partial(self.zoom, 1),
-            "Zoom out": partial(self.zoom, -1),
-            "Pan left": partial(self.pan, -1, 0),
-            "Pan right": partial(self.pan, 1, 0),
-            "Pan up": partial(self.pan, 0, -1),
-            "Pan down": partial(self.pan, 0, 1),
-        }
-
 
 Entry = tuple[str, str, str, str]
 
@@ -145,7 +134,7 @@ class OffsetPage(ModelPage):
 
     def key_actions(self) -> KeyActions:
         """Undo, history, effect, and the other tables."""
-        around = self.effect.key_actions() if self.effect_model.open else {}
+        around = self.effect.look_keys() if self.effect_model.open else {}
         return {
             **around,
             "F4": self.model.undo,

@@ -56,24 +56,15 @@ class PartPage(ListPage):
 
     def key_actions(self) -> KeyActions:
         """Keys of the table, of the time line and of looking around."""
-        path, player = self.path, self.path.player
-        assert player is not None
+        path = self.path
         return {
             **{name: key.action for name, key in self.model.keys().items()},
             "F3": partial(self.host.go, page_table.EDITOR),
             "F5": path.fit,
             "F8": partial(self.host.go, page_table.TOOLS),
             "View": path.next_view,
-            "Zoom in": partial(path.zoom, 1),
-            "Zoom out": partial(path.zoom, -1),
-            "Pan left": partial(path.pan, -1, 0),
-            "Pan right": partial(path.pan, 1, 0),
-            "Pan up": partial(path.pan, 0, -1),
-            "Pan down": partial(path.pan, 0, 1),
-            "Play": player.play_or_pause,
-            "Play fast": player.faster,
-            "Step back": partial(player.step, -1),
-            "Step on": partial(player.step, 1),
+            **path.look_keys(),
+            **path.play_keys(),
         }
 
     def has_field(self) -> bool:

@@ -8,6 +8,7 @@ the machine is, and call ``advance`` once a frame. Nothing here computes but whe
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from app.path.path_picture import Picture
     from app.path.path_projection import Projection
     from app.path.polyline import Polyline
+    from app.screen.page_base import KeyActions
 
 COLUMN = 6.4  # units at the right of a view that are the buttons'
 BAR = 6.8  # units under the part that are the time line's
@@ -252,6 +254,29 @@ class PathView(Panel):
         if pane is not None:
             pane.pan(across, down)
             self.update()
+
+    def look_keys(self) -> KeyActions:
+        """Zoom and pan by keys, as on the Automatic page."""
+        return {
+            "Zoom in": partial(self.zoom, 1),
+            "Zoom out": partial(self.zoom, -1),
+            "Pan left": partial(self.pan, -1, 0),
+            "Pan right": partial(self.pan, 1, 0),
+            "Pan up": partial(self.pan, 0, -1),
+            "Pan down": partial(self.pan, 0, 1),
+        }
+
+    def play_keys(self) -> KeyActions:
+        """Keys of the time line; none where no part is made."""
+        player = self.player
+        if player is None:
+            return {}
+        return {
+            "Play": player.play_or_pause,
+            "Play fast": player.faster,
+            "Step back": partial(player.step, -1),
+            "Step on": partial(player.step, 1),
+        }
 
     def pane_at(self, at: QPointF | None) -> Pane | None:
         """The pane under a point, or else the one that is measured in, or the first."""

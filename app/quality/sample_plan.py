@@ -18,17 +18,17 @@ def due(data: PartsData, made: int) -> dict[str, int]:
 
 def notice(found: dict[str, int]) -> str:
     """What to measure, for the prompt line; empty where nothing is due."""
-    if not found:
-        return ""
-    part = max(found.values())
-    names = ", ".join(name for name, planned in found.items() if planned == part)
-    return tr("MEASURE PART {part}: {names}").format(part=part, names=names)
+    part, names = _newest(found)
+    return tr("MEASURE PART {part}: {names}").format(part=part, names=names) if found else ""
 
 
 def bar(found: dict[str, int]) -> str:
     """Why no other part begins where parts wait for the plan; empty where nothing is due."""
-    if not found:
-        return ""
-    part = max(found.values())
-    names = ", ".join(name for name, planned in found.items() if planned == part)
-    return f"part {part} is to be measured first: {names}"
+    part, names = _newest(found)
+    return f"part {part} is to be measured first: {names}" if found else ""
+
+
+def _newest(found: dict[str, int]) -> tuple[int, str]:
+    """The newest of the parts, and the names of what is due of it."""
+    part = max(found.values(), default=0)
+    return part, ", ".join(name for name, planned in found.items() if planned == part)

@@ -30,10 +30,10 @@ from app.scope.drive_test_figures import (
 )
 from app.scope.scope_model import Scope
 from core.machine.machine_model import Axis
-from core.records.analysis_errors import AnalysisError
 from core.records.ball_bar import BallBar, arcs_in, ball_bar
 from core.records.path_error import PathError, WorstPlace, of_samples, worst_places
 from core.records.record import Record
+from core.records.record_errors import AnalysisError
 from core.records.thread_passes import Thread, fastest, find_thread
 
 FloatArray = npt.NDArray[np.float64]

@@ -18,9 +18,9 @@ from app.desk.sheet import Row, Sheet
 from app.desk.translation import tr
 from app.scope.drawing import Drawing
 from core.machine.machine_model import Axis
-from core.records.analysis_errors import AnalysisError
 from core.records.derived_figures import velocity
 from core.records.record import Record
+from core.records.record_errors import AnalysisError
 from core.records.step_response import (
     StepResponse,
     at_other_speed,

@@ -20,8 +20,8 @@ from app.desk.translation import tr
 from app.scope.axis_response import SHARES, Moved, Units, moved, step_rows, stretches, window_rows
 from core.executor.drive_test_path import PAUSE, DriveTestPath, Shape
 from core.machine.machine_model import Axis
-from core.records.analysis_errors import AnalysisError
 from core.records.record import Record
+from core.records.record_errors import AnalysisError
 from core.records.step_response import (
     RampResponse,
     SineResponse,

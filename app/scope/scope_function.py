@@ -2,35 +2,32 @@
 
 from __future__ import annotations
 
-from app.desk.sheet import Row, Sheet
+from app.desk.sheet import Row
 from app.desk.translation import tr
 from app.scope.scope_model import Scope
-from app.special.special_functions import SpecialFunction
-from core.executor.snapshot import Snapshot
+from app.special.special_functions import PageFunction
 
 PAGE = "SCOPE"  # its name in app.screen.page_table
 
 
-class ScopeFunction(SpecialFunction):
-    """Return, or a finger, opens the page."""
+class ScopeFunction(PageFunction):
+    """What is recorded, and how much of it."""
 
     name = "SCOPE"
     use = "axes and spindle as curves"
     page = PAGE
+    way = "Return opens the page; Shift+F10 does so from every page, and goes back."
 
-    def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """What is recorded, and how much of it."""
+    def facts(self) -> tuple[Row, ...]:
+        """How long and how many channels."""
         scope = self.desk.attached(Scope)
         live = scope.live if scope is not None else None
         if live is None:
-            rows: tuple[Row, ...] = (Row((tr("RECORDED"), tr("NOTHING ON THIS MACHINE"))),)
-        else:
-            rows = (
-                Row((tr("KEPT"), tr("THE LAST {minutes} MINUTES").format(minutes=f"{live.lasts / 60.0:g}"))),
-                Row((tr("CHANNELS"), str(len(live.channels)))),
-            )
-        notes = ("Return opens the page; Shift+F10 does so from every page, and goes back.",)
-        return Sheet(tr("SCOPE"), ("", ""), (0.4, 0.6), rows, notes=notes)
+            return (Row((tr("RECORDED"), tr("NOTHING ON THIS MACHINE"))),)
+        return (
+            Row((tr("KEPT"), tr("THE LAST {minutes} MINUTES").format(minutes=f"{live.lasts / 60.0:g}"))),
+            Row((tr("CHANNELS"), str(len(live.channels)))),
+        )
 
     def prompt(self) -> str:
         """How the page is opened."""

@@ -10,7 +10,8 @@ from typing import ClassVar
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
 from app.desk.latest import Latest
-from app.desk.sheet import STEPS, Entry, Key, Sheet
+from app.desk.sheet import STEPS, Entry, Key, Row, Sheet
+from app.desk.translation import tr
 from core.executor.snapshot import Snapshot
 
 
@@ -85,6 +86,20 @@ class SpecialFunction(ABC):
         self.desk.clear()
         self.marked = max(0, min(self.count - 1, self.marked + STEPS[key]))
         return True
+
+
+class PageFunction(SpecialFunction):
+    """What has a page of its own: a few facts of it, and Return or a finger that opens it."""
+
+    way: ClassVar[str]  # how the page is opened besides
+
+    @abstractmethod
+    def facts(self) -> tuple[Row, ...]:
+        """What is told of it in the list."""
+
+    def sheet(self, _snapshot: Snapshot) -> Sheet:
+        """The facts of this instant."""
+        return Sheet(tr(self.name), ("", ""), (0.4, 0.6), self.facts(), notes=(self.way,))
 
 
 class FigureFunction(SpecialFunction):

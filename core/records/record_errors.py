@@ -1,4 +1,4 @@
-"""Why a record of the scope cannot be kept or read: one sentence, and a full disk is called full."""
+"""Why a record of the scope cannot be kept, read or analysed: one sentence; a full disk is called full."""
 
 from __future__ import annotations
 
@@ -8,6 +8,10 @@ from pathlib import Path
 
 class RecordError(Exception):
     """``str()`` is the sentence for whoever asked: what, where, what to do."""
+
+
+class AnalysisError(Exception):
+    """``str()`` is the sentence: what the record lacks, and what to do."""
 
 
 _FULL = frozenset({errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC), errno.EFBIG})

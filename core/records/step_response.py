@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from core.records.analysis_errors import AnalysisError
+from core.records.record_errors import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
 LEAST = 20  # samples

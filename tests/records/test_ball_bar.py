@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from core.records.analysis_errors import AnalysisError
 from core.records.ball_bar import arcs_in, ball_bar, circle_of
+from core.records.record_errors import AnalysisError
 
 R = 25.0
 T = np.linspace(0.0, 2.0 * math.pi, 7201)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.records.analysis_errors import AnalysisError
 from core.records.path_error import of_samples, path_error, worst_places
+from core.records.record_errors import AnalysisError
 
 
 def test_a_slide_that_is_late_is_still_on_its_path() -> None:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from core.records.analysis_errors import AnalysisError
+from core.records.record_errors import AnalysisError
 from core.records.step_response import (
     at_other_speed,
     ramp_response,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.records.analysis_errors import AnalysisError
+from core.records.record_errors import AnalysisError
 from core.records.thread_passes import Thread, fastest, find_thread
 
 RATE, RPM, LEAD = 1000.0, 1200.0, 1.5
