@@ -87,5 +87,16 @@ OPERATIONS: dict[str, Callable[..., float]] = {
     "unequal": lambda a, b: float(abs(a - b) > _TRUTH),
     "greater": lambda a, b: float(a > b),
     "less": lambda a, b: float(a < b),
+    "greater or equal": lambda a, b: float(a >= b - _TRUTH),
+    "less or equal": lambda a, b: float(a <= b + _TRUTH),
+    "and": lambda a, b: float(bool(a) and bool(b)),
+    "or": lambda a, b: float(bool(a) or bool(b)),
+    "exclusive or": lambda a, b: float(bool(a) != bool(b)),
+    "not": lambda a: float(not a),
+    "remainder": math.fmod,
+    "direction": lambda a, b: math.degrees(math.atan2(a, b)),
+    "nearest whole number": lambda a: float(math.floor(a + 0.5)),
+    "smaller": min,
+    "larger": max,
 }
 """What each operation of a formula does; angles in degrees."""

@@ -15,6 +15,9 @@ MOST_BLOCKS = 5_000_000
 MOST_LINES = 10_000_000
 """More of either is made by no program that anybody means to run."""
 
+MOST_LINES_WITHOUT_BLOCK = 200_000
+"""A loop that reckons so long and moves nothing never ends."""
+
 DEEPEST_CALL = 16
 """Subroutines that may call each other in a chain."""
 

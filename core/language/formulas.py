@@ -165,7 +165,7 @@ class FormulaReader:
             return Parameter(letters, int(number) if number else None, at + 1)
         if match := self._grammar.number.match(self._text, at):
             self.at = match.end()
-            return Number(float(match.group().replace(",", ".")))
+            return Number(float(match.group().replace(",", ".").replace("EX", "E")))
         raise FormulaError(at, "The formula needs a number or a parameter", "Complete it.")
 
     def _enclosed(self) -> Formula:

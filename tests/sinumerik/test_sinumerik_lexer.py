@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from core.language.formulas import Parameter
 from core.language.sinumerik import Form, lex_line
 from core.language.sinumerik.sinumerik_colours import spans
 from core.language.syntax_colours import Ink
@@ -38,8 +39,9 @@ def test_targets(form: str) -> None:
 
 def test_r_parameters_are_values() -> None:
     (word,) = lex_line(1, "C=DC(R12)").words
-    assert (word.form, word.value, word.r) == (Form.DC, None, 12)
-    assert lex_line(1, "X=R3").words[0].r == 3
+    assert (word.form, word.value, word.formula) == (Form.DC, None, Parameter("R", 12, 6))
+    assert lex_line(1, "X=R3").words[0].formula == Parameter("R", 3, 3)
+    assert lex_line(1, "X=-2.5").words[0].value == -2.5
     assert words("R3=17.5 R4=-2") == [("R3", 17.5), ("R4", -2)]
     assert lex_line(1, "X=R300").errors
 

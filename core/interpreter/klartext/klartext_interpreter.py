@@ -9,7 +9,7 @@ from core.geometry.rotary_axes import Kinematics
 from core.interpreter.actions import ProgramEnd, ProgramStop
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES, Interpretation
+from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES, MOST_LINES_WITHOUT_BLOCK, Interpretation
 from core.interpreter.job_setup import Setup
 from core.interpreter.klartext import m_functions, q_functions, tip_control, word_values
 from core.interpreter.klartext.coordinate_transformations import datum, transform
@@ -56,10 +56,11 @@ class Interpreter(Interpretation):
     def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
         """The elementary blocks, made as they are asked for. To be called once."""
         flow = self._flow
-        left = MOST_LINES
+        left, idle, made = MOST_LINES, 0, 0
         while (line := flow.next()) is not None:
             left -= 1
-            if left < 0 or self._state.blocks >= MOST_BLOCKS:
+            idle, made = (idle + 1, made) if self._state.blocks == made else (0, self._state.blocks)
+            if left < 0 or idle > MOST_LINES_WITHOUT_BLOCK or self._state.blocks >= MOST_BLOCKS:
                 self._stop_endless(line.number, "Lower the counts of the repeats.")
                 return
             for block in self._guarded(line):

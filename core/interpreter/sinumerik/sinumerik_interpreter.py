@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
 
-from core.interpreter.actions import ProgramEnd, ProgramStop
+from core.interpreter.actions import Coolant, ProgramEnd, ProgramStop
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES, Interpretation
+from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES, MOST_LINES_WITHOUT_BLOCK, Interpretation
 from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal
 from core.interpreter.sinumerik.chamfers_and_rounds import Corners, corner_of
@@ -72,10 +72,11 @@ class Interpreter(Interpretation):
                 return
 
     def _pass(self) -> Iterator[Block]:
-        left = MOST_LINES
+        left, idle, made = MOST_LINES, 0, 0
         while not self._log.full and (line := self._flow.next()) is not None:
             left -= 1
-            if left < 0 or self._count >= MOST_BLOCKS:
+            idle, made = (idle + 1, made) if self._count == made else (0, self._count)
+            if left < 0 or idle > MOST_LINES_WITHOUT_BLOCK or self._count >= MOST_BLOCKS:
                 self._never_ends(line)
                 return
             if line.skip is not None and self._state.setup.block_delete:
@@ -93,6 +94,9 @@ class Interpreter(Interpretation):
         try:
             if line.call:
                 self._flow.call(line)
+                return
+            if line.jump is not None:
+                self._flow.steer(line, line.jump, self._state)
                 return
             statement = statement_of(line)
             ends = ends_main(statement, called=self._flow.called)
@@ -122,8 +126,7 @@ class Interpreter(Interpretation):
     def _blocks(self, statement: Statement) -> Iterator[Block]:
         """What a block does, in the order in which it does it: states, spindle, motion, stops."""
         state = self._state
-        for word in statement.sets:
-            state.r[int(word.name[1:])] = state.number(statement, word)
+        _set_parameters(state, statement)
         if statement.offset_key is not None:
             programmed_offset(state, statement)
             return
@@ -136,6 +139,7 @@ class Interpreter(Interpretation):
             return
         if statement.m or not SPINDLE.isdisjoint(statement.words) or "kind of spindle speed" in statement.g:
             yield from spindle_words(state, statement)
+        yield from _coolant(state, statement, {7, 8})
         if statement.axes or ARC & statement.words.keys():
             yield arc(state, statement) if state.motion in {2, 3} else straight(state, statement)
         elif "suppression of offsets" in statement.g:
@@ -147,8 +151,9 @@ class Interpreter(Interpretation):
             yield from self._stops(statement)
 
     def _stops(self, statement: Statement) -> Iterator[Block]:
-        """M0, M1, and the end."""
+        """M9, M0, M1, and the end."""
         state, line = self._state, statement.line
+        yield from _coolant(state, statement, {9})
         for code in (0, 1):
             if code in statement.m:
                 yield state.action(line.number, f"M{code}", ProgramStop(optional=code == 1))
@@ -175,5 +180,21 @@ class Interpreter(Interpretation):
 
     def _never_ends(self, line: Line) -> None:
         text = f"the program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
-        hint = "Lower the passes of the calls."
+        hint = "Look at its loops, and lower the passes of its calls."
         self._refuse(fault(line.number, 0, "too-many-blocks", line.block, text, hint))
+
+
+def _set_parameters(state: State, statement: Statement) -> None:
+    """R parameters and variables that the block sets. Raises ProgramError for a name that no DEF has told."""
+    for word in statement.sets:
+        if not state.keep(word.name, state.number(statement, word)):
+            text = f"{word.name} is no word, and no variable of this program."
+            raise statement.refuse(word, "unknown-name", text, f"Write DEF REAL {word.name} before it.")
+
+
+def _coolant(state: State, statement: Statement, codes: set[int]) -> Iterator[Block]:
+    """M7 and M8 before the motion of their block, M9 behind it."""
+    code = next((code for code in sorted(codes) if code in statement.m), None)
+    if code is not None:
+        state.adopt(state.modal._replace(coolant=code != 9))
+        yield state.action(statement.line.number, f"M{code}", Coolant(code != 9))

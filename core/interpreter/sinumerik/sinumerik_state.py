@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from core.interpreter.actions import Action, Dwell
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.formula_values import NoValueError, worth
 from core.interpreter.job_setup import Setup, ZeroOffset
 from core.interpreter.modal_state import Modal
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.interpreter.units import MM_PER_INCH
+from core.language.diagnostics import ProgramError
+from core.language.formulas import Formula, Parameter
 from core.language.sinumerik.sinumerik_words import Word
 
 NO_OFFSET = ZeroOffset()
@@ -30,6 +35,7 @@ class State:
         self.settable = NO_OFFSET
         self.programmed = NO_OFFSET
         self.r: dict[int, float] = {}
+        self.variables: dict[str, float] = {}  # of DEF
         wraps = setup.limits.c_enabled and setup.limits.c_modulo
         self.modal = Modal(absolute=True, metric=True, diameter=True, rapid_rate=0.0, wraps_c=wraps)
 
@@ -49,14 +55,38 @@ class State:
         return self.number(statement, word) * (1.0 if self.modal.metric else MM_PER_INCH)
 
     def number(self, statement: Statement, word: Word) -> float:
-        """The number of a word, or of the R parameter behind it. Raises ProgramError where that has none."""
+        """The number of a word, or what its formula comes to. Raises ProgramError where that has no value."""
         if word.value is not None:
             return word.value
-        value = self.r.get(word.r or 0)
-        if value is None:
-            text = f"R{word.r} has no value: the program has not set it."
-            raise statement.refuse(word, "r-unset", text, f"Write R{word.r}=… before it.")
-        return value
+        assert word.formula is not None
+        return self.worth(word.formula, lambda code, text, hint: statement.refuse(word, code, text, hint))
+
+    def worth(self, formula: Formula, refuse: Callable[[str, str, str], ProgramError]) -> float:
+        """What a formula comes to. ``refuse`` makes the error to raise of its code, text and hint."""
+
+        def parameter(asked: Parameter) -> float:
+            name = f"{asked.letters}{'' if asked.number is None else asked.number}"
+            value = self.r.get(asked.number) if isinstance(asked.number, int) else self.variables.get(name)
+            if value is None:
+                what = "the program has not set it" if asked.number is not None else "no DEF has named it"
+                before = f"{name}=…" if asked.number is not None else f"DEF REAL {name}"
+                raise refuse("r-unset", f"{name} has no value: {what}.", f"Write {before} before it.")
+            return value
+
+        try:
+            return worth(formula, parameter)
+        except NoValueError as problem:
+            raise refuse("arithmetic", f"{problem}.", "Correct the formula.") from None
+
+    def keep(self, name: str, value: float) -> bool:
+        """An R parameter or a variable holds this from now on; False where no DEF has named the variable."""
+        if name[0] == "R" and name[1:].isdigit():
+            self.r[int(name[1:])] = value
+        elif name in self.variables:
+            self.variables[name] = value
+        else:
+            return False
+        return True
 
     def rpm_at(self, x: float) -> float:
         """Commanded speed with the tip at radius ``x`` of the program; signed, 0 with the spindle stopped."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.sinumerik import sinumerik_words as known
 from core.language.sinumerik.sinumerik_alarms import ONE_GROUP, TWICE, fault
+from core.language.sinumerik.sinumerik_lexer import variable
 from core.language.sinumerik.sinumerik_words import Line, Word
 
 _DWELL_WORDS = frozenset({"F", "S"})
@@ -85,7 +86,7 @@ def _sort(statement: Statement, word: Word) -> None:
         statement.m[number] = word
     elif word.name in known.KEYS:
         statement.keys[word.name] = word
-    elif word.name[0] == "R" and word.name not in known.CORNERS:
+    elif variable(word.name):
         statement.sets.append(word)
     elif word.name in statement.words:
         raise statement.refuse(
@@ -112,7 +113,7 @@ def _check_m(statement: Statement) -> None:
         raise statement.refuse(
             list(statement.m.values())[-1], "m-too-many", text, f"{known.MOST_M} are the most."
         )
-    for group in ({3, 4, 5}, {0, 1, 2, 17, 30}):
+    for group in ({3, 4, 5}, {0, 1, 2, 17, 30}, {7, 8, 9}):
         found = sorted(group & statement.m.keys())
         if len(found) > 1:
             text = f"M{found[0]} and M{found[1]} exclude each other."

@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from core.interpreter.interpretation import DEEPEST_CALL
+from core.interpreter.sinumerik.control_structures import belonging, follow
+from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import Diagnostic, ProgramError
+from core.language.sinumerik.program_jumps import Jump, Steering
 from core.language.sinumerik.sinumerik_alarms import fault
 from core.language.sinumerik.sinumerik_lexer import lex_line
 from core.language.sinumerik.sinumerik_words import Line
@@ -21,7 +24,18 @@ class Routine:
     source: Source
     lines: range
     shown: str = ""
-    lines_read: dict[int, Line] = field(default_factory=dict)  # of subprograms: they may run many times
+    lines_read: dict[int, Line] = field(default_factory=dict)  # of what may run many times
+    repeats: bool = False  # lines of it have been run again
+    _partners: dict[int, tuple[int, ...]] | None = None
+
+    def partners(self) -> dict[int, tuple[int, ...]]:
+        """The lines of each IF, WHILE, FOR, LOOP and REPEAT that belong together, by each of their indices.
+
+        Raises ProgramError where one has no end, or an end no beginning.
+        """
+        if self._partners is None:
+            self._partners = belonging(self.line(at) for at in self.lines)
+        return self._partners
 
     def line(self, at: int) -> Line:
         """The line with this index."""
@@ -67,7 +81,7 @@ class Flow:
             if call.at < call.routine.lines.stop:
                 at, call.at = call.at, call.at + 1
                 line = call.routine.line(at)
-                if self.called:
+                if self.called or call.routine.repeats:
                     call.routine.lines_read[at] = line
                 return line
             self.back()
@@ -97,6 +111,16 @@ class Flow:
             text = f"subprograms call each other more than {DEEPEST_CALL} deep."
             raise _refused(line, "recursion", text, "A subprogram must not call itself.")
         self._calls.append(_Call(routine, routine.lines.start, line.passes, self.shown_line(line.number)))
+
+    def steer(self, line: Line, jump: Jump, state: State) -> None:
+        """A line of GOTO, IF, WHILE, FOR, LOOP, REPEAT, DEF or MSG. Raises ProgramError."""
+        call = self._calls[-1]
+        at = follow(line, jump, state, call.routine, call.at - 1)
+        if jump.steering is Steering.RETURN:
+            self.back()
+        elif at is not None:
+            call.routine.repeats = call.routine.repeats or at <= call.at
+            call.at = at
 
     def shown_line(self, number: int) -> int:
         """The line of the main file that stands for line ``number`` of the running program."""

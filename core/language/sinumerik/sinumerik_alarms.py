@@ -7,6 +7,8 @@ from core.language.diagnostics import Diagnostic, refusal
 SYNTAX = 12080
 TWICE = 12010
 ONE_GROUP = 12060
+NESTING = 12640
+NO_TARGET = 14080
 
 CHANNEL = 1
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 from core.language.sinumerik.sinumerik_lexer import lex_line
 from core.language.sinumerik.sinumerik_words import CORNERS, KEYS
 from core.language.sinumerik.subprogram_files import HEADER
 from core.language.syntax_colours import Ink, Span
 
+_WORD = re.compile(r"[A-Za-z]+")
 _OF_NAME = {"G": Ink.CODE, "M": Ink.CODE, "F": Ink.RUN, "S": Ink.RUN, "LIMS": Ink.RUN}
 
 
@@ -23,12 +26,15 @@ def spans(text: str) -> list[Span]:
     for word in line.words:
         ink = Ink.KEY if word.name in KEYS | CORNERS else _OF_NAME.get(word.name, Ink.POSITION)
         found.append(Span(word.column - 1, _written(code, word.column - 1, len(word.text)), ink))
+    if line.jump is not None:
+        size = _WORD.match(code, line.jump.column - 1)
+        found.append(Span(line.jump.column - 1, len(size.group()) if size else 1, Ink.CALL))
     if line.call:
         found.append(Span(line.call_column - 1, len(line.call), Ink.CALL))
     if line.comment_column:
         found.append(Span(line.comment_column - 1, len(text) - line.comment_column + 1, Ink.COMMENT))
     faults = (error.column for error in line.errors if error.column)
-    return found + [Span(column - 1, 1, Ink.FAULT) for column in faults]
+    return found + [Span(min(column, len(text)) - 1, 1, Ink.FAULT) for column in faults if text]
 
 
 def _written(code: str, at: int, signs: int) -> int:

@@ -6,8 +6,11 @@ import re
 from typing import NamedTuple
 
 from core.language.diagnostics import Diagnostic
+from core.language.formulas import Formula, FormulaError, FormulaReader, Number, Operation, Parameter
 from core.language.sinumerik import sinumerik_words as known
+from core.language.sinumerik.program_jumps import Jump, Steering, read_jump, steering_word
 from core.language.sinumerik.sinumerik_alarms import SYNTAX, fault
+from core.language.sinumerik.sinumerik_formulas import GRAMMAR
 from core.language.sinumerik.sinumerik_words import LONGEST_LINE, Form, Line, Word
 from core.language.typography import ascii_upper, typed
 
@@ -20,21 +23,40 @@ _LONGEST_CODE = 4  # digits
 
 
 class Value(NamedTuple):
-    """A number, or the number of the R parameter that gives it; and where it ends."""
+    """A number, or the formula that gives it; and where it ends."""
 
     number: float | None
-    r: int | None
+    formula: Formula | None
     end: int
 
 
-def value_at(text: str, at: int) -> Value | None:
-    """The value that begins at this place; None where none does."""
-    r = PARAMETER.match(text, at)
-    if r is not None:
-        number = int(r[1][:9])
-        return Value(None, number, r.end()) if number <= known.MOST_R else None
-    match = NUMBER.match(text, at)
-    return None if match is None else Value(float(match[0]), None, match.end())
+def value_at(text: str, at: int) -> Value:
+    """The value that begins at this place. Raises FormulaError where none does."""
+    reader = FormulaReader(GRAMMAR, text, at)
+    made = reader.formula()
+    match made:
+        case Number(value):
+            return Value(value, None, reader.at)
+        case Operation("negative", (Number(value),)):
+            return Value(-value, None, reader.at)
+        case _:
+            _demand_parameters(made, at)
+            return Value(None, made, reader.at)
+
+
+def _demand_parameters(formula: Formula, at: int) -> None:
+    """R parameters that there are, all through a formula."""
+    match formula:
+        case Parameter("R", int(number), column) if number > known.MOST_R:
+            raise FormulaError(column - 1, f"R{number} is no parameter", f"They are R0 to R{known.MOST_R}.")
+        case Operation(_, operands):
+            for each in operands:
+                _demand_parameters(each, at)
+
+
+def variable(name: str) -> bool:
+    """Whether a word sets an R parameter or a variable of the program."""
+    return PARAMETER.fullmatch(name) is not None or (len(name) > 1 and name not in known.VOCABULARY)
 
 
 def beyond(word: Word) -> tuple[str, str] | None:
@@ -46,7 +68,7 @@ def beyond(word: Word) -> tuple[str, str] | None:
         if digits.isdigit() and len(digits) <= _LONGEST_CODE:
             return None
         return f"{word.text} is no code", "Codes are whole numbers of up to four digits."
-    low, high = known.REACH["R" if PARAMETER.fullmatch(word.name) else word.name]
+    low, high = known.REACH["R" if variable(word.name) else word.name]
     if low <= word.value <= high:
         return None
     return f"{word.text} is out of range", f"{word.name} lies between {low:g} and {high:g}."
@@ -58,6 +80,7 @@ _PLAIN = re.compile(rf"\s*([GMXZCIKFS])({NUMBER.pattern})(?=[\sA-Z]|$)")
 _NAME = re.compile(r"[A-Z_][A-Z_][A-Z0-9_]*|L[0-9]+(?![0-9.])")
 _ASSIGNED = re.compile(r"(R[0-9]+|[A-Z_]+[0-9]*)\s*=\s*")
 _FORM = re.compile(r"([A-Z]+)\s*(\()?\s*")
+_FORMS = frozenset(str(form) for form in Form if form)
 _REST_OF_WORD = re.compile(r"\S*\([^)]*\)?|\S+")
 _PASSES = re.compile(r"\s*P\s*=?\s*([0-9]+)")
 _MOST_PASSES = 9999
@@ -71,9 +94,11 @@ def lex_line(number: int, text: str) -> Line:
     assert head is not None  # every part of it may be missing
     level, kind, count, label = head.groups()
     block = f"{kind}{count}" if kind else label or f"in line {number}"
-    scanner = _Scanner(number, block, upper)
+    scanner = _Scanner(number, block, upper, code)
     if len(text) > LONGEST_LINE:
         scanner.refuse(1, f"the block has {len(text)} characters", f"{LONGEST_LINE} are the most; split it.")
+    elif steering := steering_word(upper, head.end()):
+        scanner.steer(head.end(), steering)
     else:
         scanner.scan(head.end())
     return Line(
@@ -88,22 +113,35 @@ def lex_line(number: int, text: str) -> Line:
         comment,
         code[head.end() :].strip(),
         tuple(scanner.errors),
+        scanner.jump,
     )
 
 
 def _without_comment(text: str) -> tuple[str, int]:
+    """The code, and the column of the comment's semicolon; in the text of a message it begins none."""
     at = text.find(";")
+    while at >= 0 and text.count('"', 0, at) % 2:
+        at = text.find(";", at + 1)
     return (text, 0) if at < 0 else (text[:at], at + 1)
 
 
 class _Scanner:
     """Goes once through the code of a block; what it cannot read it reports and skips."""
 
-    def __init__(self, number: int, block: str, text: str) -> None:
+    def __init__(self, number: int, block: str, text: str, written: str) -> None:
         self.words: list[Word] = []
+        self.jump: Jump | None = None
+        self._written = written
         self.errors: list[Diagnostic] = []
         self.call, self.call_column, self.passes = "", 0, 1
         self._number, self._block, self._text = number, block, text
+
+    def steer(self, at: int, steering: Steering) -> None:
+        """A line that steers the program."""
+        try:
+            self.jump = read_jump(self._text, self._written, at, steering)
+        except FormulaError as problem:
+            self.refuse(problem.at + 1, f"{problem}", problem.hint)
 
     def scan(self, at: int) -> None:
         """All words from ``at`` on."""
@@ -204,39 +242,45 @@ class _Scanner:
         """A word with =."""
         name, at, end = match[1], match.start(), match.end()
         is_r = PARAMETER.fullmatch(name)
-        if is_r is None and name not in known.ASSIGNED:
-            why = known.LETTERS_OUTSIDE.get(name, "this control has no such word")
+        if is_r is None and name not in known.ASSIGNED and (len(name) == 1 or name in known.NAMES_OUTSIDE):
+            why = known.LETTERS_OUTSIDE.get(name, "this control does not execute it")
             return self._outside(at, end, name, why)
         if is_r is not None and int(is_r[1][:9]) > known.MOST_R:
             return self._outside(at, end, name, f"R parameters are R0 to R{known.MOST_R}")
-        form = Form.PLAIN
         found = _FORM.match(self._text, end)
-        if found is not None and not PARAMETER.match(self._text, end):
+        if found is not None and found[1] in _FORMS:
             return self._target(name, at, found)
-        value = value_at(self._text, end)
-        if value is None:
-            return self._skip(at, f"{name}= has no value", "Write a number or an R parameter.")
+        return self._value(name, at, end)
+
+    def _value(self, name: str, at: int, end: int) -> int:
+        try:
+            value = value_at(self._text, end)
+        except FormulaError as problem:
+            return self._skip(at, f"{name}= has no value: {problem}", problem.hint)
         written = "".join(self._text[at : value.end].split())
-        return self._keep(Word(name, value.number, at + 1, written, form, value.r), value.end)
+        return self._keep(Word(name, value.number, at + 1, written, Form.PLAIN, value.formula), value.end)
 
     def _target(self, name: str, at: int, found: re.Match[str]) -> int:
         """AC( ), IC( ), DC( ), ACP( ), ACN( )."""
         form, bracket = found[1], found[2]
         if form not in known.FORMS.get(name, frozenset()):
-            allowed = ", ".join(sorted(known.FORMS.get(name, ()))) or "a number or an R parameter"
+            allowed = ", ".join(sorted(known.FORMS.get(name, ()))) or "a number or a formula"
             return self._skip(at, f"{form} is nothing that {name}= takes", f"It takes {allowed}.")
         if bracket is None:
             return self._skip(at, f"{form} lacks its brackets", f"Write {name}={form}(…).")
-        value = value_at(self._text, found.end())
-        if value is None:
-            return self._skip(at, f"{form} has no value in its brackets", f"Write {name}={form}(…).")
+        try:
+            value = value_at(self._text, found.end())
+        except FormulaError as problem:
+            return self._skip(
+                at, f"{form} has no value in its brackets: {problem}", f"Write {name}={form}(…)."
+            )
         close = value.end
         while self._text[close : close + 1].isspace():
             close += 1
         if self._text[close : close + 1] != ")":
             return self._skip(at, f"the bracket of {form} is not closed", f"Write {name}={form}(…).")
         written = "".join(self._text[at : close + 1].split())
-        word = Word(name, value.number, at + 1, written, Form(form), value.r)
+        word = Word(name, value.number, at + 1, written, Form(form), value.formula)
         return self._keep(word, close + 1)
 
     def _keep(self, word: Word, end: int) -> int:

@@ -6,6 +6,8 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from core.language.diagnostics import Diagnostic
+from core.language.formulas import Formula
+from core.language.sinumerik.program_jumps import Jump
 
 LONGEST_LINE = 512
 
@@ -22,7 +24,7 @@ class Form(StrEnum):
 
 
 class Word(NamedTuple):
-    """One word. ``name`` is upper case; ``value`` its number, or None where an R parameter ``r`` gives it.
+    """One word. ``name`` is upper case; ``value`` its number, or None where a ``formula`` gives it.
 
     ``column`` is that of its first sign, from 1; ``text`` as written, without blanks.
     """
@@ -32,7 +34,7 @@ class Word(NamedTuple):
     column: int
     text: str
     form: Form = Form.PLAIN
-    r: int | None = None
+    formula: Formula | None = None
 
 
 class Line(NamedTuple):
@@ -55,11 +57,12 @@ class Line(NamedTuple):
     comment_column: int = 0
     text: str = ""
     errors: tuple[Diagnostic, ...] = ()
+    jump: Jump | None = None  # what steers the program; it has no words beside it
 
     @property
     def executable(self) -> bool:
         """Whether there is anything to do in it."""
-        return bool(self.words or self.call or self.errors)
+        return bool(self.words or self.call or self.errors or self.jump)
 
 
 # --- vocabulary: what this control knows, and what it knows of but does not execute
@@ -80,7 +83,7 @@ G_GROUPS: dict[int, str] = {
 }
 """G codes of this control by the group in which each excludes the others."""
 
-M_CODES = frozenset({0, 1, 2, 3, 4, 5, 17, 30})
+M_CODES = frozenset({0, 1, 2, 3, 4, 5, 7, 8, 9, 17, 30})
 MOST_M = 5
 
 ARC = frozenset({"I", "K", "CR", "AR"})
@@ -101,6 +104,9 @@ FORMS: dict[str, frozenset[str]] = {
     "K": frozenset({"AC"}),
 }
 """Which words take a target in brackets."""
+
+VOCABULARY = LETTERS | ASSIGNED | KEYS
+"""Words that are no variable of the program."""
 
 REACH: dict[str, tuple[float, float]] = {
     **dict.fromkeys(("X", "Z", "I", "K", "CR"), (-100_000.0, 100_000.0)),
@@ -131,11 +137,10 @@ LETTERS_OUTSIDE = {
 """Letters that a program of the trade may hold, and what to do about them here."""
 
 _OUTSIDE = """
-    AMIRROR AROT AROTS ASCALE ASPOS BRISK CALL CASE CFC CFIN CFTCP CIP CT CYCLE DEF DEFAULT DEFINE DIAM90
-    DIAMCYCOF ELSE ENDFOR ENDIF ENDLOOP ENDPROC ENDWHILE EXTERN FFWOF FFWON FOR FRC FRCM G5 GOTO GOTOB GOTOC
-    GOTOF GOTOS IF INVCCW INVCW LOOP MCALL MIRROR MSG OEMIPO OFFN POLF POS POSA PROC REPEAT REPEATB REPOS
-    RET RNDM ROT ROTS SAVE SBLOF SBLON SCALE SETAL SETMS SOFT SPCOF SPCON SPOS STOPRE SUPA TRACYL TRAFOOF
-    TRANSMIT TURN UNTIL VELOLIM WAITM WAITP WAITS WHILE WORKPIECE
+    AMIRROR AROT AROTS ASCALE ASPOS BRISK CALL CASE CFC CFIN CFTCP CIP CT CYCLE DEFAULT DEFINE DIAM90
+    DIAMCYCOF ENDPROC EXTERN FFWOF FFWON FRC FRCM G5 GOTOC GOTOS INVCCW INVCW MCALL MIRROR OEMIPO OFFN POLF
+    POS POSA PROC REPEATB REPOS RNDM ROT ROTS SAVE SBLOF SBLON SCALE SETAL SETMS SOFT SPCOF SPCON SPOS SUPA
+    TRACYL TRAFOOF TRANSMIT TURN VELOLIM WAITM WAITP WAITS WORKPIECE
 """
 NAMES_OUTSIDE = frozenset(_OUTSIDE.split())
 """Names of the language that are no subprograms, and that this control does not execute."""

@@ -1,0 +1,183 @@
+"""Where a SINUMERIK program goes on behind GOTO, IF, WHILE, FOR, LOOP and REPEAT; DEF and MSG."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Protocol
+
+from core.interpreter.sinumerik.sinumerik_state import State
+from core.language.diagnostics import ProgramError
+from core.language.formulas import Formula
+from core.language.sinumerik.program_jumps import Jump, Steering
+from core.language.sinumerik.sinumerik_alarms import NESTING, NO_TARGET, fault
+from core.language.sinumerik.sinumerik_words import Line
+
+_ENDS = {
+    Steering.END_IF: Steering.IF,
+    Steering.END_WHILE: Steering.WHILE,
+    Steering.END_FOR: Steering.FOR,
+    Steering.END_LOOP: Steering.LOOP,
+    Steering.UNTIL: Steering.REPEAT,
+}
+_BEGINS = frozenset(_ENDS.values())
+_GOTO = frozenset({Steering.GOTO, Steering.GOTO_BACK, Steering.GOTO_FORWARD})
+
+
+class Lines(Protocol):
+    """The program in which a line stands."""
+
+    lines: range
+
+    def line(self, at: int) -> Line:
+        """The line with this index."""
+        ...
+
+    def partners(self) -> dict[int, tuple[int, ...]]:
+        """Lines that belong together, by the index of each."""
+        ...
+
+
+def belonging(lines: Iterable[Line]) -> dict[int, tuple[int, ...]]:
+    """Indices of the lines of each structure, by each of them. Raises ProgramError where one is not whole."""
+    found: dict[int, tuple[int, ...]] = {}
+    opened: list[tuple[Line, Jump, list[int]]] = []
+    for line in lines:
+        jump = line.jump
+        if jump is None:
+            continue
+        at = line.number - 1
+        if jump.steering in _BEGINS:
+            opened.append((line, jump, [at]))
+        elif jump.steering is Steering.ELSE and opened and opened[-1][1].steering is Steering.IF:
+            opened[-1][2].append(at)
+        elif jump.steering is Steering.ELSE or jump.steering in _ENDS:
+            if not opened or opened[-1][1].steering is not _ENDS.get(jump.steering):
+                text = f"{jump.steering} has nothing that it belongs to."
+                raise _refused(line, jump, NESTING, text, "Look at the beginning of the structure.")
+            places = (*opened.pop()[2], at)
+            found.update(dict.fromkeys(places, places))
+    if opened:
+        line, jump, _ = opened[-1]
+        raise _refused(line, jump, NESTING, f"{jump.steering} has no end.", "Write its end behind it.")
+    return found
+
+
+def follow(line: Line, jump: Jump, state: State, program: Lines, at: int) -> int | None:
+    """Index of the line to go on with; None where it is the next one. Raises ProgramError."""
+    steering = jump.steering
+    if steering in _GOTO:
+        wanted = jump.condition is None or _holds(line, jump, state, jump.condition)
+        return _target(line, jump, program, at) if wanted else None
+    if steering is Steering.DEFINE:
+        for name, formula in jump.defined:
+            state.variables[name] = 0.0 if formula is None else _worth(line, jump, state, formula)
+    elif steering is Steering.MESSAGE:
+        state.adopt(state.modal._replace(comment=jump.text))
+    elif steering in _BEGINS or steering in _ENDS or steering is Steering.ELSE:
+        return _STEPS[steering](line, jump, state, program.partners()[at], program)
+    return None
+
+
+Places = tuple[int, ...]
+_Step = Callable[[Line, Jump, State, Places, Lines], int | None]
+
+
+def _if(line: Line, jump: Jump, state: State, places: Places, _: Lines) -> int | None:
+    """Behind ELSE, or ENDIF, where the condition does not hold."""
+    assert jump.condition is not None
+    return None if _holds(line, jump, state, jump.condition) else places[1] + 1
+
+
+def _to_the_end(_line: Line, _jump: Jump, _state: State, places: Places, _: Lines) -> int | None:
+    return places[-1] + 1
+
+
+def _again(_line: Line, _jump: Jump, _state: State, places: Places, _: Lines) -> int | None:
+    return places[0]
+
+
+def _on(_line: Line, _jump: Jump, _state: State, _places: Places, _: Lines) -> int | None:
+    return None
+
+
+def _while(line: Line, jump: Jump, state: State, places: Places, _: Lines) -> int | None:
+    assert jump.condition is not None
+    return None if _holds(line, jump, state, jump.condition) else places[-1] + 1
+
+
+def _until(line: Line, jump: Jump, state: State, places: Places, _: Lines) -> int | None:
+    assert jump.condition is not None
+    return None if _holds(line, jump, state, jump.condition) else places[0] + 1
+
+
+def _for(line: Line, jump: Jump, state: State, places: Places, _: Lines) -> int | None:
+    """The variable at its start; behind ENDFOR where the end lies below it."""
+    assert jump.first is not None
+    assert jump.last is not None
+    _set(line, jump, state, _worth(line, jump, state, jump.first))
+    done = _variable(jump, state) > _worth(line, jump, state, jump.last)
+    return places[-1] + 1 if done else None
+
+
+def _end_for(line: Line, jump: Jump, state: State, places: Places, program: Lines) -> int | None:
+    """The variable one further; on behind FOR until it is over the end."""
+    begin = program.line(places[0]).jump
+    assert begin is not None
+    assert begin.last is not None
+    _set(line, begin, state, _variable(begin, state) + 1.0)
+    return places[0] + 1 if _variable(begin, state) <= _worth(line, jump, state, begin.last) else None
+
+
+_STEPS: dict[Steering, _Step] = {
+    Steering.IF: _if,
+    Steering.ELSE: _to_the_end,
+    Steering.END_IF: _on,
+    Steering.WHILE: _while,
+    Steering.END_WHILE: _again,
+    Steering.LOOP: _on,
+    Steering.END_LOOP: _again,
+    Steering.REPEAT: _on,
+    Steering.UNTIL: _until,
+    Steering.FOR: _for,
+    Steering.END_FOR: _end_for,
+}
+
+
+def _set(line: Line, jump: Jump, state: State, value: float) -> None:
+    if not state.keep(jump.name, value):
+        text = f"{jump.name} is no variable of this program."
+        raise _refused(line, jump, "unknown-name", text, f"Write DEF INT {jump.name} before it.")
+
+
+def _variable(jump: Jump, state: State) -> float:
+    return state.variables[jump.name] if jump.name in state.variables else state.r[int(jump.name[1:])]
+
+
+def _holds(line: Line, jump: Jump, state: State, condition: Formula) -> bool:
+    return _worth(line, jump, state, condition) != 0.0
+
+
+def _worth(line: Line, jump: Jump, state: State, formula: Formula) -> float:
+    return state.worth(formula, lambda code, text, hint: _refused(line, jump, code, text, hint))
+
+
+def _target(line: Line, jump: Jump, program: Lines, at: int) -> int:
+    """The index of the label: GOTOF behind the line, GOTOB before it, GOTO behind and then before."""
+    behind = range(at + 1, program.lines.stop)
+    before = range(at, program.lines.start - 1, -1)
+    wheres = {
+        Steering.GOTO_FORWARD: (behind,),
+        Steering.GOTO_BACK: (before,),
+        Steering.GOTO: (behind, before),
+    }
+    for places in wheres[jump.steering]:
+        for place in places:
+            other = program.line(place)
+            if jump.target in {other.label, other.block}:
+                return place
+    text = f"the label {jump.target} is not where {jump.steering} looks for it."
+    raise _refused(line, jump, NO_TARGET, text, "Correct the label, or the direction of the jump.")
+
+
+def _refused(line: Line, jump: Jump, code: int | str, text: str, hint: str) -> ProgramError:
+    return ProgramError(fault(line.number, jump.column, code, line.block, text, hint))

@@ -1,0 +1,51 @@
+"""Formulas of SINUMERIK: R parameters, variables of the program, operators and functions."""
+
+from __future__ import annotations
+
+import re
+
+from core.language.formulas import Grammar
+
+GRAMMAR = Grammar(
+    number=re.compile(r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:EX[+-]?[0-9]{1,3})?"),
+    parameter=re.compile(r"(R(?=[0-9])|[A-Z_][A-Z_][A-Z0-9_]*)([0-9]*)"),
+    operators={
+        "*": (80, "times"),
+        "/": (80, "over"),
+        "DIV": (80, "whole quotient"),
+        "MOD": (80, "remainder"),
+        "+": (70, "plus"),
+        "-": (70, "minus"),
+        "AND": (40, "and"),
+        "XOR": (30, "exclusive or"),
+        "OR": (20, "or"),
+        "==": (10, "equal"),
+        "<>": (10, "unequal"),
+        ">=": (10, "greater or equal"),
+        "<=": (10, "less or equal"),
+        ">": (10, "greater"),
+        "<": (10, "less"),
+    },
+    functions={
+        "SIN": "sine",
+        "COS": "cosine",
+        "TAN": "tangent",
+        "ASIN": "arc sine",
+        "ACOS": "arc cosine",
+        "ATAN2": "direction",
+        "SQRT": "square root",
+        "POT": "square",
+        "ABS": "absolute",
+        "LN": "natural logarithm",
+        "EXP": "exponential",
+        "TRUNC": "whole part",
+        "ROUND": "nearest whole number",
+        "MINVAL": "smaller",
+        "MAXVAL": "larger",
+        "NOT": "not",
+    },
+    constants={"TRUE": 1.0, "FALSE": 0.0, "$PI": 3.141592653589793},
+    separator=",",
+    negation=90,
+)
+"""Formulas behind ``=``, in brackets of a target, and of conditions. Comparisons bind weakest of all."""

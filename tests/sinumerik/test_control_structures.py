@@ -1,0 +1,104 @@
+"""Formulas, jumps and control structures, by hand."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from core.interpreter.actions import Coolant
+from tests.sinumerik.lathe import run
+
+
+def r(text: str, *behind: str) -> float:
+    """What R1 holds behind a program: Z goes there."""
+    ran = run("\n".join((text, "G0 Z=R1", "M30", *behind)))
+    assert ran.found == []
+    return ran.moves[-1].z
+
+
+@pytest.mark.parametrize(
+    ("formula", "value"),
+    [
+        ("2+3*4", 14.0),
+        ("(2+3)*4", 20.0),
+        ("-2.5", -2.5),
+        ("7 DIV 2", 3.0),
+        ("-7 MOD 3", -1.0),
+        ("SIN(30)", 0.5),
+        ("COS(90)", 0.0),
+        ("ATAN2(1,-1)", 135.0),
+        ("SQRT(2)", math.sqrt(2.0)),
+        ("POT(3)", 9.0),
+        ("TRUNC(2.9)", 2.0),
+        ("ROUND(2.5)", 3.0),
+        ("MINVAL(3,2)", 2.0),
+        ("ABS(-3)", 3.0),
+        ("1EX3", 1000.0),
+        ("(2>1) AND (3<>4)", 1.0),
+        ("NOT (1==1)", 0.0),
+        ("TRUE OR FALSE", 1.0),
+        ("R2*R2", 100.0),
+    ],
+)
+def test_a_formula(formula: str, value: float) -> None:
+    assert r(f"R2=10\nR1={formula}") == pytest.approx(value, abs=1e-12)
+
+
+def test_words_and_targets_take_formulas() -> None:
+    ran = run("R1=10 R2=4\nG0 X=R1+2*R2 Z=-R2\nX=IC(R1-4) C=DC(R1*9)\nM30")
+    assert ran.found == []
+    last = ran.moves[-1]
+    assert (last.mx * 2.0, last.mz, last.mc) == pytest.approx((24.0, -4.0, 90.0))
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("R1=1\nGOTOF ENDE\nR1=2\nENDE: R3=0", 1.0),
+        ("R1=0\nAGAIN: R1=R1+1\nIF R1<5 GOTOB AGAIN", 5.0),
+        ("R1=0\nN20 R1=R1+1\nIF R1<5 GOTO N20", 5.0),
+        ("IF 2>1\nR1=1\nELSE\nR1=2\nENDIF", 1.0),
+        ("IF 1>2\nR1=1\nELSE\nR1=2\nENDIF", 2.0),
+        ("R1=7\nIF 1>2\nR1=1\nENDIF", 7.0),
+        ("R1=0\nWHILE R1<4\nR1=R1+1\nENDWHILE", 4.0),
+        ("R1=9\nWHILE R1<4\nR1=R1+1\nENDWHILE", 9.0),
+        ("R1=0\nREPEAT\nR1=R1+1\nUNTIL R1>=3", 3.0),
+        ("R1=0\nFOR R2=1 TO 4\nR1=R1+R2\nENDFOR", 10.0),
+        ("R1=0\nFOR R2=4 TO 1\nR1=5\nENDFOR", 0.0),
+        ("R1=0\nLOOP\nR1=R1+1\nIF R1==6 GOTOF OUT\nENDLOOP\nOUT: R3=0", 6.0),
+        (
+            "R1=0\nFOR R2=1 TO 3\nFOR R3=1 TO 2\nIF R3==2\nR1=R1+10\nELSE\nR1=R1+1\nENDIF\nENDFOR\nENDFOR",
+            33.0,
+        ),
+        (
+            "DEF REAL DEPTH=2.5, STEP\nDEF INT COUNT\nSTEP=DEPTH*2\nFOR COUNT=1 TO 2\nR1=COUNT+STEP\nENDFOR",
+            7.0,
+        ),
+    ],
+)
+def test_where_a_program_goes_on(text: str, value: float) -> None:
+    assert r(text) == pytest.approx(value)
+
+
+def test_an_endless_loop_is_an_error() -> None:
+    ran = run("LOOP\nR1=1\nENDLOOP\nM30")
+    assert [each.code for each in ran.found] == ["too-many-blocks"]
+
+
+def test_structures_in_a_subprogram_and_ret() -> None:
+    sub = ("%_N_SUB_SPF", "FOR R2=1 TO 3", "R1=R1+1", "ENDFOR", "RET", "R1=99")
+    assert r("%_N_MAIN_MPF\nR1=0\nSUB P2", *sub) == 6.0
+
+
+def test_coolant_before_and_behind_the_motion() -> None:
+    ran = run("G1 X10 F100 M8\nX20 M9\nM30")
+    assert ran.errors == []
+    told = [block.action if block.action is not None else "move" for block in ran.blocks[:4]]
+    assert told == [Coolant(True), "move", "move", Coolant(False)]
+
+
+def test_a_message_is_shown_and_its_semicolon_begins_no_comment() -> None:
+    ran = run('MSG("ROUGH; THEN FINISH")\nG0 X10\nM30')
+    assert ran.found == []
+    assert ran.blocks[0].modal.comment == "ROUGH; THEN FINISH"
