@@ -81,7 +81,7 @@ class TerminalBoard:
         wheel = self._config.pots.get("handwheel")
         if wheel is not None and wheel.terminal.node == self._name and wheel.terminal.sub == sub:
             return (state.handwheel + 2**15) % 2**16 - 2**15
-        load = self._plant.spindle_load
+        load = self._plant.spindle.load
         shown = {"feed_pot": state.feed_pot, "spindle_pot": state.spindle_pot, "spindle_load": load}
         for name, pot in self._config.pots.items():
             if pot.terminal.node == self._name and pot.terminal.sub == sub and name in shown:

@@ -68,7 +68,6 @@ _PAST = 0.1  # s of setpoints that may still be asked for
 _HALT = 0.2  # s
 _HOME_SETTLE = 0.2  # s between the end of a homing move and the reference
 _FEEDS, _CUTS = 0.05, 0.25  # mm/s, and the fraction of the rapid above which nothing is cut
-_FRICTION, _CUT = 12.0, 35.0  # per cent of the spindle's load: at full speed, and in a cut
 _AT_REST = 0.1  # s between two samples of a machine on which nothing changes
 
 
@@ -306,12 +305,6 @@ class Plant:
     def cuts(self) -> bool:
         """Whether a slide feeds: much slower than its rapid, which is as near to a cut as this gets."""
         return any(_FEEDS < abs(servo.v) < _CUTS * servo.axis.vmax for servo in self.servos)
-
-    @property
-    def spindle_load(self) -> float:
-        """Per cent of what its motor can: friction by the speed, and what a cut takes."""
-        speed = abs(self.spindle.speed) / self.config.spindle.rpm_max
-        return _FRICTION * speed + (_CUT if speed and self.cuts() else 0.0)
 
     def _setpoint(self, t: float) -> Motion:
         """What the drives get, its velocity, and what is queued; by the spindle's encoder the first makes up

@@ -220,7 +220,7 @@ class SimStation(_OnPlant):
         plant = self._plant
         with plant.lock:
             state = plant.panel.state(plant.clock.now())
-            load = plant.spindle_load if plant.config.measures_load else None
+            load = plant.spindle.load if plant.config.measures_load else None
         return state if load is None else replace(state, spindle_load=load)
 
 

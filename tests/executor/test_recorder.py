@@ -10,11 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.compose.machine_files import load_machine
 from core.executor.commands import CycleStart, EnableDrives
 from core.executor.executor import Executor
 from core.executor.recorder import KEPT, Recorder, Tick, recorded_of, rotate
 from core.executor.snapshot import Event, State
-from core.ports import ALL_UNKNOWN, DriverError, FloatArray, Unknown
+from core.machine.hardware_model import AnalogModel
+from core.ports import ALL_UNKNOWN, DriverError, FloatArray, SampleSource, Unknown
 from core.records.record_errors import RecordError
 from core.records.record_file import open_record
 from core.records.ring_file import NOW, read_ring
@@ -86,6 +88,38 @@ def test_a_driver_without_samples_is_recorded_as_it_is_seen() -> None:
     assert np.isnan(record.columns["X load"]).all()
     assert record.columns["spindle turns"].max() > 5.0
     assert record.columns["queue"].max() > 0.2
+
+
+class Loadless:
+    """The driver's samples without the load of its spindle."""
+
+    def __init__(self, source: SampleSource) -> None:
+        self._source, self.rate = source, source.rate
+
+    def take(self, most: int = 8192) -> FloatArray:
+        rows = self._source.take(most).copy()
+        rows[:, -2] = np.nan
+        return rows
+
+
+@pytest.mark.parametrize("own", [True, False])
+def test_the_load_that_an_input_tells_fills_what_the_samples_leave_open(own: bool) -> None:
+    machine = load_machine()
+    pots = {"spindle_load": AnalogModel("spindle_load", "AI-1", 0.0, 150.0)}
+    hardware = dataclasses.replace(machine.hardware, analog=pots)
+    kind = type("LoadRecorded", (Recorded,), {"own": own})
+    it: Recorded = kind(machine=dataclasses.replace(machine, hardware=hardware))
+    source = it.sim.ports.samples
+    assert source is not None
+    if own:
+        it.executor._ports = dataclasses.replace(it.executor._ports, samples=Loadless(source))
+    told: list[float] = []
+    it.watch.append(lambda shot: told.append(shot.spindle_load or 0.0))
+    it.make_part()
+    it.recorder.drain()
+    columns = it.recorder.between(-np.inf, np.inf).columns
+    assert max(told) > 10.0
+    assert np.nanmax(columns["spindle load"]) == pytest.approx(max(told))
 
 
 @pytest.mark.parametrize("own", [True, False])

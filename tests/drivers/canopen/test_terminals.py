@@ -69,3 +69,27 @@ def test_outputs_of_a_silent_module_are_refused_and_its_safe_states_kept(bench: 
     io.safe()
     assert not io.outputs()["coolant"]
     assert io.outputs()["collet"]
+
+
+def test_a_spindle_load_is_told_in_per_cent() -> None:
+    """0…150 % over the word; the peer tells what its motor has."""
+    text = ("spindle_pot = {", 'spindle_load = { at = "401.6401.3", range = [0, 150] }\nspindle_pot = {')
+    bench = CanBench(can_machine(text))
+    try:
+        assert bench.machine.io.snapshot().spindle_load == 0.0
+        bench.peers.plant.spindle.order(bench.clock.now(), 1750.0)
+        for _ in range(300):
+            bench.tick()
+        load = bench.machine.io.snapshot().spindle_load
+        assert load == pytest.approx(bench.peers.plant.spindle.load, abs=1.6)  # 1 % of the word
+        assert load > 1.6
+    finally:
+        bench.close()
+
+
+def test_without_that_input_no_load_is_told() -> None:
+    bench = CanBench(can_machine())
+    try:
+        assert bench.machine.io.snapshot().spindle_load is None
+    finally:
+        bench.close()
