@@ -124,7 +124,7 @@ class PlotsPane(QWidget):
         values += [level.value for level in plot.levels]
         low, high = min(values), max(values)
         room = _ROOM * (high - low) or max(abs(high) * 0.01, 1e-4)
-        drawn.setYRange(low - room, high + 3.0 * room, padding=0)
+        drawn.setYRange(low - room, high + 4.5 * room, padding=0)
         side = max(0.5, 0.02 * (across[1] - across[0]))
         drawn.setXRange(across[0] - side, across[1] + side, padding=0)
 

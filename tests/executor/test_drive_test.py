@@ -143,12 +143,24 @@ def test_a_host_that_dies_leaves_it_at_rest_within_its_lease() -> None:
     assert rig.said("refused") == ["Z was stopped before the end of its drive test"]
 
 
-def test_a_lease_that_ran_out_is_not_taken_up_again() -> None:
+@pytest.mark.parametrize("late", [0.07, 0.08, 0.09, 0.14])
+def test_a_lease_that_ran_out_is_not_taken_up_again(late: float) -> None:
+    """What is committed is as good as over: a tick before its end nothing can be added any more."""
     rig = ready()
     rig.post(DriveTest(RAMP, 0.1))
-    rig.run(0.14)
+    rig.run(late)
     rig.post(DriveTestOn(LEASE))
     rig.until(State.IDLE, limit=0.3)
+    assert rig.shot.alarms == ()
+    assert rig.shot.demand[1] > -4.0
+
+
+def test_a_renewal_behind_the_release_counts_for_nothing() -> None:
+    rig = ready()
+    hold(rig, RAMP, most=0.1)
+    rig.post(JogStop(), DriveTestOn(LEASE), DriveTestOn(LEASE))
+    rig.until(State.IDLE, limit=0.1)
+    assert rig.shot.alarms == ()
     assert rig.shot.demand[1] > -4.0
 
 
