@@ -83,14 +83,15 @@ def check(file: str | None, *, json_wanted: bool) -> int:
             "backend": machine.backend,
             "errors": [],
             "changes": [change._asdict() for change in told],
-            "ports": [row._asdict() for row in answers.rows],
+            "ports": [{**row._asdict(), "verdict": row.verdict} for row in answers.rows],
             "warnings": answers.warnings,
             "trouble": answers.trouble,
         },
     )
     if not json_wanted:
         sys.stdout.write(f"{machine.source} is good: {machine.name}, backend {machine.backend}\n")
-        sys.stdout.write("".join(f"{line}\n" for line in table(answers.rows)))
+        judged = [(f"{row.verdict:<4}  {row.name}", *row[1:]) for row in answers.rows]
+        sys.stdout.write("".join(f"{line}\n" for line in table(judged)))
         sys.stdout.write("".join(f"  changed since it was accepted: {change}\n" for change in told))
     said = (*answers.warnings, *answers.trouble)
     sys.stderr.write("".join(f"turndesk: {machine.source}: {text}\n" for text in said))

@@ -15,6 +15,7 @@ from core.ports import Clock, DriverError, MachinePorts, StationState
 from core.table_schema import Unit, shown
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import RealClock, StepClock
+from drivers.grblhal.grblhal_config import HARDWARE
 from drivers.inverter.inverter_spindle import InverterSpindle
 from drivers.inverter.inverter_table import InverterTable
 from drivers.mtconnect.mtconnect_table import MtconnectTable
@@ -40,6 +41,11 @@ class Row(NamedTuple):
     at: str
     state: str
     detail: str
+
+    @property
+    def verdict(self) -> str:
+        """Whether it is as the machine file has it: ``ok`` or ``FAIL``."""
+        return "FAIL" if self.state in FAILED else "ok"
 
 
 @dataclass(slots=True)
@@ -144,6 +150,9 @@ def _rows(machine: Machine, ports: MachinePorts) -> Iterator[Row]:
         for name, on in states.items():
             yield Row(f"{kind} {name}", terminals.pop(f"{kind} {name}", ""), "on" if on else "off", "")
     for name, terminal in terminals.items():
+        if terminal == HARDWARE:
+            yield Row(name, terminal, "untold", "it cuts the power by itself: its state is not told")
+            continue
         yield Row(name, terminal, MISSING, "the machine has no such terminal")
 
 

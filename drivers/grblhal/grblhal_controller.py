@@ -30,6 +30,7 @@ _IDLERS = frozenset(("Check", "Sleep", "Tool"))  # states in which it runs no pr
 _HURRIED = 0.02  # s, while a tool is touched off
 _COALESCED = 0.5  # s; two questions so far apart are never answered by one report
 _LISTENING = 0.1  # s; of a longer pause of this computer no more counts as the controller's silence
+_CONFIRMED = 0.25  # s at full speed, between a report that leaps and the one that confirms it
 _LEAP = 1.0  # mm beyond what the slides can do between two reports
 _HOMING, _HOMED = 22, 1  # setting, and the bit of it that switches homing on
 
@@ -82,6 +83,7 @@ class Controller:
         self._inbox = b""
         self._next_question = 0.0
         self.hurry_until = 0.0  # somebody wants to know as often as it may be asked
+        self._leapt: tuple[Report, str] | None = None  # a report that nothing has confirmed, and its line
         self._sees_overrides = False
         self._halted = False
         self._opening: Opening[Wire] | None = None  # of a wire that was lost
@@ -362,16 +364,37 @@ class Controller:
             self.fail("the controller has been reset; what it was given is void", "controller-reset")
 
     def _reported(self, report: Report | None, line: str) -> None:
-        fit = report is not None and (self.busy or not self.ready or self.plausible(report))
-        if report is None or not fit:
+        if report is None:
             self.damaged(line)
             return
+        if not (self.busy or not self.ready or self.plausible(report)):
+            if self._leapt is None:
+                self._leapt = report, line
+                self.question()  # the next one tells whether it stands there
+                return
+            if not self._confirms(report, self._leapt[0]):
+                self.damaged(line)
+                return
+        elif self._leapt is not None and not self._confirms(report, self._leapt[0]):
+            self.damaged(self._leapt[1])  # this one goes on from where it was before: that one was garbled
+        self._leapt = None
         self.keep(report)
         if report.diameter and self.ready:
             self.fail("X counts in diameter (D:1): the controller has lost its modes", "controller-modes")
         self.owed_since, self.mute = None, False
         self._mind(report)
         self.on_report(report)
+
+    def _confirms(self, report: Report, leapt: Report) -> bool:
+        """Whether this one goes on from where that one leapt to: a controller that was late itself makes up
+        for it, and stands where it says.
+        """
+        before, now = self._places(leapt), self._places(report)
+        near = ((axis, now.get(axis.name), before.get(axis.name)) for axis in self.config.axes)
+        return all(
+            new is None or old is None or abs(new - old) <= _CONFIRMED * axis.vmax + _LEAP
+            for axis, new, old in near
+        )
 
     def _mind(self, report: Report) -> None:
         """States that say that something has happened, however that was missed."""

@@ -119,6 +119,7 @@ _READERS: dict[str, Callable[[str], Mapping[str, object] | None]] = {
 _LEAST_BUFFER = 256
 # Control inputs: reset, feed hold, cycle start, door, block delete, optional stop, E-stop, probe lost, motor
 # fault, motor warning. What else stands among the pins (limits by axis, probe) is not in [SIGNALS:…].
+_AXES = frozenset("XYZABCUVW")
 _CONTROL_INPUTS = "RHSDLTEOFMQ"
 
 
@@ -136,7 +137,11 @@ class Identity(NamedTuple):
     signals: str | None = None  # control inputs that its board has, by their letters in a report's pins
 
     def has_pin(self, letter: str) -> bool:
-        """Whether its board has this input, as far as it tells: firmware from before 2024 does not."""
+        """Whether its board has this input, as far as it tells: control inputs by [SIGNALS:…], which firmware
+        from before 2024 leaves out, limit switches by its axes.
+        """
+        if letter in _AXES:
+            return letter in self.axes
         return self.signals is None or letter not in _CONTROL_INPUTS or letter in self.signals
 
     @property

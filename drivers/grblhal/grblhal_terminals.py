@@ -33,11 +33,13 @@ class GrblInputs:
         self._next = 0.0
 
     def states(self) -> Mapping[str, bool]:
-        """By the names of the machine file; one that has never been read is not in here."""
+        """By the names of the machine file; one that has never been read, or that the board has not, is not
+        in here.
+        """
         pins = self._c.report.pins if self._c.report is not None else ""
         states = dict(self._read)
         for name, wired in self._c.config.inputs.items():
-            if wired.terminal.startswith(_PIN):
+            if wired.terminal.startswith(_PIN) and self._c.has_pin(wired.terminal.removeprefix(_PIN)):
                 states[name] = wired.terminal.removeprefix(_PIN) in pins
         return states
 
@@ -112,9 +114,11 @@ class GrblIO:
         return self._inputs.states()
 
     def outputs(self) -> Mapping[str, bool]:
-        """Coolant as the controller tells it, a second late; of auxiliary outputs it tells nothing."""
+        """Coolant as the controller tells it, a second late; of auxiliary outputs it tells nothing. What it
+        has not is not in here.
+        """
         told = self._c.accessories
-        shown = dict(self._wanted)
+        shown = {name: on for name, on in self._wanted.items() if not self.lacking(name)}
         for name, output in self._c.config.outputs.items():
             letter = LETTERS.get(output.terminal)
             said_at = self._said_at.get(name)
@@ -131,7 +135,7 @@ class GrblIO:
         why = self.lacking(name)
         if on and why:
             raise DriverError(f"output {name} cannot be switched: {why}", "output")
-        if self.outputs()[name] is not on:
+        if self.outputs().get(name, on) is not on:
             self._sent[name] = not on  # whatever it was told before: to be said, as soon as it listens
         self._wanted[name] = on
         if not why:

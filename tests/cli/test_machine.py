@@ -77,9 +77,9 @@ def test_the_table_fits_a_terminal() -> None:
 def test_terminals_positions_and_outputs_are_in_the_table(capsys: Captured) -> None:
     assert main(["machine", "check"]) == 0
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]
-    assert ["X", "ok", "homed,", "at", "0", "in"] in lines
-    assert ["output", "collet", "OUT-2", "on"] in lines
-    assert ["input", "end_of_bar", "IN-6", "off"] in lines
+    assert ["ok", "X", "ok", "homed,", "at", "0", "in"] in lines
+    assert ["ok", "output", "collet", "OUT-2", "on"] in lines
+    assert ["ok", "input", "end_of_bar", "IN-6", "off"] in lines
 
 
 def test_an_inverter_that_is_not_there_has_its_row(capsys: Captured, tmp_path: Path) -> None:
@@ -102,4 +102,16 @@ def test_an_input_that_the_machine_does_not_have_is_trouble(
     told = capsys.readouterr()
     assert "turndesk: gt75.toml: input guard: missing the machine has no such terminal" in told.err
     lines = [line.split() for line in told.out.splitlines()]
-    assert ["input", "guard", "IN-4", "missing", "the", "machine", "has", "no", "such", "terminal"] in lines
+    assert [
+        "FAIL",
+        "input",
+        "guard",
+        "IN-4",
+        "missing",
+        "the",
+        "machine",
+        "has",
+        "no",
+        "such",
+        "terminal",
+    ] in lines

@@ -101,8 +101,14 @@ def test_check_and_run_without_them(
     text = "".join(line for line in lines if 'at = "in.' not in line)
     text = text.replace("spindle_with_collet_open = false", "spindle_with_collet_open = true")
     machine_file.write_text(text, encoding="utf-8")
-    assert main(["machine", "check", str(machine_file)]) == 0
-    assert "threads are refused" in capsys.readouterr().err
+    assert main(["machine", "check", str(machine_file)]) == 1  # its outputs out.N are not there
+    told = capsys.readouterr()
+    assert "threads are refused" in told.err
+    rows = [line.split() for line in told.out.splitlines() if line.startswith("  ")]
+    failed = {row[2]: row[4] for row in rows if row[0] == "FAIL"}
+    assert failed == dict.fromkeys(failed, "missing")
+    assert {"collet", "catcher"} <= failed.keys()
+    assert not {"coolant", "estop"} & failed.keys()
     program = tmp_path / "part.nc"
     program.write_text("G90G94F300\nX.02Z.02\nG01X.01F60\nM08\nM09\nM30\n", encoding="utf-8")
     assert main(["run", str(program), "--headless", "--machine", str(machine_file)]) == 0
