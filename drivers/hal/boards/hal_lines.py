@@ -71,7 +71,7 @@ class Section(NamedTuple):
 
 _READS = re.compile(
     r"io\.in\..*|io\.analog\..*|hal\.axes\.\w+\.(feedback|fault|home|limit_low|limit_high|index_enable)"
-    r"|hal\.spindle\.(position|velocity|at_speed|fault|in_position_mode|index_enable)"
+    r"|hal\.spindle\.(position|velocity|at_speed|fault|load|in_position_mode|index_enable)"
 )
 
 
