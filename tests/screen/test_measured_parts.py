@@ -475,7 +475,7 @@ def test_trends_of_what_was_made(day: Day, tmp_path: Path) -> None:
     (tmp_path / "other.nc").write_text(PEG)
     day.desk.put_on_desk(tmp_path / "other.nc")
     day.sees(lambda: dict(cells(day))["CYCLE TIME"] == "no part was made yet" and settled(day))
-    assert dict(cells(day))["AVAILABILITY"].partition(" of ")[0] == ran.partition(" of ")[0]
+    assert dict(cells(day))["AVAILABILITY"] >= ran  # the clock on the wall goes on
 
 
 def test_a_reading_that_nobody_sees_is_not_kept(day: Day) -> None:
