@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import pickle
 import socket
 import subprocess
@@ -109,12 +110,17 @@ def main(arguments: list[str]) -> int:
     clock: Clock = RealClock(float(arguments[1]))
     machine = pickle.load(sys.stdin.buffer)  # of our own parent, over a pipe that nobody else has
     warnings = real_time()
+    locked = keep_memory()
     try:
         machine_driven = driven(machine, clock)
     except DriverError as error:
         sock.sendall(packed(Message({"error": str(error)}, NOTHING)))
         return 1
-    warnings += keep_memory()
+    if machine_driven.wake() is None:
+        locked = keep_memory()
+    else:  # a tenth of a second without a setpoint is more than drives wait for one
+        gc.freeze()
+    warnings += locked
     sock.sendall(packed(Message({"ready": True}, NOTHING)))
     serve(sock, machine_driven, warnings, machine.hardware.refresh)
     return 0

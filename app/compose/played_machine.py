@@ -14,7 +14,7 @@ from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import StepClock
-from drivers.feeder.feeder_loop import keep_memory, real_time
+from drivers.feeder.feeder_loop import PRIORITY, keep_memory, real_time
 
 if TYPE_CHECKING:
     from drivers.lookalikes.canopen_devices import CanopenDevices
@@ -128,7 +128,7 @@ def play_peers(
     clock, zero, epoch = StepClock(), time.monotonic(), time.time()
     peers = make(machine, clock)
     keep_memory()
-    real_time()  # drives are punctual; where this is refused the feeder has said so already
+    real_time(PRIORITY - 10)  # drives are punctual; where this is refused the feeder has said so already
     peers.arrival = lambda stamp: stamp - epoch
     say(f"simulated drives of {machine.name} on {bus.interface} {bus.channel}; end: Ctrl-C")
     try:

@@ -109,7 +109,8 @@ class CanEncoder:
             )
         turns = setup.read(od.ENCODER_TURNS)
         self._range = (setup.read(od.ENCODER_RANGE) if scaled else counts * max(turns, 1)) or _WORD
-        between = (SYNCS + 1) * self._bus.config.sync * config.rpm_max / 60.0  # turns, at most
+        wait = self._bus.config.sync * self._bus.config.seldom
+        between = (SYNCS + 1) * wait * config.rpm_max / 60.0  # turns, at most
         if self._range < 2.0 * between * counts:
             raise DriverError(
                 f"{config.name}: the encoder begins anew after {self._range / counts:.3g} turns, and the"
@@ -134,7 +135,12 @@ class CanEncoder:
 
     def _doubt(self, moved: int, passed: float) -> None:
         turns = moved / abs(self._config.counts_per_rev)
-        most = _FASTER * self._config.rpm_max / 60.0 * max(passed, self._bus.config.sync)
+        most = (
+            _FASTER
+            * self._config.rpm_max
+            / 60.0
+            * max(passed, self._bus.config.sync * self._bus.config.seldom)
+        )
         if turns > most:
             self._wrong(f"its counts leap by {turns:.2f} turns at once; check cable and shield")
 

@@ -40,6 +40,7 @@ _CYCLES, _CYCLIC_LEAST = 4, 0.02  # SYNCs, and s, that setpoints of a cyclic mod
 _RESTART = 0.04  # s that a drive needs between the end of one PVT motion and the start of the next
 _RECORDS = 3  # a FIFO with fewer than two records is empty to the drive
 _SELDOM = 0.01  # s
+_ANSWERS, _ANSWER_TIME = 3, 0.02  # SYNCs, s
 _LEAST = 16  # counts a turn of an encoder
 
 MODES = ("pvt", "csp", "ip", "pp")
@@ -86,6 +87,11 @@ class BusConfig:
     def seldom(self) -> int:
         """SYNCs from one answer to the next of what need not be known at each: about 10 ms."""
         return max(1, round(_SELDOM / self.sync))
+
+    @property
+    def patience(self) -> int:
+        """Answers to SYNC that a slide may leave out before it counts as silent: 3, or 20 ms."""
+        return max(_ANSWERS, round(_ANSWER_TIME / self.sync))
 
     @property
     def own_process(self) -> bool:

@@ -31,7 +31,7 @@ from drivers.canopen.drive_profiles import Entry
 from drivers.canopen.pvt_records import RecordQueue
 
 _FOLLOWING = 0x8611  # EMCY
-SYNCS = 3  # answers that may be missing before a drive counts as silent
+SYNCS = 3  # answers that may be missing of what answers every 10 ms
 _COMMAND = struct.Struct("<Hbi")  # control word, mode, target
 _SHOWN = struct.Struct("<Hbi")  # status word, mode, position
 _TORQUE = struct.Struct("<h")  # per mille of the rated one
@@ -80,6 +80,7 @@ class Drive402:
         self.trouble: Fault | str = ""
         self.rebooted = False
         self._resetting = False
+        self._patience = bus.config.patience  # answers that it may leave out
         self._beats = True  # it has a heartbeat that can be watched
 
     @property
@@ -95,7 +96,7 @@ class Drive402:
     @property
     def silent(self) -> bool:
         """Whether it has left too many SYNCs unanswered: what it shows is of before."""
-        return self.missing > SYNCS
+        return self.missing > self._patience
 
     @property
     def tells_inputs(self) -> bool:
@@ -138,6 +139,7 @@ class Drive402:
             setup.transmit(2, self._told, *more, every=self.bus.config.seldom)
         self._ask_load()
         self._beats = od.HEARTBEAT not in setup.lacks
+        self._patience = self.bus.config.patience if work.axis else SYNCS
         self.node.nmt.add_heartbeat_callback(self._heartbeat)
         self.node.emcy.add_callback(self._emergency)
         self.status = setup.read(od.STATUS)
@@ -429,7 +431,7 @@ class DriveSet:
 
         One that no longer answers keeps nobody waiting once its own reaction must be over.
         """
-        speaking = [axis for axis in self.axes if axis.drive.missing <= SYNCS]
+        speaking = [axis for axis in self.axes if not axis.drive.silent]
         for axis in self.axes:
             if axis not in speaking and now - axis.drive.answered > _REACTION:
                 axis.moving = False

@@ -21,10 +21,10 @@ _CHUNK = 1 << 16
 _LAST = 30.0  # s that an orphaned feeder has to bring the slides to rest; no queue is longer
 
 
-def real_time() -> list[str]:
+def real_time(priority: int = PRIORITY) -> list[str]:
     """Ask for SCHED_FIFO; what was refused, in words for the operator."""
     try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
     except (OSError, AttributeError) as error:
         return [f"the feeder runs without real-time priority ({_why(error)}); see docs/hardware.md"]
     return []

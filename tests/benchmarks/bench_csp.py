@@ -9,6 +9,7 @@ only counts.
 from __future__ import annotations
 
 import contextlib
+import gc
 import json
 import multiprocessing
 import os
@@ -70,8 +71,9 @@ def feeder(arguments: list[str]) -> None:
     SyncSchedule.sent = noted  # type: ignore[method-assign]
     if fifo == "fifo":
         real_time()
-    owned = driven(load_machine(Path(file)), RealClock(float(zero)))
     keep_memory()
+    owned = driven(load_machine(Path(file)), RealClock(float(zero)))
+    gc.freeze()
     late.clear()
     sock = socket.socket(fileno=int(descriptor))
     sock.sendall(packed(Message({"ready": True}, NOTHING)))
