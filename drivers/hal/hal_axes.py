@@ -114,7 +114,7 @@ class HalAxes:
             self._speed_of_turns(t, row[1 + 2 * axes])
         self._t = t
         for index, on in zip(self._marks, row[len(row) - len(self._marks) :], strict=True):
-            if self.homing is not None and self.homing.index == index:
+            if self.homing is not None and self._homes(index):
                 self.homing.see(self.raw(index), bool(on))
         moved = zip(self._actual, self._still, self.config.axes, strict=True)
         if any(abs(a - b) > 1.5 * axis.count for a, b, axis in moved):
@@ -237,8 +237,8 @@ class HalAxes:
             actual=actual,
             following_error=tuple([d - a for d, a in zip(demand, actual, strict=True)]),
             enabled=powered,
-            homed=tuple(self._homed),
-            moving=self.homing is not None or any(velocity) or t - self._moved < _STILL,
+            homed=tuple([on and not self._homes(n) for n, on in enumerate(self._homed)]),
+            moving=not self._link.trouble and (self.homing is not None or any(velocity) or self._rolls),
             fault=self.fault,
         )
 
@@ -336,13 +336,24 @@ class HalAxes:
 
     def found(self, index: int, zero: float) -> None:
         """Home is here, as HAL counts."""
+        leap = self.zero[index] - zero
         self.zero[index] = zero
         self._homed[index] = True
-        self._actual = tuple(
-            [a if n != index else a + self.zero[index] - zero for n, a in enumerate(self._actual)]
+        self._actual, self._still, self._command = (
+            tuple([p + leap if n == index else p for n, p in enumerate(each)])
+            for each in (self._actual, self._still, self._command)
         )
+        self.queue.rest_at(self._actual)
 
     # --- inside -------------------------------------------------------------------------------------------
+
+    def _homes(self, index: int) -> bool:
+        return self.homing is not None and self.homing.index == index
+
+    @property
+    def _rolls(self) -> bool:
+        """Whether a slide has moved of late, by what it feeds back."""
+        return self._t - self._moved < _STILL
 
     @property
     def _powered(self) -> bool:
@@ -407,7 +418,7 @@ class HalAxes:
     @property
     def resting(self) -> bool:
         """Nothing is queued, and nothing moves."""
-        return at_rest(self.queue.horizon(self._now()), self._now()) and self._t - self._moved >= _STILL
+        return at_rest(self.queue.horizon(self._now()), self._now()) and not self._rolls
 
 
 def _nobody(*_figures: float) -> None:

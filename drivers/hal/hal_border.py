@@ -19,6 +19,7 @@ FLOAT, BIT, COUNT = "float", "bit", "s32"
 _STREAMS = ("a", "b")
 _ROOM = 2.0  # of an axis' acceleration: setpoints, their corners and a gear stay below it
 _FASTER = 1.2  # of its speed
+_BRAKES = 0.15  # s beyond the ramp from full speed in which the bridge must have taken the power itself
 _SAMPLES = 4000  # rows that wait for the bridge
 _LOADRT = re.compile(r"^\s*loadrt\s+(\S+)\s*(.*?)\s*(?:#.*)?$")
 
@@ -175,13 +176,21 @@ def _chain(border: Border, config: HalConfig) -> None:
         border.reads(f"hal.axes.{name}.fault", pin, BIT, f"td-{name}-fault")
     signals = [f"td-{name}-fault" for name, _ in faults]
     if signals:
-        pins["fault_in"] = _any_of(border, "td-any-fault", signals)
+        # The bridge brakes the others; where it does not, HAL takes the power.
+        border.add("timedelay", "td.patience", in_=_any_of(border, "td-any-fault", signals), out="td-fault")
+        border.values.append(("td.patience.on-delay", _patience(config)))
+        pins["fault_in"] = "td-fault"
     border.add("estop_latch", "td.chain", **pins)
     border.wire("td-charge", "td.chain.watchdog")
     border.drives("hal.charge_pump", config.charge_pump, BIT, "td-charge")
     border.add("and2", "td.power", in0="td-ok", in1="td-enable", out="td-power")
     border.add("not", "td.no-power", in_="td-power", out="td-no-power")
     border.drives("hal.machine_on", config.machine_on, BIT, "td-power")
+
+
+def _patience(config: HalConfig) -> float:
+    """s in which the slowest slide has braked."""
+    return _BRAKES + max(axis.vmax / axis.amax for axis in config.driven)
 
 
 def _estop(border: Border, config: HalConfig) -> None:

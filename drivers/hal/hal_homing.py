@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from enum import Enum
 from typing import Protocol
 
@@ -43,6 +44,7 @@ class _Step(Enum):
     LEAVE = "leaves its switch slowly"
     INDEX = "looks for the index"
     END = "brakes behind its mark"
+    PARK = "goes to its home"
     DONE = "found"
 
 
@@ -84,6 +86,7 @@ class Homing:
             _Step.LEAVE: self._leave,
             _Step.INDEX: self._look_for_index,
             _Step.END: self._end,
+            _Step.PARK: self._park,
         }
         if self._step in acts:
             acts[self._step](now, rests)
@@ -145,6 +148,15 @@ class Homing:
             assert self._mark is not None
             self._slides.let_limit(self.name, False)
             self._slides.found(self.index, self._mark + self._axis.home_offset)
+            place, _ = self._slides.demand_at(now)
+            if self._axis.home_method in HERE or place[self.index] == 0.0:
+                self._enter(_Step.DONE, now)
+            else:
+                way = -place[self.index]
+                self._go(math.copysign(1.0, way), self._axis.home_speed, _Step.PARK, now, abs(way))
+
+    def _park(self, now: float, rests: bool) -> None:
+        if rests and now > self._since + _AFTER:
             self._enter(_Step.DONE, now)
 
     def _go(self, way: float, speed: float, step: _Step, now: float, length: float = 0.0) -> None:

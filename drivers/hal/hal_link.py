@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import get_args
@@ -64,8 +65,11 @@ class HalLink:
                 self.worst = max(self.worst, number(head, "late"))
                 if len(numbers):
                     self.rows.append(numbers)
-        except (DriverError, ValueError) as error:
-            self.lost = Fault(str(error), error.code if isinstance(error, DriverError) else "feeder-silent")
+        except DriverError as error:
+            self.lost = error.fault
+        except (ValueError, struct.error):
+            self.lost = Fault("the bridge to HAL tells something that is no packet", "feeder-silent")
+            self._link.hang_up()
 
     @property
     def trouble(self) -> Fault | str:

@@ -67,8 +67,8 @@ class HalMachine:
         )
 
     def unknown(self) -> frozenset[Unknown]:
-        """Without a word of the bridge nothing is known."""
-        return ALL_UNKNOWN if self.link.trouble else frozenset()
+        """Without a word of the bridge, or of HAL to it, nothing is known."""
+        return ALL_UNKNOWN if self.link.trouble or self.link.told.get("stands") is True else frozenset()
 
     def tick(self) -> None:
         """One round: take in, supervise, say that this side lives. Call it every few milliseconds."""

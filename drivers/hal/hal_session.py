@@ -55,6 +55,10 @@ class BridgeLink(Protocol):
         """Whatever has come. Raises DriverError when nobody is there any more."""
         ...
 
+    def hang_up(self) -> None:
+        """The bridge brakes and takes the power; nothing is said or heard any more."""
+        ...
+
     def close(self) -> None:
         """The bridge ends what is left."""
         ...
@@ -223,6 +227,13 @@ class HalSession:
             if not data:
                 raise DriverError("the bridge to HAL has ended; start the control again", "feeder-gone")
             yield unpack(data)
+
+    def hang_up(self) -> None:
+        """The bridge brakes at once, and ends."""
+        assert self._socket is not None
+        with suppress(OSError):
+            self._socket.send(pack({"do": "ramp-off"}))
+            self._socket.shutdown(socket.SHUT_RDWR)
 
     @property
     def halrun_lives(self) -> bool:

@@ -43,6 +43,7 @@ NEEDS: Mapping[int, tuple[str, ...]] = {
     34: ("index_enable",),
     **dict.fromkeys(HERE, ()),
 }
+_OFF_LIMIT = {17: 1.0, 18: -1.0}  # homing methods whose mark is a limit switch alone, and the way off it
 
 _FIELDS = (
     Field("file", Kind.TEXT),  # beside the machine file
@@ -238,6 +239,11 @@ def _homes(file: FileReading) -> Iterator[Finding]:
             known = ", ".join(str(each) for each in sorted(NEEDS))
             yield Finding(path, str(method), f"expected a method that this backend has: {known}")
             continue
+        offset = f"axis.{axis}.home.offset"
+        if method in _OFF_LIMIT and values.has(offset) and values.number(offset) * _OFF_LIMIT[method] <= 0.0:
+            side = "above" if _OFF_LIMIT[method] > 0 else "below"
+            expected = f"expected a way off the limit switch, {side} 0: at home the axis must not stand on it"
+            yield Finding(offset, "", expected)
         for key in NEEDS[method]:
             if values.has(f"{pins}.{key}") and not values.text(f"{pins}.{key}"):
                 yield Finding(f"{pins}.{key}", "", f"missing; {path} = {method} looks for it")

@@ -69,7 +69,8 @@ HOMED = "absolute = false\nhome = {{ method = {}, speed = 60, order = 1 }}"
     ("method", "pins", "path", "expected"),
     [
         (7, "", "axis.X.home.method", "expected a method that this backend has: 1, 2, 3"),
-        (17, "", "hal.axes.X.limit_low", "axis.X.home.method = 17 looks for it"),
+        (18, 'limit_high = "a"', "axis.X.home.offset", "expected a way off the limit switch, below 0"),
+        (1, 'limit_low = "a"', "hal.axes.X.index_enable", "axis.X.home.method = 1 looks for it"),
         (19, 'limit_low = "a"', "hal.axes.X.home", "axis.X.home.method = 19 looks for it"),
         (3, 'home = "a"', "hal.axes.X.index_enable", "axis.X.home.method = 3 looks for it"),
     ],

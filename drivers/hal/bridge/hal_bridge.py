@@ -14,13 +14,14 @@ from typing import Protocol
 
 from drivers.hal.bridge.packets import Head, flat, number, pack, pieces_of, text
 from drivers.hal.bridge.row_streams import Pins, RowStreams, Stream
-from drivers.hal.bridge.setpoint_player import Cam, Player
-from drivers.setpoint_pieces import INF, Piece, PieceQueue
+from drivers.hal.bridge.setpoint_player import Player
+from drivers.setpoint_pieces import INF, Piece
 
 AWAY = 0.25  # s without a word of the driver
-_QUIET = 0.1  # s without a sample: the servo thread stands
+_QUIET = 0.25  # s without a sample: the servo thread stands
 _GRANT = 0.1  # s in which the chain must close
-_PULSE = 0.01  # s of the reset
+_REARM = 0.006  # s for which the watchdog is off, so that it begins anew
+_PULSE = 0.05  # s of the reset
 _SLEW = 1e-3  # by which rows may be dealt faster or slower than by this computer's clock, while slides move
 _SLEW_AT_REST = 0.05
 _SETTLES = 0.5  # s in which such a difference is made up
@@ -103,7 +104,7 @@ class Bridge:
         self._grant_at = INF  # when it is given
         self._granted = -INF
         self._off_at = INF
-        self._reset_until = -INF
+        self._reset_until = self._watch_from = -INF
         self._handled = 0.0
         self._braked: list[float] = []  # pieces of a braking of our own
         self._brakings = 0
@@ -112,7 +113,7 @@ class Bridge:
         self._latest = 0.0  # s
         self._dry = 0
         self._homing: set[str] = set()
-        pins["watch"] = 1
+        self._close_chain()  # nothing is asked for yet: it lets through what the control will ask
         self._acts: Mapping[str, Callable[[Head, Sequence[float]], None]] = {
             "beat": lambda _head, _numbers: None,
             "splice": self._splice,
@@ -182,6 +183,7 @@ class Bridge:
             "off_by": self._off_by,
             "dry": self._dry,
             "parted": self._parted,
+            "stands": self._stands,
         }
         self._latest, self._least = 0.0, INF
         return pack(head, rows)
@@ -234,15 +236,8 @@ class Bridge:
         pins = self.pins
         if not self.rows.settle(bool(pins["plays-b"])):
             self._trip("setpoints came too late to HAL, which played what was queued before", "late")
-        if self._sampled > -INF and now - self._sampled > _QUIET:
-            self._trip("HAL's servo thread stands: is rtapi_app still there?", "feeder-gone")
-        if self._dry and self._powered:
-            self._ran_dry()
-        self._dry = 0
-        if self._powered and not pins["powered"] and now > self._granted + _GRANT:
-            self._lost_power()
-        if not pins["chain-ok"]:
-            self._open_chain()
+        if self._stands:
+            self._trip("HAL's servo thread stands: is rtapi_app still there?", "bus")
         for name in self.config.bits:
             axis, _, what = name.partition(".")
             if what == "fault" and pins[name] and self._on:
@@ -250,6 +245,13 @@ class Bridge:
                 self._trip(f"{who} reports a fault", "axis")
             elif what.startswith("limit") and pins[name] and self._on and axis not in self._homing:
                 self._trip(f"{axis}: on its limit switch", "limit-switch")
+        if self._dry and self._powered:
+            self._ran_dry()
+        self._dry = 0
+        if self._powered and not pins["powered"] and now > self._granted + _GRANT:
+            self._lost_power()
+        if not pins["chain-ok"]:
+            self._open_chain()
 
     def _ran_dry(self) -> None:
         """At rest nothing has happened; in motion the limit in HAL has braked."""
@@ -265,6 +267,11 @@ class Bridge:
         if not self.pins["alive"]:
             self._trip("this computer was silent: HAL has taken the power", "feeder-silent")
         self._power_off()
+
+    @property
+    def _stands(self) -> bool:
+        """HAL's servo thread plays nothing any more: what its pins say is of before."""
+        return self._sampled > -INF and self._now() - self._sampled > _QUIET
 
     def _open_chain(self) -> None:
         """What is off in HAL does not come back by itself when the chain is closed again."""
@@ -324,15 +331,13 @@ class Bridge:
         pieces, self._parts = self._parts, []
         if not self._on or self._off_at < INF:
             return
+        zero, sign, t = number(head, "zero"), number(head, "sign", 1.0), self.rows.soonest()
+        if sign * (self.player.turns.at(t) - zero) > pieces[0].t:
+            if self.player.rests:
+                self._trip("the thread came too late to be played", "late")
+            return  # what was handed over before is a whole pass too
         count = int(number(head, "way"))
-        way = PieceQueue(pieces[0].p)
-        way.replace(pieces[0].t, pieces[:count])
-        cam = Cam(number(head, "zero"), number(head, "sign", 1.0), way, pieces[count:])
-        t = self.rows.soonest()
-        if cam.sign * (self.player.turns.at(t) - cam.zero) > pieces[0].t:
-            self._trip("the thread came too late to be played", "late")
-            return
-        self.player.mesh(cam)
+        self.player.mesh(zero, sign, pieces[:count], pieces[count:])
         self._recall(t)
 
     def _brake(self) -> float:
@@ -365,15 +370,14 @@ class Bridge:
     def _close_chain(self) -> None:
         now = self._now()
         if not self.pins["alive"]:
-            self.pins["watch"] = 0  # it begins anew with the next round
+            self._watch_from = now + _REARM
         if not self.pins["chain-ok"]:
             self._reset_until = now + _PULSE
 
     def _power(self, now: float) -> None:
         """The chain's reset is a pulse; power comes once HAL plays where the slides are."""
+        self.pins["watch"] = now >= self._watch_from
         self.pins["reset"] = now < self._reset_until and bool(self.pins["alive"])
-        if not self.pins["reset"]:
-            self.pins["watch"] = 1
         if self._grant_at <= now:
             self._grant_at, self._granted = INF, now
             self.pins["enable"] = 1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, MutableMapping
+from collections.abc import Callable
 from typing import Protocol
 
 _NEVER = -1.0  # a row that does not come
@@ -23,7 +23,13 @@ class Stream(Protocol):
     def read(self) -> object: ...
 
 
-Pins = MutableMapping[str, float]  # of a HAL component: bits are 0 and 1
+class Pins(Protocol):
+    """Pins of a HAL component by their names; bits are 0 and 1."""
+
+    def __getitem__(self, name: str, /) -> float: ...
+    def __setitem__(self, name: str, value: float, /) -> None: ...
+
+
 MakeRow = Callable[[float], tuple[float, ...]]
 
 

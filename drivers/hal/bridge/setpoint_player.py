@@ -70,13 +70,13 @@ class Player:
         self.cam = self.left = None
         self.queue.replace(pieces[0].t, pieces)
 
-    def mesh(self, cam: Cam) -> None:
-        """By the spindle from here on. What lies before its begin stays, where it goes on from one."""
-        before = self.cam
-        if before is not None and (before.zero, before.sign) == (cam.zero, cam.sign):
-            before.way.replace(cam.way.pieces[0].t, list(cam.way.pieces))
-            cam = cam._replace(way=before.way)
-        self.cam, self.left = cam, None
+    def mesh(self, zero: float, sign: float, pieces: list[Piece], then: Sequence[Piece]) -> None:
+        """By the spindle from here on; what lies before the first piece stays, where it goes on from one."""
+        way = PieceQueue(pieces[0].p)
+        if self.cam is not None and (self.cam.zero, self.cam.sign) == (zero, sign):
+            way = self.cam.way
+        way.replace(pieces[0].t, pieces)
+        self.cam, self.left = Cam(zero, sign, way, then), None
 
     def brake(self, t: float, decel: Sequence[float]) -> list[Piece]:
         """From ``t`` on straight to rest; the pieces of that, none where it rests."""

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from tests.drivers.contract.can import Canopen, Csp, FedCanopen, FedCsp, Interpolated
 from tests.drivers.contract.grbl import Grblhal
+from tests.drivers.contract.hal import Hal
 from tests.drivers.contract.inverters import DeltaVfdB, HitachiWj200, HuanyangHy
 from tests.drivers.contract.rig import Rig
 from tests.drivers.contract.simulated import Fed, Simulated
 
-RIGS: dict[str, type[Simulated | Fed | Canopen | FedCanopen | Grblhal]] = {
+RIGS: dict[str, type[Simulated | Fed | Canopen | FedCanopen | Grblhal | Hal]] = {
     "simulated": Simulated,
     "fed": Fed,
     "canopen": Canopen,
@@ -17,6 +18,7 @@ RIGS: dict[str, type[Simulated | Fed | Canopen | FedCanopen | Grblhal]] = {
     "fed csp": FedCsp,
     "interpolated": Interpolated,
     "grblhal": Grblhal,
+    "hal": Hal,
     "delta": DeltaVfdB,
     "hitachi": HitachiWj200,
     "huanyang": HuanyangHy,

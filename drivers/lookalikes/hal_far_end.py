@@ -1,0 +1,249 @@
+"""The other end of the HAL backend, played: our part of the HAL file as it stands, on a simulated machine.
+
+The bridge is the real one. HAL's servo thread is played component by component from the very description
+that becomes the HAL file, so what is wired wrong there is wrong here.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict, deque
+from collections.abc import Callable, Iterator, Sequence
+
+from core.ports import Clock, DriverError
+from drivers.hal.bridge.hal_bridge import Bridge
+from drivers.hal.bridge.packets import Head, unpack
+from drivers.hal.hal_border import Border, border_of
+from drivers.hal.hal_config import HalConfig
+from drivers.hal.hal_session import bridge_config
+from drivers.lookalikes.hal_components import Cells, Fifo, Step, sampler, step_of, streamer, watchdog
+from drivers.lookalikes.plant import Plant
+from drivers.lookalikes.plant_config import SimConfig
+from drivers.lookalikes.plant_hands import PlantHands
+
+_ROUND, _REPORT = 2, 4  # periods between two rounds of the bridge, between two reports
+_STATION = ("estop", "start", "hold", "spindle_auto")
+_HAIR = 1e-9
+
+
+class HalThread:
+    """Everything of ours in the servo thread, in its order; ``cells`` by signal, or pin."""
+
+    def __init__(self, border: Border) -> None:
+        self.cells: Cells = defaultdict(float)
+        self._cell: dict[str, str] = {pin: signal for signal, pins in border.nets.items() for pin in pins}
+        self.theirs = {link.pin: link.ours[0] for link in border.links}  # cells of the machine's pins
+        self.streams = (Fifo(), Fifo())
+        self.samples = Fifo()
+        component = {name: kind for kind, names in border.modules.items() for name in names}
+        values = dict(border.values)
+        steps = (self._step(call, component, values) for call in border.calls)
+        self._steps: list[Step] = [step for step in steps if step is not None]
+
+    def at(self, pin: str) -> str:
+        """The cell of a pin of ours."""
+        return self._cell.get(pin, pin)
+
+    def run(self, period: float) -> None:
+        """One period of the thread."""
+        for step in self._steps:
+            step(period)
+
+    def _step(self, call: str, component: dict[str, str], values: dict[str, float]) -> Step | None:
+        if call.startswith("streamer."):
+            number = int(call.removeprefix("streamer."))
+            return streamer(self.cells, self.streams[number], self.at(f"{call}.enable"), self._pins(call))
+        if call == "sampler.0":
+            return sampler(self.cells, self.samples, self._pins(call))
+        if call == "watchdog.process":
+            input_, enable, out = (self.at(f"watchdog.{pin}") for pin in ("input-0", "enable-in", "ok-out"))
+            return watchdog(self.cells, input_, enable, out, values["watchdog.timeout-0"])
+        if call not in component:
+            return None
+        return step_of(component[call], call, self.cells, self.at, lambda pin: values.get(pin, 0.0))
+
+    def _pins(self, call: str) -> list[str]:
+        """Cells of the numbered pins of a streamer or sampler."""
+        numbered = re.compile(rf"{re.escape(call)}\.pin\.(\d+)")
+        found = {int(m[1]): cell for pin, cell in self._cell.items() if (m := numbered.fullmatch(pin))}
+        return [found[n] for n in range(len(found))]
+
+
+class ThreadPins:
+    """The bridge's component: its pins on the thread's cells."""
+
+    def __init__(self, thread: HalThread) -> None:
+        self._cells, self._at = thread.cells, thread.at
+
+    def __getitem__(self, name: str) -> float:
+        return self._cells[self._at(f"turndesk.{name}")]
+
+    def __setitem__(self, name: str, value: float) -> None:
+        self._cells[self._at(f"turndesk.{name}")] = value
+
+
+class HalPlant(Plant):
+    """The simulated machine behind the thread's pins."""
+
+    periods: Callable[[float], None]
+
+    def advance(self) -> float:
+        """Bring everything up to the clock, period by period; returns the clock's time."""
+        now = self.clock.now()
+        with self.lock:
+            self._break(now)
+            while self._at + self.config.step <= now + _HAIR:
+                self._at += self.config.step
+                self.spindle.advance(max(self._at, self.spindle.t))
+                self.periods(self._at)
+        return now
+
+    _at = 0.0
+
+    def trip(self, fault: str) -> None:
+        """The drive named before the colon says so on its pin."""
+        self.faulty.add(fault.partition(":")[0])
+
+    faulty: set[str]
+
+    def press_estop(self) -> None:
+        """The chain of relays: drives and spindle lose power, whatever any thread says."""
+        with self.lock:
+            now = self.advance()
+            self.panel.estop = True
+            self.spindle.cut(now)
+
+
+class HalFarEnd:
+    """Machine, servo thread and bridge on one clock, and the driver's ``BridgeLink`` to them."""
+
+    warnings: tuple[str, ...] = ()
+
+    def __init__(self, config: HalConfig, sim: SimConfig, clock: Clock) -> None:
+        self.config = config
+        self.plant = HalPlant(sim, clock)
+        self.plant.faulty = set()
+        self.plant.periods = self._period
+        self.machine = PlantHands(self.plant)
+        self.thread = HalThread(border_of(config))
+        self.killed = False  # the bridge's process is gone
+        self.stopped = False  # it stands, and comes back
+        self.stands = False  # the servo thread is gone
+        self.garbled = False  # what is told is no packet
+        self.late = 0  # reports that are held back
+        self._outbox: deque[bytes] = deque()
+        self._count = 0
+        self._rpm = 0.0
+        self._place = {axis.name: 0.0 for axis in config.driven}
+        self.bridge = self._start()
+
+    def _start(self) -> Bridge:
+        pins = ThreadPins(self.thread)
+        streams, samples = self.thread.streams, self.thread.samples
+        bridge = Bridge(bridge_config(self.config), pins, streams, samples, lambda: self.plant._at)
+        for name, output in self.config.outputs.items():
+            if output.safe is None:
+                pins[f"out.{name}"] = self.plant.terminals.outputs.get(name, False)
+        return bridge
+
+    # --- the link -----------------------------------------------------------------------------------------
+
+    def open(self) -> HalFarEnd:
+        """Anew after its bridge was lost."""
+        if self.killed or self.bridge.gone:
+            self.killed = False
+            self.thread = HalThread(border_of(self.config))
+            self.bridge = self._start()
+        self._outbox.clear()
+        return self
+
+    def send(self, data: bytes) -> None:
+        """Raises DriverError when nobody is there."""
+        if self.killed:
+            raise DriverError("the bridge to HAL has ended (broken pipe)", "feeder-gone")
+        self.bridge.handle(*unpack(data))
+
+    def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:
+        """Whatever it has told."""
+        self.plant.advance()
+        if self.killed:
+            raise DriverError("the bridge to HAL has ended", "feeder-gone")
+        while len(self._outbox) > self.late:
+            data = self._outbox.popleft()
+            yield unpack(data[3:] if self.garbled else data)
+
+    def hang_up(self) -> None:
+        """The driver hears nothing any more."""
+        self.bridge.handle({"do": "ramp-off"}, ())
+        self.bridge.gone = True
+
+    def close(self) -> None:
+        """The driver has gone."""
+        self.bridge.gone = True
+
+    # --- one period ---------------------------------------------------------------------------------------
+
+    def _period(self, t: float) -> None:
+        period = self.config.period
+        if not self.stands:
+            self._read(t)
+            self.thread.run(period)
+        self._drive(t, period)
+        self._count += 1
+        if self.killed or self.stopped:
+            return
+        if self._count % _ROUND == 0:
+            self.bridge.round()
+        if self._count % _REPORT == 0:
+            self._outbox.append(self.bridge.report())
+
+    def _set(self, pin: str, value: float) -> None:
+        if pin:
+            self.thread.cells[self.thread.theirs[pin]] = value
+
+    def _get(self, pin: str) -> float:
+        return self.thread.cells[self.thread.theirs[pin]] if pin else 0.0
+
+    def _read(self, t: float) -> None:
+        """What HAL reads of the machine."""
+        plant, config = self.plant, self.config
+        for axis in config.driven:
+            servo, pins = plant.servos[plant.names.index(axis.name)], axis.pins
+            assert pins is not None
+            self._set(pins.feedback, servo.reading)
+            self._set(pins.fault, axis.name in plant.faulty)
+            self._set(pins.home, servo.p <= servo.switch)
+        self._set(config.spindle.pins.position, plant.spindle.counted)
+        self._set(config.spindle.pins.velocity, plant.spindle.speed / 60.0)
+        state = plant.panel.state(t)
+        states = {**plant.terminals.read(t), **{name: getattr(state, name) for name in _STATION}}
+        for name, wired in config.inputs.items():
+            self._set(wired.pin, bool(states.get(name)) is not wired.active_low)
+        for name, pot in config.pots.items():
+            if name == "handwheel":
+                self._set(pot.pin, state.handwheel)
+            else:
+                self._set(pot.pin, (getattr(state, name) - pot.low) / (pot.high - pot.low))
+
+    def _drive(self, t: float, period: float) -> None:
+        """What HAL drives; without power slides roll out. Boards of a thread that stands take the power."""
+        plant, config = self.plant, self.config
+        for axis in config.driven:
+            servo, pins = plant.servos[plant.names.index(axis.name)], axis.pins
+            assert pins is not None
+            goal, last = self._get(pins.command), self._place[axis.name]
+            self._place[axis.name] = goal
+            if self._get(pins.enable) and not self.stands and not plant.panel.estop:
+                servo.follow(goal, (goal - last) / period, period)
+                if goal == last:
+                    servo.settle(goal)
+            else:
+                servo.roll(period)
+        rpm = 0.0 if self.stands else self._get(config.spindle.pins.speed)
+        if rpm != self._rpm and not (rpm and plant.panel.estop):
+            self._rpm = rpm
+            plant.spindle.order(t, rpm)
+        for name, output in config.outputs.items():
+            on = bool(self._get(output.pin)) and not (self.stands and output.safe is False)
+            if plant.terminals.outputs.get(name) is not on:
+                plant.terminals.write(name, on, t)

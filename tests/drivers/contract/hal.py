@@ -1,0 +1,119 @@
+"""The HAL backend on the step clock: the real bridge, HAL's servo thread played component by component.
+
+Real processes have trials of their own: ``tests/drivers/hal``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import ClassVar
+
+import resources
+from app.compose.hal_backend import hal_config
+from app.compose.machine_files import parse_machine
+from app.compose.simulated_backend import sim_config
+from core.machine.machine_model import Machine
+from core.ports import ALL_UNKNOWN
+from drivers.clocks import StepClock
+from drivers.hal.hal_machine import HalMachine
+from drivers.lookalikes.hal_far_end import HalFarEnd
+from drivers.lookalikes.plant_hands import PlantHands
+from tests.drivers.contract.rig import Fault, Rig
+from tests.drivers.contract.world import SimWorld
+
+_HANDS = """
+start = { at = "in-start" }
+hold = { at = "in-hold", active = "low" }
+spindle_auto = { at = "in-auto" }
+
+[io.analog]
+feed_pot = { at = "pot-feed", range = [0, 1.5] }
+spindle_pot = { at = "pot-spindle", switch = "spindle_auto" }
+
+[m_codes]"""
+_HOMED = "absolute = false\nhome = { method = 21, speed = 20, latch = 6, order = 1 }\n"
+
+
+def hal_machine(*, homing: bool = False) -> Machine:
+    """The shipped lathe with an operator station of its own; with ``homing`` its Z only counts."""
+    text = resources.machine_file("gt75-hal.toml").replace("\n[m_codes]", _HANDS, 1)
+    text = text.replace('enable = "x-motor.sel"', 'enable = "x-motor.sel"\nfault = "x-fault"')
+    text = text.replace(
+        'enable = "z-motor.sel"', 'enable = "z-motor.sel"\nfault = "z-fault"\nhome = "z-home"'
+    )
+    text = text.replace("two_hand_start = false", "two_hand_start = true")
+    if homing:
+        head, z = text.split("[axis.Z]")
+        text = f"{head}[axis.Z]{z.replace('absolute = true', _HOMED, 1)}"
+    return parse_machine(text, "gt75-hal.toml")
+
+
+_GONE = Fault(told=0.05, rests=0.5, says="the bridge to HAL has ended", unknown=ALL_UNKNOWN)
+
+
+class Hal(Rig):
+    """Bridge and servo thread, with the driver in the loop that owns them."""
+
+    faults: ClassVar[Mapping[str, Fault]] = {
+        "drive fault": Fault(told=0.03, rests=0.1, says="X: the drive reports a fault"),
+        "following error": Fault(told=0.08, rests=0.2, says="X: following error"),
+        "dead reader": _GONE,
+        "silence": Fault(0.2, 0.6, "the bridge to HAL has told nothing", unknown=ALL_UNKNOWN),
+        "node reboot": Fault(told=0.35, rests=0.2, says="HAL's servo thread stands", unknown=ALL_UNKNOWN),
+        "garbage": replace(_GONE, says="something that is no packet"),
+    }
+    harmless: ClassVar[tuple[str, ...]] = ("late answers",)
+    missing: ClassVar[Mapping[str, str]] = {
+        "cable out": "bridge, HAL and control are in one computer; a board's cable is a fault of its drive",
+        "bus-off": "a socket pair has no such state",
+        "two masters": "LinuxCNC refuses a second session of HAL",
+        "blocks": "its motion is planned here",
+        "outputs told": "an output of HAL has one writer",
+        "station": "its buttons are pins of HAL; with the bridge's silence all are silent",
+    }
+    hold = 0.15
+
+    def __init__(self, *, homing: bool = False) -> None:
+        self.machine = hal_machine(homing=homing)
+        self.clock = StepClock()
+        config = hal_config(self.machine)
+        self.far = HalFarEnd(config, sim_config(self.machine), self.clock)
+        self.driver = HalMachine(config, self.clock, self.far.open, self.far.plant.advance)
+        self.ports = self.driver.ports
+        self.world = SimWorld(self.far.machine, lambda: self.far.plant.terminals.outputs)
+
+    def alone(self, dt: float) -> None:
+        """Two rounds of the loop that owns the bridge."""
+        for _ in range(2):
+            self.clock.advance(dt / 2)
+            self.far.plant.advance()
+            self.driver.tick()
+
+    @property
+    def slides(self) -> PlantHands:
+        """Behind HAL."""
+        return self.far.machine
+
+    def acts(self) -> Mapping[str, Callable[[], None]]:
+        """What becomes of its processes."""
+        far = self.far
+        return {
+            "drive fault": lambda: far.machine.drive_fault("X"),
+            "following error": lambda: far.machine.jam("X"),
+            "dead reader": lambda: setattr(far, "killed", True),
+            "silence": lambda: setattr(far, "stopped", True),
+            "node reboot": lambda: setattr(far, "stands", True),
+            "garbage": lambda: setattr(far, "garbled", True),
+            "late answers": lambda: setattr(far, "late", 4),
+        }
+
+    def mend(self) -> None:
+        """The slide is free, the processes go on."""
+        self.far.machine.jam("X", False)
+        self.far.plant.faulty.clear()
+        self.far.stopped = self.far.stands = self.far.garbled = False
+
+    def close(self) -> None:
+        """Both ends."""
+        self.driver.close()
