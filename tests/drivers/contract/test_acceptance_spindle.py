@@ -11,6 +11,7 @@ from core.executor.snapshot import State
 from tests.drivers.contract.can import Canopen
 from tests.drivers.contract.control import INCH, Control
 from tests.drivers.contract.grbl import Grblhal
+from tests.drivers.contract.hal import Hal
 from tests.drivers.contract.rig import STILL, Rig
 from tests.drivers.contract.simulated import Fed, Simulated
 
@@ -21,6 +22,7 @@ THREADING: dict[str, Callable[[], Rig]] = {
     "fed": Fed,
     "canopen": lambda: Canopen(turns=True),
     "grblhal": Grblhal,
+    "hal": Hal,
 }
 
 

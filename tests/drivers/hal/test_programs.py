@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
-import resources
 from app.compose.machine_answers import check_ports
-from app.compose.machine_files import parse_machine, shipped_machine
+from app.compose.machine_files import load_machine, shipped_machine
+from tests.drivers.hal.lathes import lathe, run
 
-SHIPPED = resources.machine_file("gt75-hal.toml")
 PIECE = """\
 G90G94F100
 G00X.5Z.2
@@ -25,17 +21,6 @@ M09
 G00X.6Z.3
 M30
 """
-
-
-def run(folder: Path, program: str, *more: str) -> subprocess.CompletedProcess[str]:
-    """``turndesk run`` of a program on the shipped HAL lathe, in a folder of its own."""
-    file = folder / "PIECE.nc"
-    file.write_text(program, encoding="utf-8")
-    command = [sys.executable, "-m", "app.cli.main", "run", str(file), "--headless", "--machine", "gt75-hal"]
-    environment = {**os.environ, "TURNDESK_HOME": str(folder / "home")}
-    return subprocess.run(
-        [*command, *more], env=environment, capture_output=True, text=True, check=False, timeout=120
-    )
 
 
 @pytest.mark.long
@@ -72,10 +57,7 @@ def test_every_pin_that_the_machine_file_names_has_its_verdict() -> None:
 def test_a_pin_that_is_not_as_it_is_said_is_named(
     old: str, new: str, row: str, why: str, tmp_path: Path
 ) -> None:
-    (tmp_path / "gt75-hal.hal").write_text(resources.hal_file("gt75-hal.hal").read_text(), encoding="utf-8")
-    file = tmp_path / "lathe.toml"
-    file.write_text(SHIPPED.replace(old, new, 1), encoding="utf-8")
-    answers = check_ports(parse_machine(file.read_text(encoding="utf-8"), str(file)))
+    answers = check_ports(load_machine(lathe(tmp_path, ((old, new),))))
     wrong = [each for each in answers.rows if each.state != "ok"]
     assert [each.name for each in wrong] == [row]
     assert why in wrong[0].detail
