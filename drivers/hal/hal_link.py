@@ -36,6 +36,7 @@ class HalLink:
         self._idle = idle
         self._link: BridgeLink | None = None
         self._sent = 0
+        self._reports = 0  # of this bridge
         self._heard = 0.0
         self.told: Head = {}
         self.rows: list[Sequence[float]] = []  # samples that nobody has taken
@@ -44,11 +45,15 @@ class HalLink:
 
     def connect(self) -> None:
         """Start it, and wait for its first report. Raises DriverError."""
+        if self._link is not None and not self._link.down:
+            raise DriverError(
+                "HAL is still being taken down: in some seconds press Reset again", "feeder-gone"
+            )
         self.close()
-        self.lost, self.told, self.rows = "", {}, []
+        self.lost, self.rows, self._reports = "", [], 0
         self._link = self._open()
         self._heard = self._clock.now()
-        if not self.wait(lambda: bool(self.told), 3.0):
+        if not self.wait(lambda: self._reports > 0, 3.0):
             raise DriverError(
                 "the bridge to HAL does not tell anything; start the control again", "feeder-silent"
             )
@@ -61,6 +66,7 @@ class HalLink:
         try:
             for head, numbers in self._link.receive():
                 self.told = head
+                self._reports += 1
                 self._heard = self._clock.now()
                 self.worst = max(self.worst, number(head, "late"))
                 if len(numbers):
@@ -90,9 +96,10 @@ class HalLink:
         return self._link.warnings if self._link is not None else ()
 
     def beat(self) -> None:
-        """This side lives."""
-        with suppress(DriverError):  # it is lost, and that is told
-            self.say("beat")
+        """This side lives. A bridge that is silent has enough to read when it comes back."""
+        if not self.trouble:
+            with suppress(DriverError):  # it is lost, and that is told
+                self.say("beat")
 
     def say(self, what: str, **values: object) -> int:
         """One order; its number, which the bridge tells once it is carried out. Raises DriverError."""
@@ -149,7 +156,8 @@ class HalLink:
         try:
             self._link.send(data)
         except DriverError as error:
-            self.lost = error.fault
+            if error.code != "feeder-silent":
+                self.lost = error.fault
             raise
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import select
 import shutil
 import socket
 import subprocess
@@ -16,7 +18,7 @@ from typing import NamedTuple, Protocol
 
 from core.ports import DriverError
 from drivers.hal.bridge.hal_bridge import BridgeAxis, BridgeConfig
-from drivers.hal.bridge.packets import Head, pack, text, unpack
+from drivers.hal.bridge.packets import Head, number, pack, text, unpack
 from drivers.hal.hal_border import BIT, BRIDGE, Border, border_of, bridge_nets, columns, session_text
 from drivers.hal.hal_config import HalConfig
 
@@ -32,6 +34,9 @@ _PLAIN = {
     "Refusing to run as root": "LinuxCNC refuses to run as root; start the control as an ordinary user",
     "Realtime already running": "another LinuxCNC or HAL session runs; end it, or after a crash: halrun -U",
 }
+
+
+_ENDED = "the bridge to HAL has ended"
 
 
 class Verdict(NamedTuple):
@@ -53,6 +58,11 @@ class BridgeLink(Protocol):
 
     def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:
         """Whatever has come. Raises DriverError when nobody is there any more."""
+        ...
+
+    @property
+    def down(self) -> bool:
+        """Whether HAL is gone behind a bridge that has ended: only then it can be started anew."""
         ...
 
     def hang_up(self) -> None:
@@ -104,6 +114,7 @@ class HalSession:
             raise
 
     _halrun: subprocess.Popen[bytes] | None = None
+    _bridge: int | None = None  # of its process: HAL's own ones hold its socket too, so no end of file comes
     _socket: socket.socket | None = None
 
     def _start(self, config: HalConfig, zero: float, *, only_check: bool) -> None:
@@ -167,6 +178,8 @@ class HalSession:
                         f"{wrong[0].path} = {wrong[0].pin}: {wrong[0].trouble}{more}", "drive-setup"
                     )
             elif head.get("ready") is True:
+                with suppress(OSError, AttributeError):  # an old kernel: its silence tells, later
+                    self._bridge = os.pidfd_open(int(number(head, "pid")))
                 warnings = head.get("warnings")
                 self.warnings = tuple(map(str, warnings)) if isinstance(warnings, list) else ()
                 return
@@ -225,8 +238,10 @@ class HalSession:
             except OSError:
                 data = b""
             if not data:
-                raise DriverError("the bridge to HAL has ended; start the control again", "feeder-gone")
+                raise DriverError(_ENDED, "feeder-gone")
             yield unpack(data)
+        if self._bridge is not None and select.select([self._bridge], [], [], 0.0)[0]:
+            raise DriverError(f"{_ENDED}: {self._said()}", "feeder-gone")
 
     def hang_up(self) -> None:
         """The bridge brakes at once, and ends."""
@@ -236,17 +251,20 @@ class HalSession:
             self._socket.shutdown(socket.SHUT_RDWR)
 
     @property
-    def halrun_lives(self) -> bool:
-        """Whether halrun, which cleans up, is still there."""
-        return self._halrun is not None and self._halrun.poll() is None
+    def down(self) -> bool:
+        """Whether HAL has been taken down, behind a bridge that has ended."""
+        return self._halrun is None or self._halrun.poll() is not None
 
     def close(self) -> None:
         """The bridge brakes what moves and ends; halrun takes HAL down."""
         if self._socket is not None:
-            self._ended.touch()
             with suppress(OSError):
+                self._ended.touch()
                 self._socket.send(pack({"do": "end"}))
             self._socket.close()
+        if self._bridge is not None:
+            os.close(self._bridge)
+            self._bridge = None
         if self._halrun is not None:
             try:
                 failed = self._halrun.wait(_END)

@@ -48,7 +48,7 @@ def main(arguments: list[str]) -> int:
     if component is None:
         return 1
     bridge = _bridge(hal, component, said)
-    sock.send(pack({"ready": True, "warnings": _real_time()}))
+    sock.send(pack({"ready": True, "pid": os.getpid(), "warnings": _real_time()}))
     component.ready()
     return _serve(sock, bridge, lambda: time.monotonic() - said["zero"])
 

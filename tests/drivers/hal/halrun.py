@@ -8,6 +8,7 @@ import os
 import shutil
 import subprocess
 import tempfile
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,6 +21,7 @@ _WRAPPER = """#!/bin/sh
 [ "$1" = -f ] && chown -R {nobody}:{nobody} "$(dirname "$2")"
 exec setpriv --reuid={nobody} --regid={nobody} --clear-groups env HOME={home} {halrun} "$@"
 """
+_PATIENCE = 200  # tenths of a second
 _TRIED = "loadrt threads name1=t period1=1000000\nloadrt streamer depth=8 cfg=f\nstart\n"
 
 
@@ -74,10 +76,21 @@ def why_not() -> str:
 
 @contextmanager
 def one_session() -> Iterator[None]:
-    """HAL is one for the whole computer: tests of other processes wait."""
+    """HAL is one for the whole computer: tests of other processes wait until it is down."""
     with _LOCK.open("a") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
+        for _ in range(_PATIENCE):
+            if not _hal_is_up():
+                break
+            threading.Event().wait(0.1)
         yield
+
+
+def _hal_is_up() -> bool:
+    """Whether a session of HAL runs; what has ended and nobody has taken note of does not count."""
+    listed = ["ps", "-C", "rtapi_app", "-o", "stat="]
+    shown = subprocess.run(listed, capture_output=True, text=True, check=False).stdout
+    return any(not each.startswith("Z") for each in shown.split())
 
 
 @pytest.fixture

@@ -21,10 +21,10 @@ WANDER_HAL: Changes = (
         "addf siggen.0.update servo-thread\naddf swing servo-thread\naddf spindle servo-thread\n",
     ),
     (
-        "net spindle-rps spindle-rps.out => spindle.velocity-cmd",
-        "net even-rps spindle-rps.out => swing.in0\nnet sine siggen.0.sine => swing.in1\n"
+        "net spindle-rps spindle-rps.out spindle.velocity-cmd",
+        "net even-rps spindle-rps.out swing.in0\nnet sine siggen.0.sine swing.in1\n"
         "setp siggen.0.amplitude 0.02\nsetp siggen.0.frequency 3\nsetp siggen.0.offset 1\n"
-        "net spindle-rps swing.out => spindle.velocity-cmd",
+        "net spindle-rps swing.out spindle.velocity-cmd",
     ),
 )
 WANDER: Changes = (('velocity = "spindle-rps.out"', 'velocity = "swing.out"'),)
