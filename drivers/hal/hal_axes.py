@@ -293,6 +293,8 @@ class HalAxes:
 
     def clear_fault(self) -> None:
         """Forget the fault; the drives stay off. A bridge that is gone is started anew. DriverError."""
+        if self._link.told.get("stands") is True:
+            self._link.give_up()
         if self._link.lost:
             self._link.connect()
             self.connected()

@@ -59,6 +59,12 @@ class HalLink:
             )
         self.wait(lambda: False, _SETTLES)
 
+    def give_up(self) -> None:
+        """A bridge to a HAL that stands is of no use any more: it ends, and HAL with it."""
+        if self._link is not None and not self.lost:
+            self._link.hang_up()
+            self.lost = Fault("HAL is taken down", "bus")
+
     def pump(self) -> None:
         """Take in what has come. Raises nothing: a bridge that is gone is ``lost``."""
         if self._link is None or self.lost:

@@ -271,7 +271,7 @@ class HalSession:
             except subprocess.TimeoutExpired:
                 self._halrun.kill()
                 failed = self._halrun.wait()
-            if failed < 0:  # it was killed, and has not taken HAL down
+            if failed:  # it was killed, or HAL's own process was: it has not taken HAL down
                 with suppress(OSError, subprocess.TimeoutExpired):
                     subprocess.run(["halrun", "-U"], capture_output=True, timeout=_END, check=False)
         shutil.rmtree(self._folder, ignore_errors=True)
