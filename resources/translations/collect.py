@@ -62,6 +62,9 @@ APART = frozenset(
 )
 # Read by somebody, and not to be told from names by their looks.
 ALSO = (
+    "a drill",
+    "a reamer",
+    "a tap",
     "M03 FWD",
     "M04 REV",
     "M05 OFF",

@@ -575,6 +575,21 @@
     </message>
     <message>
       <location filename="" />
+      <source>a drill</source>
+      <translation>una broca</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>a reamer</source>
+      <translation>un escariador</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>a tap</source>
+      <translation>un macho</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>begins a loop, and its lines and LF would have to follow</source>
       <translation>empieza un lazo, y sus líneas y LF tendrían que seguir</translation>
     </message>
@@ -710,11 +725,6 @@
     </message>
     <message>
       <location filename="app/automatic/automatic_view.py" />
-      <source>Play fast</source>
-      <translation>Reproducir rápido</translation>
-    </message>
-    <message>
-      <location filename="app/automatic/automatic_view.py" />
       <source>READOUT</source>
       <translation>LECTURA</translation>
     </message>
@@ -735,16 +745,6 @@
     </message>
     <message>
       <location filename="app/automatic/automatic_view.py" />
-      <source>Step back</source>
-      <translation>Paso atrás</translation>
-    </message>
-    <message>
-      <location filename="app/automatic/automatic_view.py" />
-      <source>Step on</source>
-      <translation>Paso adelante</translation>
-    </message>
-    <message>
-      <location filename="app/automatic/automatic_view.py" />
       <source>TOOLS</source>
       <translation>HERRAM</translation>
     </message>
@@ -752,11 +752,6 @@
       <location filename="app/automatic/automatic_view.py" />
       <source>To line</source>
       <translation>A la línea</translation>
-    </message>
-    <message>
-      <location filename="app/compose/desk_part.py" />
-      <source>%1 Assumed: %2.</source>
-      <translation>%1 Supuesto: %2.</translation>
     </message>
     <message>
       <location filename="app/compose/desk_part.py" />
@@ -857,6 +852,11 @@
       <location filename="app/compose/screen_desk.py" />
       <source>WHAT KEEPS OFFSETS AND COUNTS</source>
       <translation>LO QUE GUARDA COMPENSACIONES Y CUENTAS</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>WHAT READS THE PENDANT</source>
+      <translation>LO QUE LEE EL MANDO COLGANTE</translation>
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -1370,6 +1370,11 @@
     </message>
     <message>
       <location filename="app/desk/program_loading.py" />
+      <source>%1 Assumed: %2.</source>
+      <translation>%1 Supuesto: %2.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/program_loading.py" />
       <source>DRAWING</source>
       <translation>DIBUJANDO</translation>
     </message>
@@ -1630,6 +1635,11 @@
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
+      <source>COLLET ?</source>
+      <translation>PINZA ?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
       <source>COLLET CLOSED</source>
       <translation>BOQUILLA CERRADA</translation>
     </message>
@@ -1705,6 +1715,11 @@
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
+      <source>SPINDLE UNKNOWN</source>
+      <translation>HUSILLO DESCONOCIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
       <source>TABLE TURNED</source>
       <translation>MESA GIRADA</translation>
     </message>
@@ -1717,6 +1732,11 @@
       <location filename="app/desk/readouts.py" />
       <source>TILTED PLANE OF LINE {line}</source>
       <translation>PLANO INCLINADO DE LA LÍNEA {line}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>UNKNOWN</source>
+      <translation>DESCONOCIDO</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
@@ -1742,6 +1762,36 @@
       <location filename="app/desk/stored_shapes.py" />
       <source>a profile is three points or more, Z and X in mm: 0,0 2.5,0 1.2,1.5</source>
       <translation>un perfil son tres puntos o más, Z y X en mm: 0,0 2.5,0 1.2,1.5</translation>
+    </message>
+    <message>
+      <location filename="app/desk/unheard_notice.py" />
+      <source>INPUTS</source>
+      <translation>ENTRADAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/unheard_notice.py" />
+      <source>NOT KNOWN: {what} · WHAT IS SHOWN IS THE LAST THAT WAS HEARD</source>
+      <translation>DESCONOCIDO: {what} · SE MUESTRA LO ÚLTIMO QUE SE OYÓ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/unheard_notice.py" />
+      <source>OUTPUTS</source>
+      <translation>SALIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/unheard_notice.py" />
+      <source>POSITIONS</source>
+      <translation>POSICIONES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/unheard_notice.py" />
+      <source>SPINDLE UNKNOWN – SPINDLE MAY TURN: PRESS E-STOP</source>
+      <translation>HUSILLO DESCONOCIDO – PUEDE GIRAR: PULSE PARO DE EMERGENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/unheard_notice.py" />
+      <source>{what} UNKNOWN: THE MACHINE IS NOT HEARD</source>
+      <translation>{what}: DESCONOCIDO, NO SE OYE A LA MÁQUINA</translation>
     </message>
     <message>
       <location filename="app/editor/document.py" />
@@ -1862,6 +1912,11 @@
       <location filename="app/editor/editor_messages.py" />
       <source>F6 LEAVES WITHOUT SAVING, F3 SAVES AND LEAVES, ESC GOES ON</source>
       <translation>F6 SALE SIN GUARDAR, F3 GUARDA Y SALE, ESC SIGUE</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>NOBODY KNOWS WHETHER THE SPINDLE TURNS: PRESS E-STOP, NO EDITING BESIDE IT</source>
+      <translation>NADIE SABE SI GIRA EL HUSILLO: PULSE PARO DE EMERGENCIA, NO EDITE A SU LADO</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -2209,6 +2264,171 @@
       <translation>ARRIBA</translation>
     </message>
     <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>%1 Hz</source>
+      <translation>%1 Hz</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>A DRIVE TEST HAS NO RAPID: PRESS WITHOUT SHIFT</source>
+      <translation>UNA PRUEBA DE ACCIONAMIENTO NO TIENE RÁPIDO: PULSE SIN MAYÚS</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>AN ARROW ASKS FOR THE TRAVEL; THE SAME ARROW, HELD, PLAYS THE TEST; F5 SHOWS ITS FIGURES</source>
+      <translation>UNA FLECHA PREGUNTA POR EL RECORRIDO; LA MISMA, MANTENIDA, HACE LA PRUEBA; F5 MUESTRA SUS CIFRAS</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>ANOTHER TEST WAS CHOSEN: THE ONE UNDER WAY HAS ENDED</source>
+      <translation>SE ELIGIÓ OTRA PRUEBA: LA QUE ESTABA EN CURSO HA TERMINADO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>CHOSEN</source>
+      <translation>ELEGIDO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>DRIVE TEST</source>
+      <translation>PRUEBA DE ACCIONAMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>HERTZ</source>
+      <translation>HERCIOS</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>KEEP IT HELD UNTIL IT HAS COME BACK</source>
+      <translation>MANTÉNGALA PULSADA HASTA QUE HAYA VUELTO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>KEY</source>
+      <translation>TECLA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>NO DRIVE TEST: {why}</source>
+      <translation>SIN PRUEBA DE ACCIONAMIENTO: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>Nothing is written to a drive.</source>
+      <translation>No se escribe nada en un accionamiento.</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>Of the slide: a size of X is half of a diameter.</source>
+      <translation>Del carro: un tamaño en X es la mitad de un diámetro.</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>RAMP</source>
+      <translation>RAMPA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>SHAPE</source>
+      <translation>FORMA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>SINE</source>
+      <translation>SENO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>SIZE</source>
+      <translation>TAMAÑO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>STEP</source>
+      <translation>PASO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>THE SPINDLE TURNS: STOP IT FIRST</source>
+      <translation>EL HUSILLO GIRA: PÁRELO ANTES</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>THE TEST HAS ENDED: THE KEYBOARD WENT ELSEWHERE</source>
+      <translation>LA PRUEBA HA TERMINADO: EL TECLADO SE FUE A OTRA PARTE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>WINDOW {axis}</source>
+      <translation>VENTANA {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>WRITTEN: {path}</source>
+      <translation>ESCRITO: {path}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>as fast as it can</source>
+      <translation>lo más rápido que puede</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>drive test %1 %2</source>
+      <translation>prueba de accionamiento %1 %2</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>no test has been played yet</source>
+      <translation>aún no se ha hecho ninguna prueba</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>{axis} FROM {here} TO {there} AND BACK, {seconds} S</source>
+      <translation>{axis} DE {here} A {there} Y VUELTA, {seconds} S</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>{axis} HAS NO ROOM FOR IT: JOG AWAY FROM THE END OF ITS TRAVEL</source>
+      <translation>{axis} NO TIENE SITIO PARA ELLO: ALÉJELO A MANO DEL FINAL DE SU RECORRIDO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>{axis} IS NOT HOMED: NOBODY KNOWS WHETHER THE TEST HAS ROOM</source>
+      <translation>{axis} NO ESTÁ REFERENCIADO: NADIE SABE SI LA PRUEBA TIENE SITIO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>{travel}: HOLD {key} TO PLAY IT, LET GO TO STOP</source>
+      <translation>{travel}: MANTENGA {key} PARA HACERLA, SUELTE PARA PARAR</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_view.py" />
+      <source>ANALYSE</source>
+      <translation>ANALIZAR</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_view.py" />
+      <source>DRIVE TEST  ·  ASK, THEN HOLD</source>
+      <translation>PRUEBA  ·  PREGUNTAR, LUEGO MANTENER</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_view.py" />
+      <source>FIGURES</source>
+      <translation>VALORES</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_view.py" />
+      <source>HOLD {way}</source>
+      <translation>MANTENGA {way}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_view.py" />
+      <source>JOG</source>
+      <translation>MANUAL</translation>
+    </message>
+    <message>
       <location filename="app/jog/held_jog.py" />
       <source>ANOTHER KEY HAS ENDED THE JOG</source>
       <translation>OTRA TECLA TERMINÓ EL MOVIMIENTO</translation>
@@ -2237,6 +2457,11 @@
       <location filename="app/jog/held_jog.py" />
       <source>TWO AT ONCE MOVE NOTHING: LET BOTH GO, THEN PRESS ONE</source>
       <translation>DOS A LA VEZ NO MUEVEN NADA: SUELTE LAS DOS Y OPRIMA UNA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/held_keys_view.py" />
+      <source>NUM LOCK IS OFF: THE ARROWS OF THE NUMBER PAD MOVE NOTHING</source>
+      <translation>BLOQ NUM ESTÁ DESACTIVADO: LAS FLECHAS DEL TECLADO NUMÉRICO NO MUEVEN NADA</translation>
     </message>
     <message>
       <location filename="app/jog/jog_handwheel.py" />
@@ -2370,6 +2595,11 @@
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
+      <source>RETURN KEEPS WHAT WAS FOUND, ESC LEAVES THE TOOL AS IT WAS</source>
+      <translation>INTRO GUARDA LO HALLADO, ESC DEJA LA HERRAMIENTA COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
       <source>THE DRIVES ARE OFF: PRESS D FOR DRIVES ON</source>
       <translation>LOS SERVOS ESTÁN APAGADOS: OPRIMA D PARA ENCENDERLOS</translation>
     </message>
@@ -2450,8 +2680,8 @@
     </message>
     <message>
       <location filename="app/jog/jog_pad_view.py" />
-      <source>STEP</source>
-      <translation>PASO</translation>
+      <source>SETTER P</source>
+      <translation>PALPADOR P</translation>
     </message>
     <message>
       <location filename="app/jog/jog_pad_view.py" />
@@ -2465,6 +2695,11 @@
     </message>
     <message>
       <location filename="app/jog/jog_pad_view.py" />
+      <source>TOUCH OFF</source>
+      <translation>TOQUE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
       <source>WHEEL</source>
       <translation>VOLANTE</translation>
     </message>
@@ -2472,6 +2707,11 @@
       <location filename="app/jog/jog_pad_view.py" />
       <source>WHEEL {axis}</source>
       <translation>VOLANTE {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>at the setter</source>
+      <translation>en el palpador</translation>
     </message>
     <message>
       <location filename="app/jog/jog_pad_view.py" />
@@ -2525,11 +2765,6 @@
     </message>
     <message>
       <location filename="app/jog/jog_view.py" />
-      <source>NUM LOCK IS OFF: THE ARROWS OF THE NUMBER PAD MOVE NOTHING</source>
-      <translation>BLOQ NUM ESTÁ DESACTIVADO: LAS FLECHAS DEL TECLADO NUMÉRICO NO MUEVEN NADA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_view.py" />
       <source>Return enters it, Esc leaves it as it was</source>
       <translation>Return lo pone, Esc lo deja como estaba</translation>
     </message>
@@ -2537,6 +2772,81 @@
       <location filename="app/jog/jog_view.py" />
       <source>T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo</source>
       <translation>T herr · X Z tocar · W desgaste · N punta · Q cuadrante · K nota · M maestra · F10 deshacer</translation>
+    </message>
+    <message>
+      <location filename="app/jog/pendant_jog.py" />
+      <source>THE ENABLING SWITCH IS NOT HELD: THE BUTTON MOVES NOTHING</source>
+      <translation>EL INTERRUPTOR DE VALIDACIÓN NO ESTÁ PULSADO: EL BOTÓN NO MUEVE NADA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/pendant_jog.py" />
+      <source>THE SCREEN WAS AWAY: LET THE BUTTON GO, AND PRESS IT AGAIN</source>
+      <translation>LA PANTALLA ESTUVO AUSENTE: SUELTE EL BOTÓN Y PÚLSELO OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/jog/setter_touch.py" />
+      <source>A TOUCH-OFF HAS NO RAPID: PRESS WITHOUT SHIFT</source>
+      <translation>UN TOQUE NO TIENE RÁPIDO: PULSE SIN MAYÚS</translation>
+    </message>
+    <message>
+      <location filename="app/jog/setter_touch.py" />
+      <source>LOOKING FOR THE TOOL SETTER: LETTING GO STOPS</source>
+      <translation>BUSCANDO EL PALPADOR: AL SOLTAR SE DETIENE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/setter_touch.py" />
+      <source>NOT TOUCHED OFF: {why}</source>
+      <translation>NO SE HA TOCADO: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/setter_touch.py" />
+      <source>NOTHING THERE: GOING BACK</source>
+      <translation>NO HAY NADA: VOLVIENDO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/setter_touch.py" />
+      <source>THIS MACHINE HAS NO TOOL SETTER</source>
+      <translation>ESTA MÁQUINA NO TIENE PALPADOR DE HERRAMIENTAS</translation>
+    </message>
+    <message>
+      <location filename="app/jog/setter_touch.py" />
+      <source>TOUCHED: BACKING OFF</source>
+      <translation>TOCADO: RETROCEDIENDO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/setter_touch.py" />
+      <source>TOUCHING SLOWLY: THIS ONE COUNTS</source>
+      <translation>TOCANDO DESPACIO: ESTE TOQUE CUENTA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/setter_touch.py" />
+      <source>T{number} AT THE TOOL SETTER: HOLD {keys} UNTIL IT IS BACK; P OR ESC ENDS</source>
+      <translation>T{number} EN EL PALPADOR: MANTENGA {keys} HASTA QUE VUELVA; P O ESC TERMINA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/setter_touch.py" />
+      <source>T{number} HAS NO TIP: PRESS Q AND TYPE 1…9, WHICH WAY IT POINTS</source>
+      <translation>T{number} NO TIENE PUNTA: PULSE Q Y ESCRIBA 1…9, HACIA DÓNDE APUNTA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/setter_touch.py" />
+      <source>T{number} TOUCHES WITH {ways} ALONE</source>
+      <translation>T{number} SOLO TOCA CON {ways}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/setter_touch.py" />
+      <source>WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST</source>
+      <translation>¿CUÁL HERRAMIENTA? OPRIMA T Y ESCRIBA PRIMERO SU NÚMERO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/setter_touch.py" />
+      <source>tool setter {way} ±{error}</source>
+      <translation>palpador {way} ±{error}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>DIFFERENCE</source>
+      <translation>DIFERENCIA</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
@@ -2590,11 +2900,6 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
-      <source>WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST</source>
-      <translation>¿CUÁL HERRAMIENTA? OPRIMA T Y ESCRIBA PRIMERO SU NÚMERO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
       <source>{tool} MEASURED DIAMETER?</source>
       <translation>¿DIÁMETRO MEDIDO DE {tool}?</translation>
     </message>
@@ -2602,6 +2907,11 @@
       <location filename="app/jog/tool_setting.py" />
       <source>{tool} Z POSITION OF THE FACE?</source>
       <translation>¿POSICIÓN Z DE LA CARA PARA {tool}?</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>{tool} {axis} BY THE TOOL SETTER: KEEP IT?</source>
+      <translation>{tool} {axis} SEGÚN EL PALPADOR: ¿GUARDAR?</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting_view.py" />
@@ -3140,11 +3450,6 @@
     </message>
     <message>
       <location filename="app/offsets/part_effect.py" />
-      <source>DIFFERENCE</source>
-      <translation>DIFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/part_effect.py" />
       <source>FEATURE</source>
       <translation>MEDIDA</translation>
     </message>
@@ -3347,11 +3652,6 @@
       <location filename="app/offsets/tool_offsets_view.py" />
       <source>ADD</source>
       <translation>SUMAR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_offsets_view.py" />
-      <source>SHAPE</source>
-      <translation>FORMA</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
@@ -3895,6 +4195,21 @@
     </message>
     <message>
       <location filename="app/path/path_view.py" />
+      <source>Play fast</source>
+      <translation>Reproducir rápido</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_view.py" />
+      <source>Step back</source>
+      <translation>Paso atrás</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_view.py" />
+      <source>Step on</source>
+      <translation>Paso adelante</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_view.py" />
       <source>The path is shown when a program is loaded.</source>
       <translation>La trayectoria se muestra cuando hay un programa cargado.</translation>
     </message>
@@ -4032,11 +4347,6 @@
       <location filename="app/programs/folder_chooser.py" />
       <source>PROGRAM</source>
       <translation>PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/folder_chooser.py" />
-      <source>SIZE</source>
-      <translation>TAMAÑO</translation>
     </message>
     <message>
       <location filename="app/programs/folder_chooser.py" />
@@ -4399,6 +4709,26 @@
       <translation>ninguna; Cpk es al menos {least} (95 %)</translation>
     </message>
     <message>
+      <location filename="app/quality/correction_effect.py" />
+      <source>NOW</source>
+      <translation>AHORA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/correction_effect.py" />
+      <source>THE PART CANNOT BE COMPARED: {why}</source>
+      <translation>LA PIEZA NO SE PUEDE COMPARAR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/quality/correction_effect.py" />
+      <source>THEN</source>
+      <translation>DESPUÉS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/correction_effect.py" />
+      <source>{name}: {change} FROM THE NEXT PART ON</source>
+      <translation>{name}: {change} DESDE LA PIEZA SIGUIENTE</translation>
+    </message>
+    <message>
       <location filename="app/quality/cycle_recorder.py" />
       <source>BETWEEN CYCLES</source>
       <translation>ENTRE CICLOS</translation>
@@ -4417,6 +4747,11 @@
       <location filename="app/quality/features_section.py" />
       <source>A LARGER OFFSET MAKES IT</source>
       <translation>UNA COMPENSACIÓN MAYOR LA HACE</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>BY</source>
+      <translation>POR</translation>
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
@@ -4482,6 +4817,11 @@
       <location filename="app/quality/features_section.py" />
       <source>MEASURED</source>
       <translation>MEDIDO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>NEW</source>
+      <translation>NUEVA</translation>
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
@@ -4705,6 +5045,16 @@
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
+      <source>PART +</source>
+      <translation>PIEZA +</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>PART −</source>
+      <translation>PIEZA −</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
       <source>PRESS Y TO TAKE {size} OF PART {part} OUT, ESC TO KEEP IT</source>
       <translation>PULSE Y PARA QUITAR {size} DE LA PIEZA {part}, ESC PARA DEJARLA</translation>
     </message>
@@ -4747,11 +5097,6 @@
       <location filename="app/quality/readings_section.py" />
       <source>TYPE THE MEASURED SIZE AND PRESS RETURN; ESC GOES BACK TO THE LIST</source>
       <translation>ESCRIBA LA MEDIDA Y PULSE RETURN; ESC VUELVE A LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>WRITTEN: {path}</source>
-      <translation>ESCRITO: {path}</translation>
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
@@ -5259,14 +5604,19 @@
       <translation>OTRO ARC</translation>
     </message>
     <message>
+      <location filename="app/scope/analyses_view.py" />
+      <source>TEST</source>
+      <translation>PRUEBA</translation>
+    </message>
+    <message>
       <location filename="app/scope/axis_response.py" />
       <source>%1 ms</source>
       <translation>%1 ms</translation>
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
-      <source>A step of the Jog page is a good one.</source>
-      <translation>Sirve bien un paso de la página Jog.</translation>
+      <source>A step of the Jog page is a good one; F9 has drive tests.</source>
+      <translation>Un paso de la página Manual es bueno; F9 tiene pruebas.</translation>
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
@@ -5275,8 +5625,8 @@
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
-      <source>GREATEST FOLLOWING ERROR</source>
-      <translation>MAYOR ERROR DE SEGUIM.</translation>
+      <source>GREATEST ERROR</source>
+      <translation>ERROR MAYOR</translation>
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
@@ -5292,6 +5642,16 @@
       <location filename="app/scope/axis_response.py" />
       <source>LAG BEHIND THE SPEED</source>
       <translation>RETRASO POR VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>LAG MEETS WINDOW AT</source>
+      <translation>EL RETRASO LLENA LA VENTANA A</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>NARROWEST THAT HOLDS</source>
+      <translation>LA MÁS ESTRECHA QUE AGUANTA</translation>
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
@@ -5335,8 +5695,83 @@
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
+      <source>no speed it has</source>
+      <translation>ninguna velocidad que tenga</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
       <source>trips at {at}</source>
       <translation>dispara a los {at}</translation>
+    </message>
+    <message>
+      <location filename="app/scope/drive_test_figures.py" />
+      <source>%1, %2 Hz</source>
+      <translation>%1, %2 Hz</translation>
+    </message>
+    <message>
+      <location filename="app/scope/drive_test_figures.py" />
+      <source>90° LATE</source>
+      <translation>90° DE RETRASO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/drive_test_figures.py" />
+      <source>BANDWIDTH, −3 dB</source>
+      <translation>ANCHO DE BANDA, −3 dB</translation>
+    </message>
+    <message>
+      <location filename="app/scope/drive_test_figures.py" />
+      <source>GAIN</source>
+      <translation>GANANCIA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/drive_test_figures.py" />
+      <source>LAG OF THE EVEN PART</source>
+      <translation>RETRASO DE LA PARTE UNIFORME</translation>
+    </message>
+    <message>
+      <location filename="app/scope/drive_test_figures.py" />
+      <source>LATE</source>
+      <translation>RETRASO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/drive_test_figures.py" />
+      <source>LATE BY</source>
+      <translation>RETRASADO EN</translation>
+    </message>
+    <message>
+      <location filename="app/scope/drive_test_figures.py" />
+      <source>Nothing was written to the drive.</source>
+      <translation>No se escribió nada en el accionamiento.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/drive_test_figures.py" />
+      <source>OUT</source>
+      <translation>AFUERA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/drive_test_figures.py" />
+      <source>SPEED OVER LAG</source>
+      <translation>VELOCIDAD ENTRE RETRASO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/drive_test_figures.py" />
+      <source>drive test</source>
+      <translation>prueba de accionamiento</translation>
+    </message>
+    <message>
+      <location filename="app/scope/drive_test_figures.py" />
+      <source>not up to {most} Hz</source>
+      <translation>no hasta {most} Hz</translation>
+    </message>
+    <message>
+      <location filename="app/scope/drive_test_figures.py" />
+      <source>the test was let go before its end: hold the key until it has come back</source>
+      <translation>la prueba se soltó antes de su final: mantenga la tecla hasta que haya vuelto</translation>
+    </message>
+    <message>
+      <location filename="app/scope/drive_test_figures.py" />
+      <source>this machine has no axis {axis}</source>
+      <translation>esta máquina no tiene eje {axis}</translation>
     </message>
     <message>
       <location filename="app/scope/record_shelf.py" />
@@ -5425,11 +5860,6 @@
     </message>
     <message>
       <location filename="app/scope/scope_readings_view.py" />
-      <source>%1 Hz</source>
-      <translation>%1 Hz</translation>
-    </message>
-    <message>
-      <location filename="app/scope/scope_readings_view.py" />
       <source>B − A   %1 ms</source>
       <translation>B − A   %1 ms</translation>
     </message>
@@ -5437,11 +5867,6 @@
       <location filename="app/scope/scope_readings_view.py" />
       <source>F4 chooses curves.</source>
       <translation>F4 elige curvas.</translation>
-    </message>
-    <message>
-      <location filename="app/scope/scope_readings_view.py" />
-      <source>FIGURES</source>
-      <translation>VALORES</translation>
     </message>
     <message>
       <location filename="app/scope/scope_sheets.py" />
@@ -5572,11 +5997,6 @@
       <location filename="app/scope/scope_trigger.py" />
       <source>RISES THROUGH A LEVEL</source>
       <translation>SUBE POR UN NIVEL</translation>
-    </message>
-    <message>
-      <location filename="app/scope/scope_view.py" />
-      <source>ANALYSE</source>
-      <translation>ANALIZAR</translation>
     </message>
     <message>
       <location filename="app/scope/scope_view.py" />
@@ -5940,11 +6360,6 @@
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
-      <source>JOG</source>
-      <translation>MANUAL</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
       <source>LIST</source>
       <translation>LISTA</translation>
     </message>
@@ -6065,8 +6480,23 @@
     </message>
     <message>
       <location filename="app/screen/readout_panels.py" />
+      <source>LAST KNOWN</source>
+      <translation>ÚLTIMO CONOCIDO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/readout_panels.py" />
+      <source>PRESS E-STOP</source>
+      <translation>PULSE PARO DE EMERGENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/readout_panels.py" />
       <source>SPINDLE %1</source>
       <translation>HUSILLO %1</translation>
+    </message>
+    <message>
+      <location filename="app/screen/readout_panels.py" />
+      <source>SPINDLE MAY TURN</source>
+      <translation>PUEDE GIRAR</translation>
     </message>
     <message>
       <location filename="app/screen/readout_panels.py" />
@@ -6112,11 +6542,6 @@
       <location filename="app/screen/station_dock.py" />
       <source>OPERATOR STATION</source>
       <translation>ESTACIÓN DEL OPERADOR</translation>
-    </message>
-    <message>
-      <location filename="app/screen/station_dock.py" />
-      <source>OUT</source>
-      <translation>AFUERA</translation>
     </message>
     <message>
       <location filename="app/screen/station_dock.py" />
@@ -6405,11 +6830,6 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_state_view.py" />
-      <source>NOW</source>
-      <translation>AHORA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_state_view.py" />
       <source>Pass after</source>
       <translation>Pasada sig.</translation>
     </message>
@@ -6690,11 +7110,6 @@
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
-      <source>INPUTS</source>
-      <translation>ENTRADAS</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
       <source>LAMP</source>
       <translation>LÁMPARA</translation>
     </message>
@@ -6712,11 +7127,6 @@
       <location filename="app/special/inputs_outputs.py" />
       <source>ONLY OUTPUTS CAN BE SWITCHED; F4 SHOWS THEM</source>
       <translation>SÓLO SE PUEDEN CAMBIAR LAS SALIDAS; F4 LAS MUESTRA</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>OUTPUTS</source>
-      <translation>SALIDAS</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
@@ -7105,6 +7515,16 @@
     </message>
     <message>
       <location filename="app/special/setup_sheet.py" />
+      <source>{count} ERRORS: this program will not run as it stands</source>
+      <translation>{count} ERRORES: este programa no puede ejecutarse así</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>{count} WARNINGS: look at them before the first part</source>
+      <translation>{count} AVISOS: véalos antes de la primera pieza</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
       <source>{rpm} rpm at most</source>
       <translation>{rpm} rpm como máximo</translation>
     </message>
@@ -7284,11 +7704,6 @@
       <translation>lo que fresan las herramientas motorizadas no está</translation>
     </message>
     <message>
-      <location filename="app/special/setup_sheet_page.py" />
-      <source>{count} ERRORS: this program will not run as it stands</source>
-      <translation>{count} ERRORES: este programa no puede ejecutarse así</translation>
-    </message>
-    <message>
       <location filename="app/special/setup_sheet_work.py" />
       <source>ERRORS</source>
       <translation>ERRORES</translation>
@@ -7302,6 +7717,11 @@
       <location filename="app/special/setup_sheet_work.py" />
       <source>TEXT (SHA-256)</source>
       <translation>TEXTO (SHA-256)</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_work.py" />
+      <source>WARNINGS</source>
+      <translation>AVISOS</translation>
     </message>
     <message>
       <location filename="app/special/special_functions.py" />
@@ -8135,23 +8555,23 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
-      <source>PRESS E-STOP; check cable, terminators and interface, then start the control again</source>
-      <translation>OPRIMA EL PARO DE EMERGENCIA; revise cable, terminadores e interfaz y luego arranque otra vez el control</translation>
+      <source>PRESS E-STOP, the spindle may turn; check cable and power, Reset connects again. Home where asked</source>
+      <translation>PULSE PARO DE EMERGENCIA, el husillo puede girar; revise cable y corriente, Reset conecta de nuevo. Referencie donde se pida</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
-      <source>PRESS E-STOP; it moves what it has and then rests. Check cable and power, start the control again</source>
-      <translation>OPRIMA EL PARO DE EMERGENCIA; mueve lo que tiene y luego para. Revise cable y alimentación, arranque otra vez el control</translation>
+      <source>PRESS E-STOP, the spindle may turn; check cable, terminators, interface; Reset opens the bus again</source>
+      <translation>PULSE PARO DE EMERGENCIA, el husillo puede girar; revise cable, terminadores e interfaz; Reset abre el bus de nuevo</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
-      <source>PRESS E-STOP; look where the tool stands, end TurnDesk and start it again</source>
-      <translation>OPRIMA EL PARO DE EMERGENCIA; vea dónde está la herramienta, cierre TurnDesk y ábralo otra vez</translation>
+      <source>PRESS E-STOP, the spindle may turn; look at the tool; Reset starts another. Home where asked</source>
+      <translation>PULSE PARO DE EMERGENCIA, el husillo puede girar; mire la herramienta; Reset inicia otro. Referencie donde se pida</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
-      <source>PRESS E-STOP; look where the tool stands, end TurnDesk and start it again, home where asked</source>
-      <translation>OPRIMA EL PARO DE EMERGENCIA; vea dónde está la herramienta, cierre TurnDesk y ábralo otra vez, referencia donde se pida</translation>
+      <source>PRESS E-STOP, the spindle may turn; look where the tool stands; Reset ends it and starts another</source>
+      <translation>PULSE PARO DE EMERGENCIA, el husillo puede girar; mire dónde está la herramienta; Reset lo termina e inicia otro</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
@@ -9080,6 +9500,11 @@
     </message>
     <message>
       <location filename="core/alarms/station_alarms.py" />
+      <source>its cable or its hub</source>
+      <translation>su cable o su concentrador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station_alarms.py" />
       <source>its own feed hold or safety door input is on</source>
       <translation>su propia entrada de retención o de puerta de seguridad está activa</translation>
     </message>
@@ -9120,6 +9545,16 @@
     </message>
     <message>
       <location filename="core/alarms/station_alarms.py" />
+      <source>pendant lost</source>
+      <translation>colgante perdido</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station_alarms.py" />
+      <source>plug it in again, then Cycle Start. Who works without it takes [pendant] and what is at it out of the machine file</source>
+      <translation>enchúfelo de nuevo, luego Cycle Start. Quien trabaje sin él quita [pendant] y lo que cuelga de él del archivo de máquina</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station_alarms.py" />
       <source>program stop</source>
       <translation>paro de programa</translation>
     </message>
@@ -9157,6 +9592,11 @@
       <location filename="core/alarms/station_alarms.py" />
       <source>the guard's switch or cable</source>
       <translation>el interruptor de la guarda o su cable</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station_alarms.py" />
+      <source>the pendant was unplugged</source>
+      <translation>se desenchufó el colgante</translation>
     </message>
     <message>
       <location filename="core/alarms/station_alarms.py" />
@@ -9230,6 +9670,16 @@
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
+      <source>drive test: %1</source>
+      <translation>prueba de accionamiento: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/command_handler.py" />
+      <source>drive test: its lease is over before anything could move</source>
+      <translation>prueba de accionamiento: su plazo acabó antes de que nada pudiera moverse</translation>
+    </message>
+    <message>
+      <location filename="core/executor/command_handler.py" />
       <source>drives cannot be switched on in state %1</source>
       <translation>los servos no se pueden encender en el estado %1</translation>
     </message>
@@ -9242,6 +9692,16 @@
       <location filename="core/executor/command_handler.py" />
       <source>homing: %1</source>
       <translation>referencia: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/command_handler.py" />
+      <source>it was let go</source>
+      <translation>se soltó</translation>
+    </message>
+    <message>
+      <location filename="core/executor/command_handler.py" />
+      <source>its button is up</source>
+      <translation>su botón está suelto</translation>
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
@@ -9270,6 +9730,11 @@
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
+      <source>something else was asked for</source>
+      <translation>se pidió otra cosa</translation>
+    </message>
+    <message>
+      <location filename="core/executor/command_handler.py" />
       <source>spindle limit %1 is not between 0 and %2 rpm</source>
       <translation>el tope del husillo %1 no está entre 0 y %2 rpm</translation>
     </message>
@@ -9287,6 +9752,11 @@
       <location filename="core/executor/command_handler.py" />
       <source>the collet is not opened by hand while the spindle turns</source>
       <translation>la boquilla no se abre a mano mientras gira el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/command_handler.py" />
+      <source>the machine has not yet said what it does: wait a moment, then switch the drives on</source>
+      <translation>la máquina aún no ha dicho qué hace: espere un momento y conecte los accionamientos</translation>
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
@@ -9344,6 +9814,76 @@
       <translation>EL CONTROLADOR RETIENE</translation>
     </message>
     <message>
+      <location filename="core/executor/drive_test.py" />
+      <source>%1 is a rotary axis; drive tests are for slides</source>
+      <translation>%1 es un eje rotativo; las pruebas de accionamiento son para carros</translation>
+    </message>
+    <message>
+      <location filename="core/executor/drive_test.py" />
+      <source>%1 is not homed: nobody knows whether the test has room</source>
+      <translation>%1 no está referenciado: nadie sabe si la prueba tiene sitio</translation>
+    </message>
+    <message>
+      <location filename="core/executor/drive_test.py" />
+      <source>%1 is still moving</source>
+      <translation>%1 todavía se mueve</translation>
+    </message>
+    <message>
+      <location filename="core/executor/drive_test.py" />
+      <source>%1 needs %2 mm in %3 for it, and its travel ends before</source>
+      <translation>%1 necesita %2 mm en %3 para ello, y su recorrido acaba antes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/drive_test.py" />
+      <source>a drive test needs a lease above 0</source>
+      <translation>una prueba de accionamiento necesita un plazo mayor que 0</translation>
+    </message>
+    <message>
+      <location filename="core/executor/drive_test.py" />
+      <source>feed hold is pressed</source>
+      <translation>la retención de avance está oprimida</translation>
+    </message>
+    <message>
+      <location filename="core/executor/drive_test.py" />
+      <source>its controller plans by itself and takes no setpoints: no test can be played to its drives</source>
+      <translation>su controlador planifica por sí mismo y no toma consignas: no se puede hacer ninguna prueba con sus accionamientos</translation>
+    </message>
+    <message>
+      <location filename="core/executor/drive_test.py" />
+      <source>the guard is open</source>
+      <translation>la protección está abierta</translation>
+    </message>
+    <message>
+      <location filename="core/executor/drive_test.py" />
+      <source>the spindle turns; stop it first</source>
+      <translation>el husillo gira; párelo antes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/drive_test_path.py" />
+      <source>%1 mm are too short to become even at %2 mm/s</source>
+      <translation>%1 mm son demasiado cortos para hacerse uniformes a %2 mm/s</translation>
+    </message>
+    <message>
+      <location filename="core/executor/drive_test_path.py" />
+      <source>a ramp is faster than 0 and no faster than %1 mm/s, as the hand moves it</source>
+      <translation>una rampa es más rápida que 0 y no más que %1 mm/s, como la mueve la mano</translation>
+    </message>
+    <message>
+      <location filename="core/executor/drive_test_path.py" />
+      <source>a sine has from 0.5 to 200 Hz</source>
+      <translation>un seno tiene de 0,5 a 200 Hz</translation>
+    </message>
+    <message>
+      <location filename="core/executor/drive_test_path.py" />
+      <source>a test of this shape is larger than 0 and no larger than %1 mm</source>
+      <translation>una prueba de esta forma es mayor que 0 y no mayor que %1 mm</translation>
+    </message>
+    <message>
+      <location filename="core/executor/drive_test_path.py" />
+      <source>this driver tells %1 samples a second: too few for a sine of %2 Hz</source>
+      <translation>este controlador da %1 muestras por segundo: demasiado pocas para un seno de %2 Hz</translation>
+    </message>
+    <message>
       <location filename="core/executor/executor.py" />
       <source>%1 came too late to be obeyed</source>
       <translation>%1 llegó demasiado tarde para obedecerse</translation>
@@ -9367,6 +9907,11 @@
       <location filename="core/executor/executor.py" />
       <source>the control was away for %1 s</source>
       <translation>el control estuvo ausente %1 s</translation>
+    </message>
+    <message>
+      <location filename="core/executor/executor.py" />
+      <source>the pendant is there again</source>
+      <translation>el colgante está de nuevo</translation>
     </message>
     <message>
       <location filename="core/executor/feed_hold.py" />
@@ -9540,6 +10085,11 @@
     </message>
     <message>
       <location filename="core/executor/jogging.py" />
+      <source>%1 drive test</source>
+      <translation>prueba de accionamiento de %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jogging.py" />
       <source>%1 is at the end of its travel in %2</source>
       <translation>%1 está al fin de su carrera en %2</translation>
     </message>
@@ -9550,6 +10100,11 @@
     </message>
     <message>
       <location filename="core/executor/jogging.py" />
+      <source>%1 is still in its drive test</source>
+      <translation>%1 todavía está en su prueba de accionamiento</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jogging.py" />
       <source>%1 is still moving; wait for the end of its step</source>
       <translation>%1 todavía se mueve; espere el final de su paso</translation>
     </message>
@@ -9557,6 +10112,11 @@
       <location filename="core/executor/jogging.py" />
       <source>%1 is still on its step</source>
       <translation>%1 todavía está en su paso</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jogging.py" />
+      <source>%1 was stopped before the end of its drive test</source>
+      <translation>%1 se paró antes del final de su prueba de accionamiento</translation>
     </message>
     <message>
       <location filename="core/executor/jogging.py" />
@@ -9582,11 +10142,6 @@
       <location filename="core/executor/jogging.py" />
       <source>a step needs a speed above 0</source>
       <translation>un paso necesita velocidad mayor que 0</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>feed hold is pressed</source>
-      <translation>la retención de avance está oprimida</translation>
     </message>
     <message>
       <location filename="core/executor/jogging.py" />
@@ -9652,6 +10207,11 @@
       <location filename="core/executor/machine_control.py" />
       <source>that was meant just now: let both palms go, read the prompt, press them again</source>
       <translation>eso se ha contestado ahora mismo: suelte los dos pulsadores, lea el aviso y vuelva a pulsarlos</translation>
+    </message>
+    <message>
+      <location filename="core/executor/machine_control.py" />
+      <source>the tool setter is touched: jog away from it</source>
+      <translation>el palpador de herramientas está tocado: aléjese de él</translation>
     </message>
     <message>
       <location filename="core/executor/machine_control.py" />
@@ -9832,6 +10392,11 @@
       <location filename="core/executor/snapshot.py" />
       <source>WAITING</source>
       <translation>ESPERANDO</translation>
+    </message>
+    <message>
+      <location filename="core/executor/snapshot.py" />
+      <source>back off</source>
+      <translation>retroceda</translation>
     </message>
     <message>
       <location filename="core/executor/snapshot.py" />
@@ -10030,6 +10595,11 @@
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
+      <source>the start inhibit switch is on</source>
+      <translation>el interruptor que impide el arranque está puesto</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
       <source>the state has changed since the line was proved: %1</source>
       <translation>el estado cambió desde que se comprobó la línea: %1</translation>
     </message>
@@ -10055,6 +10625,11 @@
     </message>
     <message>
       <location filename="core/executor/supervision.py" />
+      <source>%1 FOR %2 S, %3: %4</source>
+      <translation>%1 DURANTE %2 S, %3: %4</translation>
+    </message>
+    <message>
+      <location filename="core/executor/supervision.py" />
       <source>%1: its drive tells a position that is no number</source>
       <translation>%1: su servo da una posición que no es un número</translation>
     </message>
@@ -10065,8 +10640,13 @@
     </message>
     <message>
       <location filename="core/executor/supervision.py" />
-      <source>CONTROL WAS SILENT FOR %1 S, SWITCHED OFF: %2</source>
-      <translation>EL CONTROL CALLÓ %1 S, SE APAGÓ: %2</translation>
+      <source>CONTROL WAS SILENT</source>
+      <translation>EL CONTROL CALLABA</translation>
+    </message>
+    <message>
+      <location filename="core/executor/supervision.py" />
+      <source>FOUND ON, SWITCHED OFF</source>
+      <translation>ENCONTRADO CONECTADO, DESCONECTADO</translation>
     </message>
     <message>
       <location filename="core/executor/supervision.py" />
@@ -10075,8 +10655,18 @@
     </message>
     <message>
       <location filename="core/executor/supervision.py" />
+      <source>SWITCHED OFF</source>
+      <translation>DESCONECTADO</translation>
+    </message>
+    <message>
+      <location filename="core/executor/supervision.py" />
       <source>THE FEEDER HAS SWITCHED OFF</source>
       <translation>EL ALIMENTADOR APAGÓ</translation>
+    </message>
+    <message>
+      <location filename="core/executor/supervision.py" />
+      <source>THE MACHINE WAS NOT HEARD</source>
+      <translation>NO SE OÍA A LA MÁQUINA</translation>
     </message>
     <message>
       <location filename="core/executor/supervision.py" />
@@ -10107,6 +10697,101 @@
       <location filename="core/executor/thread_path.py" />
       <source>the spindle turned the wrong way, at %1 rpm</source>
       <translation>el husillo giró al revés, a %1 rpm</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>%1 is not homed: its position means nothing</source>
+      <translation>%1 no está referenciado: su posición no dice nada</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>a tool is not touched off along %1</source>
+      <translation>una herramienta no se toca a lo largo de %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>another direction was asked for</source>
+      <translation>se pidió otra dirección</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>it ran %1 past the touch, more than overtravel: look at the setter</source>
+      <translation>pasó %1 del toque, más que overtravel: mire el palpador</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>its button %1 is up</source>
+      <translation>su botón %1 está suelto</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>its search would leave the travel of %1 by %2: jog back</source>
+      <translation>su búsqueda saldría del recorrido de %1 en %2: retroceda</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>no axis</source>
+      <translation>ningún eje</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>not in state %1</source>
+      <translation>no en el estado %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>nothing was touched within %1</source>
+      <translation>no se tocó nada en %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>something was touched on the way back: look at the setter</source>
+      <translation>se tocó algo al volver: mire el palpador</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>the handwheel is selected: let it go first</source>
+      <translation>el volante está elegido: suéltelo antes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>the input is on already: is the setter touched, or its cable damaged?</source>
+      <translation>la entrada ya está activa: ¿está tocado el palpador o dañado su cable?</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>the input probe is not read: check its terminal</source>
+      <translation>la entrada probe no se lee: compruebe su borne</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>the input stays on %1 off the touch: look at stylus and cable</source>
+      <translation>la entrada sigue activa a %1 del toque: mire la punta y el cable</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>the machine is in state %1</source>
+      <translation>la máquina está en el estado %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>the second touch did not come: is the tool or the setter loose?</source>
+      <translation>el segundo toque no llegó: ¿está floja la herramienta o el palpador?</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>the spindle turns: stop it first</source>
+      <translation>el husillo gira: párelo antes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>this machine has no tool setter: [setter] and the input probe in its file</source>
+      <translation>esta máquina no tiene palpador de herramientas: [setter] y la entrada probe en su archivo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>touch-off: %1</source>
+      <translation>toque: %1</translation>
     </message>
     <message>
       <location filename="core/executor/watchdog.py" />
@@ -10195,6 +10880,21 @@
     </message>
     <message>
       <location filename="core/geometry/rotation_frames.py" />
+      <source>a projection angle is 90 degrees</source>
+      <translation>un ángulo de proyección es de 90 grados</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/rotation_frames.py" />
+      <source>a vector has no length</source>
+      <translation>un vector no tiene longitud</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/rotation_frames.py" />
+      <source>both vectors have one direction</source>
+      <translation>ambos vectores tienen una dirección</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/rotation_frames.py" />
       <source>the first and the second point are the same</source>
       <translation>el primer punto y el segundo son el mismo</translation>
     </message>
@@ -10244,9 +10944,244 @@
       <translation>Empiécelo desde el principio.</translation>
     </message>
     <message>
+      <location filename="core/interpreter/formula_values.py" />
+      <source>%1 of %2 has no value</source>
+      <translation>%1 de %2 no tiene valor</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/formula_values.py" />
+      <source>A function is asked of too few or too many values</source>
+      <translation>Una función recibe valores de menos o de más</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/formula_values.py" />
+      <source>It divides by zero</source>
+      <translation>Divide por cero</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/formula_values.py" />
+      <source>The result is too large</source>
+      <translation>El resultado es demasiado grande</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/formula_values.py" />
+      <source>arc cosine</source>
+      <translation>arco coseno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/formula_values.py" />
+      <source>arc sine</source>
+      <translation>arco seno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/formula_values.py" />
+      <source>arc tangent</source>
+      <translation>arco tangente</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/formula_values.py" />
+      <source>common logarithm</source>
+      <translation>logaritmo decimal</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/formula_values.py" />
+      <source>exclusive or</source>
+      <translation>o exclusivo</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/formula_values.py" />
+      <source>greater or equal</source>
+      <translation>mayor o igual</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/formula_values.py" />
+      <source>less or equal</source>
+      <translation>menor o igual</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/formula_values.py" />
+      <source>natural logarithm</source>
+      <translation>logaritmo natural</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/formula_values.py" />
+      <source>nearest whole number</source>
+      <translation>entero más cercano</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/formula_values.py" />
+      <source>square root</source>
+      <translation>raíz cuadrada</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/formula_values.py" />
+      <source>whole part</source>
+      <translation>parte entera</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/formula_values.py" />
+      <source>whole quotient</source>
+      <translation>cociente entero</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/interpretation.py" />
       <source>The program makes more than %1 blocks or %2 executed lines.</source>
       <translation>El programa hace más de %1 bloques o %2 líneas ejecutadas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/coordinate_transformations.py" />
+      <source>A datum shift of the rotary axis %1 is not built.</source>
+      <translation>Un decalaje de origen del eje giratorio %1 no está hecho.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/coordinate_transformations.py" />
+      <source>A factor of 0 leaves nothing.</source>
+      <translation>Un factor de 0 no deja nada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/coordinate_transformations.py" />
+      <source>Turn the axis with L, or tell the plane.</source>
+      <translation>Gire el eje con L o indique el plano.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/coordinate_transformations.py" />
+      <source>Write SCL with a factor such as 0.99.</source>
+      <translation>Escriba SCL con un factor como 0.99.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Cycle %1 needs Q%2.</source>
+      <translation>El ciclo %1 necesita Q%2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Cycle %1 needs the spindle to turn.</source>
+      <translation>El ciclo %1 necesita que gire el husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Q%1 of cycle %2 is no feed.</source>
+      <translation>Q%1 del ciclo %2 no es un avance.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Start it with M3 before.</source>
+      <translation>Arránquelo antes con M3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Write a feed above zero.</source>
+      <translation>Escriba un avance mayor que cero.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Write it behind CYCL DEF.</source>
+      <translation>Escríbalo tras CYCL DEF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>CYCL DEF %1</source>
+      <translation>CYCL DEF %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Cycle %1 needs a machining cycle before it.</source>
+      <translation>El ciclo %1 necesita antes un ciclo de mecanizado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>No machining cycle has been told.</source>
+      <translation>No se ha indicado ningún ciclo de mecanizado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Q%1 %2 is no number of places.</source>
+      <translation>Q%1 %2 no es un número de lugares.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Write CYCL DEF before.</source>
+      <translation>Escriba antes CYCL DEF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Write how many there are.</source>
+      <translation>Escriba cuántos hay.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Write its CYCL DEF before.</source>
+      <translation>Escriba antes su CYCL DEF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>Correct the direction.</source>
+      <translation>Corrija la dirección.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>Correct them.</source>
+      <translation>Corríjalos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>Cycle 240 by diameter needs the angle of the tool's point.</source>
+      <translation>El ciclo 240 por diámetro necesita el ángulo de la punta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>Make Q202 larger.</source>
+      <translation>Aumente Q202.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>Q214 is not between 0 and 4.</source>
+      <translation>Q214 no está entre 0 y 4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>Q239 is no pitch.</source>
+      <translation>Q239 no es un paso.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>The depth Q201 %1 mm leads upwards.</source>
+      <translation>La profundidad Q201 %1 mm va hacia arriba.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>The infeed of %1 mm takes too many.</source>
+      <translation>La pasada de %1 mm da demasiadas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>The tool, the infeed or the feed of cycle 208 does not fit the hole.</source>
+      <translation>La herramienta, la pasada o el avance del ciclo 208 no encaja en el agujero.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>Write Q343=+0 and Q201.</source>
+      <translation>Escriba Q343=+0 y Q201.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>Write it with a minus.</source>
+      <translation>Escríbala con menos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>Write the pitch of the thread.</source>
+      <translation>Escriba el paso de la rosca.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
+      <source>%1 does nothing here.</source>
+      <translation>%1 no hace nada aquí.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
+      <source>CYCL CALL</source>
+      <translation>CYCL CALL</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_interpreter.py" />
@@ -10254,9 +11189,29 @@
       <translation>Baje los números de las repeticiones.</translation>
     </message>
     <message>
+      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
+      <source>Put it into the same folder.</source>
+      <translation>Póngalo en la misma carpeta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
+      <source>The program %1 is not beside this one.</source>
+      <translation>El programa %1 no está junto a este.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>%1 line %2: %3</source>
+      <translation>%1 línea %2: %3</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>A file holds one program.</source>
       <translation>Un archivo contiene un solo programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>A program must not call itself.</source>
+      <translation>Un programa no puede llamarse a sí mismo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
@@ -10305,6 +11260,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>Programs call each other more than %1 deep at %2.</source>
+      <translation>Los programas se llaman a más de %1 niveles en %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>The first block names program and unit.</source>
       <translation>El primer bloque nombra programa y unidad.</translation>
     </message>
@@ -10332,46 +11292,6 @@
       <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>Write the unit of the program in both.</source>
       <translation>Escriba en ambos la unidad del programa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/l_moves.py" />
-      <source>%1 stand elsewhere than the plane of line %2 asks.</source>
-      <translation>%1 están en otra posición que la que pide el plano de la línea %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/l_moves.py" />
-      <source>A move of %1 with M128</source>
-      <translation>Un movimiento de %1 con M128</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/l_moves.py" />
-      <source>A move with M128 and %1 swivelled</source>
-      <translation>Un movimiento con M128 y %1 inclinado</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/l_moves.py" />
-      <source>Position them before the cut: L A+Q120 C+Q122 R0 FMAX, or TURN in the PLANE block.</source>
-      <translation>Posiciónelos antes del corte: L A+Q120 C+Q122 R0 FMAX, o TURN en el bloque PLANE.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/l_moves.py" />
-      <source>Start it with M3 or M4.</source>
-      <translation>Arránquelo con M3 o M4.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/l_moves.py" />
-      <source>Take the word out.</source>
-      <translation>Quite la palabra.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/l_moves.py" />
-      <source>This feed move runs with the spindle at rest.</source>
-      <translation>Este movimiento de avance corre con el husillo parado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/l_moves.py" />
-      <source>This machine has no axis %1.</source>
-      <translation>Esta máquina no tiene eje %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/m_functions.py" />
@@ -10414,6 +11334,251 @@
       <translation>Escriba S tras TOOL CALL.</translation>
     </message>
     <message>
+      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <source>A pocket is not milled in rapid.</source>
+      <translation>Una caja no se fresa en rápido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <source>Line %1.%2 of the cycle has no %3.</source>
+      <translation>La línea %1.%2 del ciclo no tiene %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <source>Make it larger.</source>
+      <translation>Auméntela.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <source>Take a smaller tool.</source>
+      <translation>Tome una herramienta menor.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <source>The infeed of %1 mm takes %2 passes.</source>
+      <translation>La pasada de %1 mm da %2 pasadas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <source>The tool is wider than the pocket.</source>
+      <translation>La herramienta es más ancha que la caja.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <source>The tool is wider than the slot.</source>
+      <translation>La herramienta es más ancha que la ranura.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <source>Write F in CYCL DEF.</source>
+      <translation>Escriba F en CYCL DEF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <source>Write it in CYCL DEF.</source>
+      <translation>Escríbalo en CYCL DEF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>%1 needs DR+ or DR-.</source>
+      <translation>%1 necesita DR+ o DR-.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>%1 turns are the most.</source>
+      <translation>%1 vueltas son el máximo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>A full circle takes two arcs, or C.</source>
+      <translation>Un círculo entero necesita dos arcos, o C.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>An arc of R %1 mm does not reach over %2 mm.</source>
+      <translation>Un arco de R %1 mm no alcanza %2 mm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>CP goes round %1 times.</source>
+      <translation>CP da %1 vueltas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>Correct R or the end point.</source>
+      <translation>Corrija R o el punto final.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>Correct the end point or CC.</source>
+      <translation>Corrija el punto final o CC.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>Correct the end point.</source>
+      <translation>Corrija el punto final.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>Give both the same sign.</source>
+      <translation>Dé a ambos el mismo signo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>Go to the circle before.</source>
+      <translation>Vaya antes al círculo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>IPA%1 and DR%2 go different ways.</source>
+      <translation>IPA%1 y DR%2 van en sentidos distintos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>IPA+0 goes nowhere.</source>
+      <translation>IPA+0 no va a ninguna parte.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>No CC has set a pole.</source>
+      <translation>Ningún CC ha fijado un polo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>Nothing moves before %1, so it has no direction to begin with.</source>
+      <translation>Nada se mueve antes de %1, así que no tiene dirección con que empezar.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>Program a path before it.</source>
+      <translation>Programe antes una trayectoria.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>The end lies %1 mm from the pole, the start %2 mm.</source>
+      <translation>El final está a %1 mm del polo, el inicio a %2 mm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>The end of %1 lies straight behind its start.</source>
+      <translation>El final de %1 está justo detrás de su inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>The tool stands on the pole, so there is no circle.</source>
+      <translation>La herramienta está en el polo, así que no hay círculo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>Write CC with X and Y before.</source>
+      <translation>Escriba antes CC con X e Y.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_elements.py" />
+      <source>Write DR+ for counter-clockwise.</source>
+      <translation>Escriba DR+ para sentido antihorario.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>%1 %2 mm: %3.</source>
+      <translation>%1 %2 mm: %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>%1 needs a path in the working plane before it.</source>
+      <translation>%1 necesita antes una trayectoria en el plano de trabajo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>%1 needs a path in the working plane behind it.</source>
+      <translation>%1 necesita detrás una trayectoria en el plano de trabajo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>%1 stand elsewhere than the plane of line %2 asks.</source>
+      <translation>%1 están en otra posición que la que pide el plano de la línea %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>%1 stands while radius compensation is on.</source>
+      <translation>%1 está mientras la corrección de radio está activa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>A rotary axis moves while radius compensation is on.</source>
+      <translation>Un eje giratorio se mueve con la corrección de radio activa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>APPR stands while radius compensation is on.</source>
+      <translation>APPR está mientras la corrección de radio está activa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>End the contour with R0 before.</source>
+      <translation>Termine antes el contorno con R0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>End the contour with R0 or DEP before.</source>
+      <translation>Termine antes el contorno con R0 o DEP.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>End the contour with R0 or DEP.</source>
+      <translation>Termine el contorno con R0 o DEP.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>Make it smaller.</source>
+      <translation>Hágala menor.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>Position them before the cut: L A+Q120 C+Q122 R0 FMAX, or TURN in the PLANE block.</source>
+      <translation>Posiciónelos antes del corte: L A+Q120 C+Q122 R0 FMAX, o TURN en el bloque PLANE.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>Put it between two elements of the contour.</source>
+      <translation>Póngalo entre dos elementos del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>R%1 stands while R%2 is on.</source>
+      <translation>R%1 está mientras R%2 está activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>Start it with M3 or M4.</source>
+      <translation>Arránquelo con M3 o M4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>Take the word out.</source>
+      <translation>Quite la palabra.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>The program ends while radius compensation is on.</source>
+      <translation>El programa termina con la corrección de radio activa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>This feed move runs with the spindle at rest.</source>
+      <translation>Este movimiento de avance corre con el husillo parado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>This machine has no axis %1.</source>
+      <translation>Esta máquina no tiene eje %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>Write R0 between them.</source>
+      <translation>Escriba R0 entre ellos.</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/klartext/plane_functions.py" />
       <source> with %1</source>
       <translation> con %1</translation>
@@ -10430,8 +11595,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>Correct the points.</source>
-      <translation>Corrija los puntos.</translation>
+      <source>Correct the points, vectors or angles.</source>
+      <translation>Corrija los puntos, vectores o ángulos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/plane_functions.py" />
@@ -10499,9 +11664,79 @@
       <translation>Escriba antes TOOL CALL n Z.</translation>
     </message>
     <message>
+      <location filename="core/interpreter/klartext/q_functions.py" />
+      <source>%1%2 has no value yet.</source>
+      <translation>%1%2 aún no tiene valor.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/q_functions.py" />
+      <source>Correct the formula.</source>
+      <translation>Corrija la fórmula.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/q_functions.py" />
+      <source>FN 18 with ID%1 NR%2 IDX%3</source>
+      <translation>FN 18 con ID%1 NR%2 IDX%3</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/q_functions.py" />
+      <source>Look at the conditions before this block.</source>
+      <translation>Mire las condiciones antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/q_functions.py" />
+      <source>The program tells its error %1 and stops.</source>
+      <translation>El programa avisa su error %1 y para.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/q_functions.py" />
+      <source>The result %1 is larger than %2.</source>
+      <translation>El resultado %1 es mayor que %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/q_functions.py" />
+      <source>Write %1%2 = … before.</source>
+      <translation>Escriba antes %1%2 = ….</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/radius_compensation.py" />
+      <source>%1 has no way: the tool stands inside its arc.</source>
+      <translation>%1 no tiene camino: la herramienta está dentro de su arco.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/radius_compensation.py" />
+      <source>Begin farther off, or make R smaller.</source>
+      <translation>Empiece más lejos o reduzca R.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/radius_compensation.py" />
+      <source>Make R larger.</source>
+      <translation>Aumente R.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/radius_compensation.py" />
+      <source>R %1 mm of %2 is not over the tool radius %3 mm.</source>
+      <translation>R %1 mm de %2 no supera el radio de herramienta %3 mm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/radius_compensation.py" />
+      <source>Take a smaller tool, or change the contour.</source>
+      <translation>Tome una herramienta menor o cambie el contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/radius_compensation.py" />
+      <source>The tool radius of %1 mm does not fit here: %2.</source>
+      <translation>El radio de herramienta de %1 mm no cabe aquí: %2.</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/klartext/tool_call.py" />
-      <source>A tool by its name</source>
-      <translation>Una herramienta por su nombre</translation>
+      <source>Call it by its number, or write TOOL DEF before.</source>
+      <translation>Llámela por su número o escriba antes TOOL DEF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/tool_call.py" />
+      <source>No tool is called "%1".</source>
+      <translation>Ninguna herramienta se llama «%1».</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/tool_call.py" />
@@ -10545,11 +11780,6 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/word_values.py" />
-      <source>Q%1 has no value yet.</source>
-      <translation>Q%1 todavía no tiene valor.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
       <source>The last TOOL CALL has no F.</source>
       <translation>El último TOOL CALL no tiene F.</translation>
     </message>
@@ -10562,11 +11792,6 @@
       <location filename="core/interpreter/klartext/word_values.py" />
       <source>Write F or FMAX.</source>
       <translation>Escriba F o FMAX.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
-      <source>Write Q%1 = … before.</source>
-      <translation>Escriba antes Q%1 = …</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/word_values.py" />
@@ -10632,11 +11857,6 @@
       <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>Correct I and K.</source>
       <translation>Corrija I y K.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
-      <source>Correct R or the end point.</source>
-      <translation>Corrija R o el punto final.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
@@ -10767,11 +11987,6 @@
       <location filename="core/interpreter/omniturn/corners.py" />
       <source>Lines %1 and %2 run in one direction: there is no corner to cut.</source>
       <translation>Las líneas %1 y %2 van en una misma dirección: no hay esquina que cortar.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
-      <source>Make it smaller.</source>
-      <translation>Hágala menor.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
@@ -12164,6 +13379,46 @@
       <translation>el tamaño de una esquina</translation>
     </message>
     <message>
+      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <source>%1 has no end.</source>
+      <translation>%1 no tiene fin.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <source>%1 has nothing that it belongs to.</source>
+      <translation>%1 no pertenece a nada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <source>%1 is no variable of this program.</source>
+      <translation>%1 no es una variable de este programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <source>Correct the label, or the direction of the jump.</source>
+      <translation>Corrija la etiqueta o la dirección del salto.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <source>Look at the beginning of the structure.</source>
+      <translation>Mire el principio de la estructura.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <source>Write DEF INT %1 before it.</source>
+      <translation>Escriba antes DEF INT %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <source>Write its end behind it.</source>
+      <translation>Escriba su fin detrás.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <source>the label %1 is not where %2 looks for it.</source>
+      <translation>la etiqueta %1 no está donde %2 la busca.</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>%1 belongs to an arc, and G%2 is in force.</source>
       <translation>%1 pertenece a un arco, y está vigente G%2.</translation>
@@ -12345,6 +13600,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>%1 is no word, and no variable of this program.</source>
+      <translation>%1 no es una palabra ni una variable de este programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>Add the axes.</source>
       <translation>Agregue los ejes.</translation>
     </message>
@@ -12355,8 +13615,13 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>Lower the passes of the calls.</source>
-      <translation>Baje las repeticiones de las llamadas.</translation>
+      <source>Look at its loops, and lower the passes of its calls.</source>
+      <translation>Mire sus bucles y baje las repeticiones de sus llamadas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>Write DEF REAL %1 before it.</source>
+      <translation>Escriba antes DEF REAL %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
@@ -12370,18 +13635,33 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
+      <source>%1 has no value: %2.</source>
+      <translation>%1 no tiene valor: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
       <source>%1: %2 must be over 0.</source>
       <translation>%1: %2 debe ser mayor que 0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
-      <source>R%1 has no value: the program has not set it.</source>
-      <translation>R%1 no tiene valor: el programa no lo puso.</translation>
+      <source>DEF REAL %1</source>
+      <translation>DEF REAL %1</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
-      <source>Write R%1=… before it.</source>
-      <translation>Escriba antes R%1=…</translation>
+      <source>Write %1 before it.</source>
+      <translation>Escriba antes %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
+      <source>no DEF has named it</source>
+      <translation>ningún DEF lo ha nombrado</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
+      <source>the program has not set it</source>
+      <translation>el programa no lo ha fijado</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
@@ -12545,11 +13825,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
-      <source>%1 line %2: %3</source>
-      <translation>%1 línea %2: %3</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
       <source>M%1 ends a main program, and this is a subprogram.</source>
       <translation>M%1 termina un programa principal, y éste es un subprograma.</translation>
     </message>
@@ -12589,9 +13864,39 @@
       <translation>%1 (%2 veces)</translation>
     </message>
     <message>
+      <location filename="core/language/formulas.py" />
+      <source>A closing bracket is missing</source>
+      <translation>Falta un paréntesis de cierre</translation>
+    </message>
+    <message>
+      <location filename="core/language/formulas.py" />
+      <source>Complete it.</source>
+      <translation>Complétela.</translation>
+    </message>
+    <message>
+      <location filename="core/language/formulas.py" />
+      <source>Split it.</source>
+      <translation>Divídala.</translation>
+    </message>
+    <message>
+      <location filename="core/language/formulas.py" />
+      <source>The formula is nested too deep</source>
+      <translation>La fórmula está anidada demasiado</translation>
+    </message>
+    <message>
+      <location filename="core/language/formulas.py" />
+      <source>The formula needs a number or a parameter</source>
+      <translation>La fórmula necesita un número o un parámetro</translation>
+    </message>
+    <message>
+      <location filename="core/language/formulas.py" />
+      <source>Write ) behind the formula.</source>
+      <translation>Escriba ) tras la fórmula.</translation>
+    </message>
+    <message>
       <location filename="core/language/klartext/canonical_text.py" />
-      <source>%1 PGM %2 %3</source>
-      <translation>%1 PGM %2 %3</translation>
+      <source>%1 PGM</source>
+      <translation>%1 PGM</translation>
     </message>
     <message>
       <location filename="core/language/klartext/canonical_text.py" />
@@ -12639,9 +13944,99 @@
       <translation>TRANS DATUM RESET</translation>
     </message>
     <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>A cycle takes Q parameters</source>
+      <translation>Un ciclo toma parámetros Q</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>A rotation needs ROT and its angle</source>
+      <translation>Un giro necesita ROT y su ángulo</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>CYCL CALL PAT needs a table of points.</source>
+      <translation>CYCL CALL PAT necesita una tabla de puntos.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>CYCL DEF %1 needs its line</source>
+      <translation>CYCL DEF %1 necesita su línea</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>CYCL DEF 7.%1 takes X, Y or Z</source>
+      <translation>CYCL DEF 7.%1 toma X, Y o Z</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>CYCL DEF needs the number of a cycle</source>
+      <translation>CYCL DEF necesita el número de un ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>Mirroring takes X, Y and Z</source>
+      <translation>La simetría toma X, Y y Z</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>No word of a rotation</source>
+      <translation>No es palabra de un giro</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>No word of cycle %1</source>
+      <translation>No es palabra del ciclo %1</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>No word of cycle 7</source>
+      <translation>No es palabra del ciclo 7</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>No word of scaling</source>
+      <translation>No es palabra de escala</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>Scaling needs SCL and its factor</source>
+      <translation>La escala necesita SCL y su factor</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>Write CYCL DEF %1.0.</source>
+      <translation>Escriba CYCL DEF %1.0.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>Write Q200=+2 and so on.</source>
+      <translation>Escriba Q200=+2, etc.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>Write the points with M99.</source>
+      <translation>Escriba los puntos con M99.</translation>
+    </message>
+    <message>
       <location filename="core/language/klartext/klartext_faults.py" />
       <source>%1 is not supported here.</source>
       <translation>Aquí no se admite %1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Arithmetical error</source>
+      <translation>Error aritmético</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>CC missing</source>
+      <translation>Falta CC</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Circle end point incorrect</source>
+      <translation>Punto final del círculo incorrecto</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
@@ -12650,8 +14045,23 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Cycle incomplete</source>
+      <translation>Ciclo incompleto</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Direction of rotation not defined</source>
+      <translation>Sentido de giro no definido</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Entered angle not permitted</source>
       <translation>Ángulo introducido no permitido</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Error of the program</source>
+      <translation>Error del programa</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
@@ -12695,6 +14105,11 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Path function not possible here</source>
+      <translation>Función de trayectoria imposible aquí</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Plane wrongly defined</source>
       <translation>Plano mal definido</translation>
     </message>
@@ -12705,8 +14120,23 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Program not found</source>
+      <translation>Programa no encontrado</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Q parameter not defined</source>
       <translation>Parámetro Q sin definir</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Radius compensation not permitted here</source>
+      <translation>Corrección de radio no permitida aquí</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Rounding not possible</source>
+      <translation>Redondeo imposible</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
@@ -12717,6 +14147,16 @@
       <location filename="core/language/klartext/klartext_faults.py" />
       <source>Tool axis is missing</source>
       <translation>Falta el eje de herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Tool not defined</source>
+      <translation>Herramienta no definida</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Tool radius too large</source>
+      <translation>Radio de herramienta demasiado grande</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
@@ -12737,11 +14177,6 @@
       <location filename="core/language/klartext/klartext_line.py" />
       <source>A block begins with L, PLANE, TOOL CALL, LBL or the like.</source>
       <translation>Un bloque empieza con L, PLANE, TOOL CALL, LBL o similar.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_line.py" />
-      <source>A block over several lines (~)</source>
-      <translation>Un bloque de varias líneas (~)</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
@@ -12767,11 +14202,6 @@
       <location filename="core/language/klartext/klartext_line.py" />
       <source>CONTOUR DEF</source>
       <translation>CONTOUR DEF</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_line.py" />
-      <source>CYCL CALL</source>
-      <translation>CYCL CALL</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
@@ -12810,11 +14240,6 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
-      <source>STOP stands alone</source>
-      <translation>STOP va solo</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_line.py" />
       <source>TCH PROBE</source>
       <translation>TCH PROBE</translation>
     </message>
@@ -12825,83 +14250,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
-      <source>TRANS DATUM</source>
-      <translation>TRANS DATUM</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_line.py" />
-      <source>TRANS MIRROR</source>
-      <translation>TRANS MIRROR</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_line.py" />
-      <source>TRANS ROTATION</source>
-      <translation>TRANS ROTATION</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_line.py" />
-      <source>TRANS SCALE</source>
-      <translation>TRANS SCALE</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_line.py" />
       <source>The line has %1 characters.</source>
       <translation>La línea tiene %1 caracteres.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/l_block.py" />
-      <source>An M function was expected</source>
-      <translation>Se esperaba una función M</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/l_block.py" />
-      <source>It takes axes, R0, a feed and M functions.</source>
-      <translation>Lleva ejes, R0, un avance y funciones M.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/l_block.py" />
-      <source>M128 takes a feed in numbers.</source>
-      <translation>M128 lleva un avance en números.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/l_block.py" />
-      <source>M140 needs MB</source>
-      <translation>M140 necesita MB</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/l_block.py" />
-      <source>No word of an L block</source>
-      <translation>No es palabra de un bloque L</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/l_block.py" />
-      <source>Radius compensation R%1</source>
-      <translation>Compensación de radio R%1</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/l_block.py" />
-      <source>The axis has no value</source>
-      <translation>El eje no tiene valor</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/l_block.py" />
-      <source>There are more than %1 M functions in the block.</source>
-      <translation>Hay más de %1 funciones M en el bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/l_block.py" />
-      <source>Write F and a number.</source>
-      <translation>Escriba F y un número.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/l_block.py" />
-      <source>Write MB and a length, or MB MAX.</source>
-      <translation>Escriba MB y una longitud, o MB MAX.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/l_block.py" />
-      <source>Write a number such as +10.</source>
-      <translation>Escriba un número como +10.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line_cursor.py" />
@@ -12989,6 +14339,141 @@
       <translation>Escriba el nombre.</translation>
     </message>
     <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>%1 needs %2</source>
+      <translation>%1 necesita %2</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>%1 takes its size and a feed</source>
+      <translation>%1 toma su tamaño y un avance</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>%1 takes no DR.</source>
+      <translation>%1 no toma DR.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>APPR CT</source>
+      <translation>APPR CT</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>APPR LCT</source>
+      <translation>APPR LCT</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>APPR LN</source>
+      <translation>APPR LN</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>APPR LT</source>
+      <translation>APPR LT</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>APPR PCT</source>
+      <translation>APPR PCT</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>APPR PLCT</source>
+      <translation>APPR PLCT</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>APPR PLN</source>
+      <translation>APPR PLN</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>APPR PLT</source>
+      <translation>APPR PLT</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>An M function was expected</source>
+      <translation>Se esperaba una función M</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>CC takes two axes</source>
+      <translation>CC toma dos ejes</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>DEP CT</source>
+      <translation>DEP CT</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>DEP LCT</source>
+      <translation>DEP LCT</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>DEP LN</source>
+      <translation>DEP LN</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>DEP LT</source>
+      <translation>DEP LT</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>DEP PLCT</source>
+      <translation>DEP PLCT</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>It takes %1, R0, RL or RR, a feed and M functions.</source>
+      <translation>Toma %1, R0, RL o RR, un avance y funciones M.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>M128 takes a feed in numbers, or FMAX.</source>
+      <translation>M128 toma un avance en números, o FMAX.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>M140 needs MB</source>
+      <translation>M140 necesita MB</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>No word of %1 %2 block</source>
+      <translation>No es palabra de %1 bloque %2</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>The axis has no value</source>
+      <translation>El eje no tiene valor</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>There are more than %1 M functions in the block.</source>
+      <translation>Hay más de %1 funciones M en el bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>Write F and a number.</source>
+      <translation>Escriba F y un número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>Write MB and a length, or MB MAX.</source>
+      <translation>Escriba MB y una longitud, o MB MAX.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>Write a number such as +10.</source>
+      <translation>Escriba un número como +10.</translation>
+    </message>
+    <message>
       <location filename="core/language/klartext/plane_block.py" />
       <source>%1 %2 missing</source>
       <translation>%1: falta %2</translation>
@@ -13030,11 +14515,6 @@
     </message>
     <message>
       <location filename="core/language/klartext/plane_block.py" />
-      <source>PLANE %1</source>
-      <translation>PLANE %1</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/plane_block.py" />
       <source>PLANE AXIAL needs an axis angle</source>
       <translation>PLANE AXIAL necesita un ángulo de eje</translation>
     </message>
@@ -13045,8 +14525,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/plane_block.py" />
-      <source>PLANE needs AXIAL, POINTS, SPATIAL, RELATIV or RESET</source>
-      <translation>PLANE necesita AXIAL, POINTS, SPATIAL, RELATIV o RESET</translation>
+      <source>PLANE needs %1 or %2</source>
+      <translation>PLANE necesita %1 o %2</translation>
     </message>
     <message>
       <location filename="core/language/klartext/plane_block.py" />
@@ -13079,19 +14559,89 @@
       <translation>Escriba un ángulo.</translation>
     </message>
     <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>%1 for %2</source>
+      <translation>%1 para %2</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>%1 parameters go up to %2%3.</source>
+      <translation>Los parámetros %1 llegan hasta %2%3.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>'=' was expected behind %1%2</source>
+      <translation>Se esperaba '=' tras %1%2</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>A Q parameter was expected</source>
+      <translation>Se esperaba un parámetro Q</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>An operator was expected</source>
+      <translation>Se esperaba un operador</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>FN %1 has more than it takes</source>
+      <translation>FN %1 tiene más de lo que toma</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>FN %1 needs %2</source>
+      <translation>FN %1 necesita %2</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>FN %1 needs GOTO LBL</source>
+      <translation>FN %1 necesita GOTO LBL</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>FN %1 needs IF</source>
+      <translation>FN %1 necesita IF</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>FN 14 needs ERROR =</source>
+      <translation>FN 14 necesita ERROR =</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>FN 18 needs ID and NR</source>
+      <translation>FN 18 necesita ID y NR</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>FN 18 needs SYSREAD</source>
+      <translation>FN 18 necesita SYSREAD</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>GOTO LBL</source>
+      <translation>GOTO LBL</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>No word of FN 18</source>
+      <translation>No es palabra de FN 18</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>No word of a jump</source>
+      <translation>No es palabra de un salto</translation>
+    </message>
+    <message>
       <location filename="core/language/klartext/structure_blocks.py" />
       <source>%1 is missing</source>
       <translation>Falta %1</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
-      <source>%1 needs a name and MM or INCH.</source>
-      <translation>%1 necesita un nombre y MM o INCH.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>'=' was expected behind Q%1</source>
-      <translation>Se esperaba '=' tras Q%1</translation>
+      <source>%1 needs MM or INCH.</source>
+      <translation>%1 necesita MM o INCH.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -13110,13 +14660,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
-      <source>CYCL DEF %1</source>
-      <translation>CYCL DEF %1</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>CYCL DEF 7.%1 takes one of X, Y and Z</source>
-      <translation>CYCL DEF 7.%1 lleva uno de X, Y y Z</translation>
+      <source>CALL PGM needs the name of a program</source>
+      <translation>CALL PGM necesita el nombre de un programa</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -13125,13 +14670,33 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
-      <source>It takes a tool, its axis, S, F, DL and DR.</source>
-      <translation>Lleva una herramienta, su eje, S, F, DL y DR.</translation>
+      <source>FUNCTION %1</source>
+      <translation>FUNCTION %1</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>FUNCTION MODE MILL</source>
+      <translation>FUNCTION MODE MILL</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>It takes a tool, L and R.</source>
+      <translation>Toma una herramienta, L y R.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>It takes a tool, its axis, S, F, DL, DR and DR2.</source>
+      <translation>Toma una herramienta, su eje, S, F, DL, DR y DR2.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
       <source>LBL 0 ends a subprogram; it cannot be called.</source>
       <translation>LBL 0 termina un subprograma; no se puede llamar.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>MODE MILL</source>
+      <translation>MODE MILL</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -13155,13 +14720,18 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
+      <source>No word of TOOL DEF</source>
+      <translation>No es palabra de TOOL DEF</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>No word of TRANS DATUM</source>
       <translation>No es palabra de TRANS DATUM</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
-      <source>No word of cycle 7</source>
-      <translation>No es palabra del ciclo 7</translation>
+      <source>RESET TCPM</source>
+      <translation>RESET TCPM</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -13180,8 +14750,13 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
-      <source>The formula '%1'</source>
-      <translation>La fórmula '%1'</translation>
+      <source>TRANS MIRROR needs AXIS or RESET</source>
+      <translation>TRANS MIRROR necesita AXIS o RESET</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>TRANS needs DATUM, MIRROR, ROTATION or SCALE</source>
+      <translation>TRANS necesita DATUM, MIRROR, ROTATION o SCALE</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -13190,8 +14765,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
-      <source>Write both behind it.</source>
-      <translation>Escriba los dos después.</translation>
+      <source>Write the unit behind the name.</source>
+      <translation>Escriba la unidad tras el nombre.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -13819,6 +15394,71 @@
       <translation>Escriba dos cifras.</translation>
     </message>
     <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>A jump needs a label</source>
+      <translation>Un salto necesita una etiqueta</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>DEF needs REAL, INT or BOOL</source>
+      <translation>DEF necesita REAL, INT o BOOL</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>DEF needs the name of a variable</source>
+      <translation>DEF necesita el nombre de una variable</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>FOR needs TO</source>
+      <translation>FOR necesita TO</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>FOR needs a variable and =</source>
+      <translation>FOR necesita una variable y =</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>MSG needs its text in brackets and quotes</source>
+      <translation>MSG necesita su texto entre paréntesis y comillas</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>More stands behind %1</source>
+      <translation>Hay más tras %1</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Other types are not read here.</source>
+      <translation>Otros tipos no se leen aquí.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Put it into a block of its own.</source>
+      <translation>Póngalo en un bloque propio.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Write DEF REAL NAME = 0.</source>
+      <translation>Escriba DEF REAL NAME = 0.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Write FOR R1 = 1 TO 5.</source>
+      <translation>Escriba FOR R1 = 1 TO 5.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Write MSG("TEXT").</source>
+      <translation>Escriba MSG("TEXT").</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Write the label, or N with its number.</source>
+      <translation>Escriba la etiqueta, o N con su número.</translation>
+    </message>
+    <message>
       <location filename="core/language/sinumerik/sinumerik_alarms.py" />
       <source>%1 axis %2</source>
       <translation>%1 eje %2</translation>
@@ -13845,8 +15485,8 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>%1 has no value in its brackets</source>
-      <translation>%1 no tiene valor entre sus paréntesis</translation>
+      <source>%1 has no value in its brackets: %2</source>
+      <translation>%1 no tiene valor entre sus paréntesis: %2</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
@@ -13895,8 +15535,8 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>%1= has no value</source>
-      <translation>%1= no tiene valor</translation>
+      <source>%1= has no value: %2</source>
+      <translation>%1= no tiene valor: %2</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
@@ -13930,6 +15570,16 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>R%1 is no parameter</source>
+      <translation>R%1 no es un parámetro</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>They are R0 to R%1.</source>
+      <translation>Son de R0 a R%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Write %1 with a number, or %2=…</source>
       <translation>Escriba %1 con un número, o %2=…</translation>
     </message>
@@ -13950,18 +15600,13 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>Write a number or an R parameter.</source>
-      <translation>Escriba un número o un parámetro R.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Write it at the start.</source>
       <translation>Escríbalo al principio.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>a number or an R parameter</source>
-      <translation>un número o un parámetro R</translation>
+      <source>a number or a formula</source>
+      <translation>un número o una fórmula</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
@@ -14540,6 +16185,11 @@
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
+      <source>%1, its width as %2 in</source>
+      <translation>%1, con %2 in de ancho</translation>
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
       <source>, %1 in</source>
       <translation>, %1 in</translation>
     </message>
@@ -14570,6 +16220,41 @@
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
+      <source>a boring tool</source>
+      <translation>una herramienta de mandrinar</translation>
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>a centre drill</source>
+      <translation>una broca de centrar</translation>
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>a form tool</source>
+      <translation>una herramienta de forma</translation>
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>a grooving tool</source>
+      <translation>una herramienta de ranurar</translation>
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>a parting tool</source>
+      <translation>una herramienta de tronzar</translation>
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>a threading tool</source>
+      <translation>una herramienta de roscar</translation>
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>a turning tool</source>
+      <translation>una herramienta de tornear</translation>
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
       <source>an end mill</source>
       <translation>una fresa de mango</translation>
     </message>
@@ -14582,6 +16267,11 @@
       <location filename="core/proving/assumed_tools.py" />
       <source>by its moves</source>
       <translation>por sus movimientos</translation>
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>by its shape</source>
+      <translation>por su forma</translation>
     </message>
     <message>
       <location filename="core/proving/block_delete.py" />
@@ -15250,18 +16940,23 @@
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
-      <source>%1 goes into metal, %2.</source>
-      <translation>%1 entra en el metal, %2.</translation>
+      <source>A feed as fast as a rapid goes into metal, %1.</source>
+      <translation>Un avance tan rápido como un rápido entra en el metal, %1.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
-      <source>%1 leaves a cut through the part, %2.</source>
-      <translation>%1 sale de un corte a través de la pieza, %2.</translation>
+      <source>A feed as fast as a rapid leaves a cut through the part, %1.</source>
+      <translation>Un avance tan rápido como un rápido deja un corte a través de la pieza, %1.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
-      <source>A feed as fast as a rapid</source>
-      <translation>Un avance tan rápido como un rápido</translation>
+      <source>A rapid goes into metal, %1.</source>
+      <translation>Un rápido entra en el metal, %1.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>A rapid leaves a cut through the part, %1.</source>
+      <translation>Un rápido deja un corte a través de la pieza, %1.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
