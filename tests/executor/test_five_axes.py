@@ -104,6 +104,7 @@ class Swing:
 
     length: float = 90.0
     straight: bool = False
+    in_degrees: bool = True
 
     def machine(self, share: FloatArray) -> FloatArray:
         angle = np.radians(90.0 * share)

@@ -92,6 +92,7 @@ def test_a_held_step_jog_is_one_step(story: Story) -> None:
     operator.opens("JOG")
     operator.clicks(".1", on="JogPad")
     operator.holds("Right", HELD)
+    operator.until(lambda: operator.slides[1] > 0.05 * INCH, "the step")
     x, z, *_ = operator.rests()
     assert (x, z) == (pytest.approx(0.0, abs=0.01), pytest.approx(0.1 * INCH, abs=0.01))
     operator.key("Right")

@@ -40,6 +40,13 @@ def folder_with_halrun(folder: Path) -> Path:
     return folder
 
 
+def opened_for_all(folder: Path) -> None:
+    """Whoever runs HAL can read what lies there: pytest's folders are for their owner alone."""
+    for each in (folder, *folder.parents):
+        if (each.stat().st_mode & 0o055) != 0o055:
+            each.chmod(0o755)
+
+
 def as_halrun() -> list[str]:
     """What makes a command one of the user who runs HAL."""
     if os.geteuid() != 0:

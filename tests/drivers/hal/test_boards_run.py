@@ -18,6 +18,7 @@ import pytest
 
 import resources
 from tests.drivers.hal.board_pins import PINS, without_board
+from tests.drivers.hal.halrun import opened_for_all
 from tests.drivers.hal.test_hal_files import STAND_IN
 from tests.drivers.hal.test_programs import PIECE
 
@@ -121,8 +122,7 @@ def test_a_card_that_has_let_go_and_a_drive_that_is_not_ready_are_faults(pin: st
 
 def lathe_without_board(board: str, folder: Path, on: list[str]) -> str:
     """The machine file beside its HAL file, both as shipped but for homing and the board."""
-    for each in (folder, *folder.parents[:2]):
-        each.chmod(0o755)
+    opened_for_all(folder)
     name = f"gt75-{board}"
     machine = resources.machine_file(f"{name}.toml")
     machine = re.sub(r"absolute = false\nhome = .*", "absolute = true", machine)
