@@ -11050,6 +11050,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Cycle %1 moves at pitch times speed: nothing couples the spindle to Z here.</source>
+      <translation>El ciclo %1 se mueve a paso por velocidad: aquí nada acopla el husillo a Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
       <source>Cycle %1 needs Q%2.</source>
       <translation>El ciclo %1 necesita Q%2.</translation>
     </message>
@@ -11070,6 +11075,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Use a floating holder.</source>
+      <translation>Use un portamachos flotante.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
       <source>Write a feed above zero.</source>
       <translation>Escriba un avance mayor que cero.</translation>
     </message>
@@ -11080,8 +11090,23 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
+      <source>CYCL CALL POS of cycle %1</source>
+      <translation>CYCL CALL POS del ciclo %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>CYCL CALL POS with a Z other than +0 is not built.</source>
+      <translation>CYCL CALL POS con una Z distinta de +0 no está hecho.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
       <source>CYCL DEF %1</source>
       <translation>CYCL DEF %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Cycle %1</source>
+      <translation>Ciclo %1</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
@@ -11095,13 +11120,28 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Preset %1 is not kept here.</source>
+      <translation>El preset %1 no se guarda aquí.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
       <source>Q%1 %2 is no number of places.</source>
       <translation>Q%1 %2 no es un número de lugares.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
+      <source>The workpiece's zero is that of the machine file: touch off there.</source>
+      <translation>El cero de la pieza es el del archivo de máquina: tóquelo allí.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
       <source>Write CYCL DEF before.</source>
       <translation>Escriba antes CYCL DEF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Write Z+0, and the surface into Q203.</source>
+      <translation>Escriba Z+0, y la superficie en Q203.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
@@ -11172,11 +11212,6 @@
       <location filename="core/interpreter/klartext/hole_cycles.py" />
       <source>Write the pitch of the thread.</source>
       <translation>Escriba el paso de la rosca.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
-      <source>%1 does nothing here.</source>
-      <translation>%1 no hace nada aquí.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_interpreter.py" />
@@ -11292,6 +11327,11 @@
       <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>Write the unit of the program in both.</source>
       <translation>Escriba en ambos la unidad del programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_state.py" />
+      <source>%1 does nothing here.</source>
+      <translation>%1 no hace nada aquí.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/m_functions.py" />
@@ -14650,6 +14690,16 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
+      <source>AXIS POS</source>
+      <translation>AXIS POS</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>AXIS SPAT</source>
+      <translation>AXIS SPAT</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>BLK FORM %1</source>
       <translation>BLK FORM %1</translation>
     </message>
@@ -14677,6 +14727,16 @@
       <location filename="core/language/klartext/structure_blocks.py" />
       <source>FUNCTION MODE MILL</source>
       <translation>FUNCTION MODE MILL</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>FUNCTION TCPM with AXIS SPAT or PATHCTRL VECTOR</source>
+      <translation>FUNCTION TCPM con AXIS SPAT o PATHCTRL VECTOR</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>It takes F TCP, AXIS POS, PATHCTRL AXIS.</source>
+      <translation>Toma F TCP, AXIS POS, PATHCTRL AXIS.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -14710,6 +14770,11 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
+      <source>No word of FUNCTION TCPM</source>
+      <translation>No es palabra de FUNCTION TCPM</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>No word of LBL</source>
       <translation>No es palabra de LBL</translation>
     </message>
@@ -14727,6 +14792,16 @@
       <location filename="core/language/klartext/structure_blocks.py" />
       <source>No word of TRANS DATUM</source>
       <translation>No es palabra de TRANS DATUM</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>PATHCTRL AXIS</source>
+      <translation>PATHCTRL AXIS</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>PATHCTRL VECTOR</source>
+      <translation>PATHCTRL VECTOR</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />

@@ -171,9 +171,49 @@ def test_cycle_9_rests_and_cycle_19_tilts() -> None:
     assert ran.state.at["A"] == 0.0
 
 
+DRILL = f"{COMMON}CYCL DEF 240 CENTRE ~\n Q343=+0 ~\n Q201=-1\n"
+
+
+def test_call_at_a_place_goes_over_it_before_it_goes_down() -> None:
+    """From 50 up the place is reached at 50; from below the clearance of 3 the tool goes up first."""
+    ran = ran_of(f"{DRILL}CYCL CALL POS X+30 Y+40 Z+0 F2000\nL Z-5 FMAX\nCYCL CALL POS X+0 Y+0 Z+0")
+    assert ran.codes == []
+    at = [(b.kind, b.swivel.end) for b in ran.blocks if b.moves and b.line > 4 and b.swivel is not None]
+    first, low, second = at[0], at[4], at[5:7]
+    assert first == (Kind.FEED, pytest.approx((30.0, 40.0, 50.0)))
+    assert low[1] == pytest.approx((30.0, 40.0, -5.0))
+    assert [place for _, place in second] == [pytest.approx((30, 40, 3)), pytest.approx((0, 0, 3))]
+
+
+def test_another_cycle_forgets_the_program_that_cycle_12_has_named() -> None:
+    ran = ran_of(f"CYCL DEF 12.0 PGM CALL\nCYCL DEF 12.1 PGM HOLE\n{DRILL}L X+0 FMAX M99")
+    assert ran.codes == []
+    called = ran_of("CYCL DEF 12.0 PGM CALL\nCYCL DEF 12.1 PGM HOLE\nCYCL CALL")
+    assert called.codes == ["Program not found"]
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        (cycle(207, q201=-8, q239=1.25), "tapping-uncoupled"),
+        ("CYCL DEF 247 PRESET ~\n Q339=+2", "preset"),
+    ],
+)
+def test_what_is_not_as_on_the_control_is_warned_of(text: str, code: str) -> None:
+    assert ran_of(text).warned == [code]
+
+
+@pytest.mark.parametrize("text", ["CYCL DEF 32.0 TOLERANCE", "CYCL DEF 13.0 ORIENTATION", "M97", "M120 LA5"])
+def test_what_does_nothing_is_told(text: str) -> None:
+    ran = ran_of(f"{text}\n{text}")
+    assert [each.code for each in ran.diagnostics] == ["unheeded"]
+
+
 @pytest.mark.parametrize(
     ("text", "code", "names"),
     [
+        (f"{DRILL}CYCL CALL POS X+0 Y+0 Z-2", "Input value incorrect", "Q203"),
+        ("CYCL CALL POS X+0 Y+0", "Cycle incomplete", "No machining cycle"),
         (cycle(200, q201=5), "Input value incorrect", "upwards"),
         (cycle(200, q202=2), "Cycle incomplete", "Q201"),
         (cycle(200, q201=-5, q206=0), "Input value incorrect", "Q206"),

@@ -9,7 +9,7 @@ from core.geometry.plane_arcs import HelixMove
 from core.interpreter.actions import Dwell, SpindleRun, SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.klartext.klartext_state import SLIDES, State
-from core.language.diagnostics import ProgramError
+from core.language.diagnostics import ProgramError, Severity
 from core.language.klartext.klartext_faults import CYCLE_MISSING, INPUT_VALUE
 from core.language.klartext.q_parameters import MAX_FEED, TOOL_FEED
 
@@ -79,6 +79,12 @@ class CycleTool:
         if not found:
             raise self.refuse(f"Cycle {self._number} needs the spindle to turn.", "Start it with M3 before.")
         return found
+
+    def warn_uncoupled(self) -> None:
+        """Nothing couples the spindle of a mill to its Z here: a rigid tap would break."""
+        text = f"Cycle {self._number} moves at pitch times speed: nothing couples the spindle to Z here."
+        hint = "Use a floating holder."
+        self._state.tell_once(self._column, Severity.WARNING, "tapping-uncoupled", text, hint)
 
     # --- what it does -------------------------------------------------------------------------------------
 

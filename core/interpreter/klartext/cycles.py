@@ -11,16 +11,27 @@ from collections.abc import Iterator
 from core.geometry.lines_and_arcs import Point
 from core.interpreter.actions import Dwell
 from core.interpreter.elementary_blocks import Block
+from core.interpreter.klartext import word_values
 from core.interpreter.klartext.cycle_moves import CycleTool
 from core.interpreter.klartext.hole_cycles import HOLES
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.older_cycles import OLDER
 from core.interpreter.klartext.plane_functions import plane
 from core.interpreter.klartext.q_functions import value
-from core.language.klartext.klartext_faults import CYCLE_MISSING, unsupported
-from core.language.klartext.klartext_nodes import AxisWord, Cycle, CycleLine, Plane, Positioning, Value
+from core.language.diagnostics import Severity
+from core.language.klartext.klartext_faults import CYCLE_MISSING, INPUT_VALUE, unsupported
+from core.language.klartext.klartext_nodes import (
+    AxisWord,
+    Cycle,
+    CycleCall,
+    CycleLine,
+    Plane,
+    Positioning,
+    Value,
+)
 
 _PRESET, _CIRCLE, _ROWS = 247, 220, 221
+_PRESET_NUMBER = 339  # Q339
 _DWELL, _CALL_PROGRAM, _ORIENT, _TILT, _TOLERANCE = 9, 12, 13, 19, 32
 _NO_CYCLE = frozenset({_DWELL, _CALL_PROGRAM, _ORIENT, _TILT, _TOLERANCE})
 _TRANSFORMS = frozenset({8, 10, 11})  # mirroring, rotation, scaling
@@ -46,11 +57,22 @@ class Cycles:
         for each in node.values:
             state.q[each.q] = value(state, each.formula)
         if node.number == _PRESET:
-            state.preset()
+            self._preset(node.column)
         elif node.number in {_CIRCLE, _ROWS}:
             yield from self._pattern(node)
         else:
-            self._number, self._lines = node.number, {}
+            self._begin(node.number)
+
+    def _begin(self, number: int) -> None:
+        """Another machining cycle is told: the one before is forgotten, a program of cycle 12 too."""
+        self._number, self._lines, self.program = number, {}, ""
+
+    def _preset(self, column: int) -> None:
+        """247: no table of presets is kept here, so the workpiece's zero stays that of the machine file."""
+        self._state.preset()
+        text = f"Preset {self._state.q.get(_PRESET_NUMBER, 0.0):g} is not kept here."
+        hint = "The workpiece's zero is that of the machine file: touch off there."
+        self._state.tell_once(column, Severity.WARNING, "preset", text, hint)
 
     def line(self, node: CycleLine) -> Iterator[Block]:
         """A line of an older cycle. Those that are no machining are done at once. Raises ProgramError."""
@@ -62,7 +84,7 @@ class Cycles:
             yield from self._at_once(node)
             return
         if node.part == 0:
-            self._number, self._lines = node.number, {}
+            self._begin(node.number)
         self._lines[node.part] = node
 
     def call(self, column: int) -> Iterator[Block]:
@@ -86,9 +108,35 @@ class Cycles:
             seconds = value(self._state, node.words[-1].value.formula)
             yield self._state.action(Dwell(max(seconds, 0.0)))
         elif node.number == _CALL_PROGRAM and node.part == 1:
+            self._begin(0)
             self.program = node.text.removeprefix("PGM").strip().strip('"')
         elif node.number == _TILT and node.part == 1:
             yield from plane(self._state, _tilted(node))
+        elif node.number in {_ORIENT, _TOLERANCE}:
+            self._state.unheeded(f"Cycle {node.number}", node.column)
+
+    def call_at(self, node: CycleCall) -> Iterator[Block]:
+        """CYCL CALL POS: over the place above the workpiece, whatever stands in the way below."""
+        if not self._number:
+            yield from self.call(node.column)
+        tool = self._tool(self._number, node.column)
+        if self._number not in HOLES:
+            raise unsupported(self._state.line, node.column, f"CYCL CALL POS of cycle {self._number}")
+        x, y = tool.here
+        for word in node.axes:
+            at = word_values.coordinate(self._state, word)
+            if word.axis == "Z" and (at or word.incremental):
+                text = "CYCL CALL POS with a Z other than +0 is not built."
+                hint = "Write Z+0, and the surface into Q203."
+                raise self._state.refuse(word.column, INPUT_VALUE, text, hint)
+            x = (x + at if word.incremental else at) if word.axis == "X" else x
+            y = (y + at if word.incremental else at) if word.axis == "Y" else y
+        clear = tool.length(203, 0.0) + tool.length(200)
+        if tool.height < clear:
+            yield tool.to(clear)
+        feed = None if node.feed is None else word_values.feed_word(self._state, node.feed, node.column)
+        yield tool.across((x, y), None, feed)
+        yield from self.call(node.column)
 
     # --- patterns -----------------------------------------------------------------------------------------
 

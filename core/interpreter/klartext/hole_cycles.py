@@ -147,6 +147,7 @@ def tapping_with_chip_breaking(tool: CycleTool) -> Iterator[Block]:
 
 def _pitch_feed(tool: CycleTool) -> float:
     """Feed as programmed, from pitch and speed."""
+    tool.warn_uncoupled()
     pitch = tool.plain(239)
     if pitch == 0.0:
         raise tool.refuse("Q239 is no pitch.", "Write the pitch of the thread.")

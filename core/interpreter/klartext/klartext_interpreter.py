@@ -20,7 +20,7 @@ from core.interpreter.klartext.path_functions import PathRunner
 from core.interpreter.klartext.plane_functions import plane
 from core.interpreter.klartext.tool_call import define_tool, tool_call
 from core.interpreter.modal_state import Modal
-from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.diagnostics import ProgramError
 from core.language.klartext import klartext_nodes as nodes
 from core.language.klartext.klartext_faults import FILE_MISSING
 from core.language.klartext.structure_blocks import MOST_REPEATS
@@ -179,12 +179,10 @@ class Interpreter(Interpretation):
         """M functions alone, STOP, CYCL CALL."""
         state, path = self._state, self._path
         m_functions.check(state, node.codes)
-        if isinstance(node, nodes.CycleCall) and node.axes:
-            yield from path.move(_to_place(node), machine=False, corner_behind=False)
         yield from path.between(lambda: m_functions.before(state, node.codes))
         if isinstance(node, nodes.CycleCall):
             yield from path.finish(node.column, "CYCL CALL")
-            yield from self._cycles.call(node.column)
+            yield from self._cycles.call_at(node) if node.axes else self._run_cycle(node.column)
         if isinstance(node, nodes.Stop):
             stop = ProgramStop(optional=False, message=comment)
             yield from path.between(lambda: iter((state.action(stop),)))
@@ -214,20 +212,18 @@ class Interpreter(Interpretation):
         if not wanted:
             return
         yield from self._path.finish(column, "A cycle")
-        if self._cycles.program and m_functions.M99 in numbers:
+        yield from self._run_cycle(column)
+
+    def _run_cycle(self, column: int) -> Iterator[Block]:
+        """The machining cycle where the tool stands, or the program that cycle 12 has named."""
+        if self._cycles.program:
             self._call_program(self._cycles.program, column)
-            return
-        yield from self._cycles.call(column)
+        else:
+            yield from self._cycles.call(column)
 
     def _corner_is_next(self) -> bool:
         """Whether the next block is RND or CHF, for which an element has to wait."""
         return isinstance(self._flow.next_node(), nodes.Corner)
-
-
-def _to_place(node: nodes.CycleCall) -> nodes.Move:
-    """The move of CYCL CALL POS; Z is where the cycle begins."""
-    feed = node.feed or nodes.Feed("max", None, node.column)
-    return nodes.Move(node.axes, feed=feed, column=node.column)
 
 
 def _reckon(
@@ -242,11 +238,4 @@ def _reckon(
         case nodes.ErrorMessage():
             raise q_functions.own_error(state, node)
         case nodes.Unheeded():
-            _tell_unheeded(state, node)
-
-
-def _tell_unheeded(state: State, node: nodes.Unheeded) -> None:
-    if node.what not in state.reported:
-        state.reported.add(node.what)
-        text = f"{node.what} does nothing here."
-        state.log.add(Diagnostic(state.line, node.column, Severity.NOTE, "unheeded", text, ""))
+            state.unheeded(node.what, node.column)

@@ -17,7 +17,7 @@ from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal
 from core.interpreter.units import MM_PER_INCH
 from core.interpreter.working_plane import Angles, Corners, PlaneSystem, Swivel
-from core.language.diagnostics import ProgramError
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.klartext.klartext_faults import fault
 
 ORIGIN: Vector = (0.0, 0.0, 0.0)
@@ -167,6 +167,16 @@ class State:
     def refuse(self, column: int, code: str, message: str, hint: str) -> ProgramError:
         """An error of the line that is being executed, to be raised: at this column."""
         return fault(self.line, column, code, message, hint)
+
+    def tell_once(self, column: int, severity: Severity, code: str, text: str, hint: str = "") -> None:
+        """A finding that is the same wherever it stands: told at its first place."""
+        if text not in self.reported:
+            self.reported.add(text)
+            self.log.add(Diagnostic(self.line, column, severity, code, text, hint))
+
+    def unheeded(self, what: str, column: int) -> None:
+        """Tell that something steers nothing here."""
+        self.tell_once(column, Severity.NOTE, "unheeded", f"{what} does nothing here.")
 
     # --- blocks -------------------------------------------------------------------------------------------
 

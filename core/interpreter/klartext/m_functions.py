@@ -28,11 +28,8 @@ _OF_THE_BLOCK = frozenset({M89, M91, M99, 126})  # 126, the short way of rotary 
 
 # They steer what this control does in its own way anyhow: smoothing and look-ahead (90, 112, 113, 120, 124),
 # small contour steps and open corners (97, 98), feed at arcs (109, 110, 111), messages (107, 108), the
-# display of rotary axes (94), handwheel superimposed (118), and what machine tools do of their own (134, 135,
-# 144, 145, 148).
-UNHEEDED = frozenset(
-    {90, 94, 97, 98, 107, 108, 109, 110, 111, 112, 113, 118, 120, 124, 127, 134, 135, 138, 144, 145, 148}
-)
+# display of rotary axes (94), handwheel superimposed (118), exact stops (134, 135), retract at a stop (148).
+UNHEEDED = frozenset({90, 94, 97, 98, 107, 108, 109, 110, 111, 112, 113, 118, 120, 124, 134, 135, 148})
 _TURNS = {3: 1, 4: -1, 13: 1, 14: -1}
 
 
@@ -45,6 +42,8 @@ def check(state: State, codes: Sequence[MCode]) -> None:
             raise state.refuse(code.column, NOT_WITH_M128, text, "Switch it off with M129 before.")
         if code.number not in known:
             raise unsupported(state.line, code.column, f"M{code.number}")
+        if code.number in UNHEEDED:
+            state.unheeded(f"M{code.number}", code.column)
         if sum(other.number == code.number for other in codes) > 1:
             text = f"M{code.number} stands twice in the block."
             raise syntax(state.line, code.column, text, "Take one out.")

@@ -89,6 +89,8 @@ def _tapping(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterat
     told = _Told(state, lines, column)
     rigid = next(iter(lines.values())).number == _RIGID
     clear, rpm = tool.height, tool.rpm
+    if rigid:
+        tool.warn_uncoupled()
     feed = abs(told.number(3)) * abs(rpm) if rigid else told.feed(4)
     yield tool.to(clear - told.length(1) - abs(told.length(2)), feed)
     if not rigid:

@@ -204,9 +204,16 @@ def call_program(cursor: Cursor, column: int) -> ProgramCall:
 
 
 def function(cursor: Cursor, column: int) -> TipControl | Unheeded:
-    """Behind ``FUNCTION``: TCPM on and off; MODE MILL, FEED and SPINDLE settings steer nothing here."""
+    """Behind ``FUNCTION``: TCPM on and off; MODE MILL steers nothing here.
+
+    Raises ProgramError for AXIS SPAT and PATHCTRL VECTOR, by which the same words mean other ways.
+    """
     if cursor.keyword("TCPM"):
-        cursor.rest()
+        while not cursor.done:
+            if cursor.keyword("AXIS SPAT", "PATHCTRL VECTOR"):
+                raise unsupported(cursor.line, column, "FUNCTION TCPM with AXIS SPAT or PATHCTRL VECTOR")
+            if not cursor.keyword("F TCP", "F CONT", "AXIS POS", "PATHCTRL AXIS"):
+                raise cursor.expected("No word of FUNCTION TCPM", "It takes F TCP, AXIS POS, PATHCTRL AXIS.")
         return TipControl(on=True, column=column)
     if cursor.keyword("RESET TCPM"):
         return TipControl(on=False, column=column)
