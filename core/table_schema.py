@@ -417,3 +417,19 @@ def read_named(raw: object, fields: tuple[Field, ...], path: str, values: Values
         for name, entry in raw.items()
         for found in read_table(entry, fields, joined(path, name), values)
     ]
+
+
+def read_axes_and_spindle(
+    file: FileReading, axes: tuple[str, tuple[Field, ...]], spindle: tuple[str, tuple[Field, ...]]
+) -> Iterator[Finding]:
+    """A driver's tables by axis and for the spindle, each by its path and fields; either may be left out."""
+    (path, fields), (spindle_path, spindle_fields) = axes, spindle
+    named, turns = file.raw(path), file.raw(spindle_path)
+    if isinstance(named, dict):
+        yield from unknown_keys(named, list(file.axes), path)
+        named = {name: entry for name, entry in named.items() if name in file.axes}
+    yield from read_named({} if named is None else named, fields, path, file.values)
+    if turns is None or isinstance(turns, dict):
+        yield from read_table(turns or {}, spindle_fields, spindle_path, file.values)
+    else:
+        yield expected_table(spindle_path, turns)

@@ -18,10 +18,7 @@ from core.table_schema import (
     Finding,
     Kind,
     Unit,
-    expected_table,
-    read_named,
-    read_table,
-    unknown_keys,
+    read_axes_and_spindle,
     written,
 )
 
@@ -130,15 +127,7 @@ class HalTable:
 
 
 def _read(file: FileReading) -> Iterator[Finding]:
-    axes, spindle = file.raw(_AXES), file.raw(_SPINDLE)
-    if isinstance(axes, dict):
-        yield from unknown_keys(axes, list(file.axes), _AXES)
-        axes = {name: entry for name, entry in axes.items() if name in file.axes}
-    yield from read_named({} if axes is None else axes, _AXIS, _AXES, file.values)
-    if spindle is None or isinstance(spindle, dict):
-        yield from read_table(spindle or {}, _TURNS, _SPINDLE, file.values)
-    else:
-        yield expected_table(_SPINDLE, spindle)
+    yield from read_axes_and_spindle(file, (_AXES, _AXIS), (_SPINDLE, _TURNS))
 
 
 def _table(file: FileReading) -> HalTable:

@@ -18,42 +18,53 @@ from core.table_schema import (
     Finding,
     Kind,
     Unit,
-    expected_table,
-    read_named,
-    read_table,
-    unknown_keys,
+    read_axes_and_spindle,
 )
 
 SIM, PARPORT, MESA_STEP, MESA_SERVO, ETHERCAT = "sim", "parport", "mesa-7i76e", "mesa-7i97", "ethercat"
 KINDS = (SIM, PARPORT, MESA_STEP, MESA_SERVO, ETHERCAT)
 _AXES, _SPINDLE = "board.axis", "board.spindle"
-_NS = {"low": 100, "high": 1_000_000}
-_GAIN = {"low": 0.0, "high": 100_000.0, "default": 0.0}
-_CHANNEL = {"low": 0, "high": 63, "default": -1}
 _FIELDS = (
     Field("kind", Kind.CHOICE, choices=KINDS),
     Field("address", Kind.TEXT, default=""),
     Field("base_us", Kind.WHOLE, low=10, high=500, default=50),  # period of a parallel port's steps
 )
+
+
+def _channel(key: str) -> Field:
+    """The place of something on the board; -1 where the file does not say it."""
+    return Field(key, Kind.WHOLE, low=0, high=63, default=-1)
+
+
+def _pulse(key: str, default: int) -> Field:
+    """A time of a step pulse, nanoseconds."""
+    return Field(key, Kind.WHOLE, low=100, high=1_000_000, default=default)
+
+
+def _gain(key: str) -> Field:
+    """A gain of LinuxCNC's ``pid``."""
+    return Field(key, Kind.NUMBER, low=0.0, high=100_000.0, default=0.0)
+
+
 _HEX = (Field("vendor", Kind.TEXT, default=""), Field("product", Kind.TEXT, default=""))
 _AXIS = (
-    Field("channel", Kind.WHOLE, **_CHANNEL),  # type: ignore[arg-type]
+    _channel("channel"),
     Field("reversed", Kind.FLAG, default=False),
     Field("mode", Kind.CHOICE, choices=("velocity", "position"), default="velocity"),
-    Field("step_ns", Kind.WHOLE, **_NS, default=5000),  # type: ignore[arg-type]
-    Field("space_ns", Kind.WHOLE, **_NS, default=5000),  # type: ignore[arg-type]
-    Field("setup_ns", Kind.WHOLE, **_NS, default=10000),  # type: ignore[arg-type]
-    Field("hold_ns", Kind.WHOLE, **_NS, default=10000),  # type: ignore[arg-type]
+    _pulse("step_ns", 5000),
+    _pulse("space_ns", 5000),
+    _pulse("setup_ns", 10_000),
+    _pulse("hold_ns", 10_000),
     Field("step", Kind.TEXT, default=""),
     Field("direction", Kind.TEXT, default=""),
     Field("fault_input", Kind.TEXT, default=""),
     Field("full_speed", Kind.NUMBER, Unit.FEED, 0.1, 10_000.0, default=0.0),
-    *(Field(key, Kind.NUMBER, **_GAIN) for key in ("p", "i", "d", "ff2")),  # type: ignore[arg-type]
+    *map(_gain, ("p", "i", "d", "ff2")),
     *_HEX,
 )
 _TURNS = (
-    Field("channel", Kind.WHOLE, **_CHANNEL),  # type: ignore[arg-type]
-    Field("encoder", Kind.WHOLE, **_CHANNEL),  # type: ignore[arg-type]
+    _channel("channel"),
+    _channel("encoder"),
     Field("reversed", Kind.FLAG, default=False),
     Field("full_speed", Kind.NUMBER, Unit.RPM, 1.0, 100_000.0, default=0.0),
     Field("pwm", Kind.TEXT, default=""),
@@ -126,15 +137,7 @@ class BoardTable:
 
 
 def _read(file: FileReading) -> Iterator[Finding]:
-    axes, spindle = file.raw(_AXES), file.raw(_SPINDLE)
-    if isinstance(axes, dict):
-        yield from unknown_keys(axes, list(file.axes), _AXES)
-        axes = {name: entry for name, entry in axes.items() if name in file.axes}
-    yield from read_named({} if axes is None else axes, _AXIS, _AXES, file.values)
-    if spindle is None or isinstance(spindle, dict):
-        yield from read_table(spindle or {}, _TURNS, _SPINDLE, file.values)
-    else:
-        yield expected_table(_SPINDLE, spindle)
+    yield from read_axes_and_spindle(file, (_AXES, _AXIS), (_SPINDLE, _TURNS))
 
 
 def _table(file: FileReading) -> BoardTable:
