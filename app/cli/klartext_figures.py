@@ -102,6 +102,8 @@ def _feed(block: Block) -> tuple[float | None, str | None]:
     if not block.moves or block.travel is None or block.travel.length == 0.0:
         return None, None
     unit = "deg" if block.swivels else "mm"
+    if block.per_rev:
+        return round(block.feed, 6), f"{unit}/rev"
     return round(block.feed * _PER_MINUTE, 6), f"{unit}/min"
 
 

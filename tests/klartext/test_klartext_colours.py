@@ -6,14 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.language.klartext.klartext_colours import spans
-from core.language.syntax_colours import Ink
+from core.language.klartext.klartext_colours import BLOCK_GOES_ON, COMMENT_GOES_ON, spans
+from core.language.syntax_colours import PLAIN, Ink
 
 CODE, KEY, POSITION, RUN, CALL = Ink.CODE, Ink.KEY, Ink.POSITION, Ink.RUN, Ink.CALL
 
 
 def parts(text: str) -> list[tuple[str, Ink]]:
-    return [(text[start : start + length], ink) for start, length, ink in spans(text)]
+    return [(text[start : start + length], ink) for start, length, ink in spans(text)[0]]
 
 
 @pytest.mark.parametrize(
@@ -51,7 +51,29 @@ def test_what_cannot_be_read_is_marked_last() -> None:
 
 @given(st.text(max_size=40))
 def test_any_text_keeps_inside_its_line(text: str) -> None:
-    for start, length, _ in spans(text):
+    for start, length, _ in spans(text)[0]:
         assert start >= 0
         assert length >= 1
         assert start + length <= max(len(text), 1)
+
+
+def test_a_block_of_several_lines_is_one_block() -> None:
+    """Neither half of a PLANE is a fault, nor a number that begins a line of it the number of a block."""
+    first, state = spans("6 PLANE SPATIAL SPA+45 ~")
+    assert Ink.FAULT not in {ink for _, _, ink in first}
+    assert state == BLOCK_GOES_ON
+    second, state = spans("  SPB+0 SPC+90 ; turned ~", state)
+    assert [ink for _, _, ink in second] == [POSITION, POSITION, Ink.COMMENT]
+    assert state == BLOCK_GOES_ON
+    last, state = spans("  TURN FMAX", state)
+    assert [ink for _, _, ink in last] == [KEY, RUN]
+    assert state == PLAIN
+    assert Ink.FAULT in {ink for _, _, ink in spans("  SPB+0 SPC+90", PLAIN)[0]}
+
+
+def test_a_comment_that_goes_on_is_all_comment() -> None:
+    _, state = spans("4 ; A long comment ~")
+    assert state == COMMENT_GOES_ON
+    assert spans(" L X+5 is text here ~", state) == ([(0, 21, Ink.COMMENT)], COMMENT_GOES_ON)
+    assert spans(" the end", state) == ([(0, 8, Ink.COMMENT)], PLAIN)
+    assert spans("5 CYCL DEF 200 DRILLING ; a hole ~")[1] == BLOCK_GOES_ON

@@ -155,7 +155,7 @@ def test_run_waits_for_a_tool_nobody_measured(turndesk: Turndesk, written: Path,
 
 
 def test_a_lathe_runs_no_klartext_and_a_mill_no_omniturn(turndesk: Turndesk, written: Path) -> None:
-    told = turndesk("prove", written)
+    told = turndesk("prove", written, "--machine", "gt75")
     assert told.status == 1
     assert "ac-table-mill" in told.out
     other = written.with_suffix(".nc")

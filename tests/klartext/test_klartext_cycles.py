@@ -6,9 +6,12 @@ import math
 
 import pytest
 
+from core.geometry.rotary_axes import DatumPreset
 from core.interpreter.actions import Dwell, SpindleRun, SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.job_setup import MillTool, ToolOffset
 from tests.klartext.running import Ran, run
+from tests.klartext.table import ORIGIN
 
 TOOL = "TOOL DEF 5 L+0 R+4\nTOOL CALL 5 Z S1000 F500\n"
 HERE = "L X+10 Y+20 Z+50 R0 FMAX M3\n"
@@ -88,8 +91,36 @@ def test_deep_drilling_stops_before_the_chips() -> None:
 def test_tapping_turns_the_spindle_round() -> None:
     assert told(cycle(206, q201=-8)) == ["turn 1000", "R 3", "F -7", "turn -1000", "F 3", "turn 1000", "R 31"]
     ran = ran_of(cycle(207, q201=-8, q239=1.25))
-    feeds = {round(block.feed * 60.0, 6) for block in ran.blocks if block.kind is Kind.FEED}
-    assert feeds == {1250.0}
+    taps = [block for block in ran.blocks if block.kind is Kind.FEED]
+    assert {(block.feed, block.per_rev, block.coupled) for block in taps} == {(1.25, True, True)}
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "lead"),
+    [
+        (cycle(206, q201=-8, q206=1500), "MM", 1.5),  # F1500 at S1000
+        (cycle(207, q201=-8, q239=-0.05), "INCH", 1.27),
+        (cycle(209, q201=-8, q239=2, q257=5), "MM", 2.0),
+        ("CYCL DEF 2.0 T\nCYCL DEF 2.1 SET UP2\nCYCL DEF 2.2 DEPTH-8\nCYCL DEF 2.3 DWELL0\n"
+         "CYCL DEF 2.4 F800\nL Z+2 FMAX M99", "MM", 0.8),
+        ("CYCL DEF 17.0 T\nCYCL DEF 17.1 SET UP2\nCYCL DEF 17.2 DEPTH-8\nCYCL DEF 17.3 PITCH+1.75\n"
+         "L Z+2 FMAX M99", "MM", 1.75),
+    ],
+)  # fmt: skip
+def test_a_tap_goes_by_its_lead_and_the_spindle(text: str, unit: str, lead: float) -> None:
+    ran = run("L X+0 Y+0 Z+50 R0 FMAX M3\n" + text, unit=unit, tool="TOOL CALL 1 Z S1000 F500\n")
+    assert ran.codes == []
+    taps = [block for block in ran.blocks if block.coupled]
+    assert len(taps) >= 2
+    assert {block.kind for block in taps} == {Kind.FEED}
+    assert [block.feed for block in taps] == pytest.approx([lead] * len(taps))
+
+
+def test_a_lead_faster_than_z_is_refused() -> None:
+    """A plan that held Z back would break the tap: 30 mm at S1000 are 500 mm/s."""
+    ran = ran_of(cycle(207, q201=-8, q239=30))
+    assert ran.codes == ["Input value incorrect"]
+    assert "faster than Z" in ran.errors[0].message
 
 
 def test_tapping_with_chip_breaking() -> None:
@@ -219,17 +250,163 @@ def test_what_does_nothing_is_told(text: str) -> None:
         (cycle(200, q201=-5, q206=0), "Input value incorrect", "Q206"),
         (cycle(207, q201=-5, q239=0), "Input value incorrect", "pitch"),
         (cycle(208, q201=-5, q334=1, q335=6), "Input value incorrect", "hole"),
-        (cycle(240, q343=1, q201=-1), "Input value incorrect", "point"),
+        (cycle(240, q343=1, q344=-4), "Input value incorrect", "point"),
         (cycle(200, q201=-1000, q202=0.01), "Input value incorrect", "too many"),
         ("CYCL DEF 220 POLAR", "Cycle incomplete", "before it"),
-        ("CYCL DEF 14.0 CONTOUR", "Not supported", "CYCL DEF 14"),
+        (f"{DRILL}CYCL CALL PAT", "Cycle incomplete", "PATTERN DEF"),
+        ("PATTERN DEF POS1 (X+1 Y+1)\nCYCL CALL PAT", "Cycle incomplete", "CYCL DEF"),
+        ("PATTERN DEF", "Syntax error", "no points"),
+        ("PATTERN DEF POS1 (X+1)", "Syntax error", "POS needs Y"),
+        ("PATTERN DEF POS1 (X+1 Y+1", "Syntax error", "No word of POS"),
+        ("PATTERN DEF POS1 (X+1 X+2 Y+1)", "Syntax error", "X stands twice"),
+        ("PATTERN DEF STAR1 (X+1 Y+2)", "Syntax error", "POS1"),
+        ("PATTERN DEF ROW1 (X+1 Y+2 D+1 NUM0)", "Input value incorrect", "0 points"),
+        ("PATTERN DEF ROW1 (X+1 Y+2 D+1 NUM2.5)", "Input value incorrect", "2.5 points"),
+        (cycle(241, q201=-5, q253=9, q426=7), "Input value incorrect", "Q426"),
+        (cycle(241, q201=-5, q253=9, q429=7), "Input value incorrect", "M7"),
+        ("CYCL DEF 30.0 3D DATA", "Not supported", "CYCL DEF 30"),
         ("CYCL DEF", "Syntax error", "number of a cycle"),
         ("CYCL DEF 1.0 PECKING\nL Z+2 FMAX M99", "Cycle incomplete", "1."),
         ("L Z+2 FMAX M99", "Cycle incomplete", "No machining cycle"),
-        ("M5\n" + cycle(206, q201=-5).replace(" M3", ""), "Input value incorrect", "spindle"),
+        ("M5\n" + cycle(206, q201=-5).replace(" M3", ""), "Wrong rpm", "spindle"),
     ],
 )
 def test_refused(text: str, code: str, names: str) -> None:
     ran = ran_of(text)
     assert ran.codes[:1] == [code]
     assert names in ran.errors[0].message + ran.errors[0].hint
+
+
+def test_single_lip_drilling_enters_slowly() -> None:
+    """Surface 1, start 5 below: at 50 rpm to 2 above it, coolant, 800 rpm to the bottom, out at 50 rpm."""
+    speeds = {"q426": 4, "q427": 50, "q428": 800, "q429": 8, "q430": 9}
+    assert told(cycle(241, q201=-11, q379=5, q253=750, q208=400, **speeds)) == [
+        "turn 1000", "R 3", "turn -50", "F -2", "turn -800", "other", "F -10", "other",
+        "turn -50", "F 3", "R 31", "turn 1000",
+    ]  # fmt: skip
+
+
+# --- patterns of points ----------------------------------------------------------------------------------
+
+CENTRE = "CYCL DEF 240 C ~\n Q343=+0 ~\n Q201=-1 ~\n Q200=2 ~\n Q206=100 ~\n Q203=+1 ~\n Q204=30"
+
+
+def bottoms(pattern: str) -> list[tuple[float, ...]]:
+    """Where the holes of CYCL CALL PAT end."""
+    ran = ran_of(f"{CENTRE}\nPATTERN DEF {pattern}\nCYCL CALL PAT FMAX M8")
+    assert ran.codes == []
+    feeds = [block.swivel.end for block in ran.blocks if block.kind is Kind.FEED and block.swivel]
+    return [tuple(round(at, 4) + 0.0 for at in end) for end in feeds]
+
+
+@pytest.mark.parametrize(
+    ("pattern", "wanted"),
+    [
+        ("POS1 (X+25 Y+33.5 Z+0) ~\n POS2 (X+50 Y+75 Z-2)", [(25, 33.5, 0), (50, 75, -2)]),
+        ("ROW1 (X+10 Y+20 D+8 NUM3 ROT+90 Z+0)", [(10, 20, 0), (10, 28, 0), (10, 36, 0)]),
+        (
+            "PAT1 (X+0 Y+0 DX+10 DY+5 NUMX3 NUMY2 ROT+0 ROTX+0 ROTY+0 Z+0)",
+            [(0, 0, 0), (10, 0, 0), (20, 0, 0), (20, 5, 0), (10, 5, 0), (0, 5, 0)],
+        ),
+        (
+            "FRAME1 (X+0 Y+0 DX+10 DY+5 NUMX3 NUMY3 ROT+90)",
+            [
+                (0, 0, 0),
+                (0, 10, 0),
+                (0, 20, 0),
+                (-5, 20, 0),
+                (-5, 0, 0),
+                (-10, 0, 0),
+                (-10, 10, 0),
+                (-10, 20, 0),
+            ],
+        ),
+        ("CIRC1 (X+10 Y+0 D+20 START+90 NUM4 Z+0)", [(10, 10, 0), (0, 0, 0), (10, -10, 0), (20, 0, 0)]),
+        ("PITCHCIRC1 (X+0 Y+0 D+20 START+0 STEP+30 NUM2 Z+0)", [(10, 0, 0), (8.6603, 5, 0)]),
+    ],
+)
+def test_points_of_a_pattern(pattern: str, wanted: list[tuple[float, ...]]) -> None:
+    assert bottoms(pattern) == wanted
+
+
+def test_between_points_the_tool_is_at_the_safe_height_and_q203_is_as_before() -> None:
+    ran = ran_of(f"{CENTRE}\nPATTERN DEF POS1 (X+0 Y+0 Z-5) POS2 (X+9 Y+0 Z+0)\nCYCL CALL PAT FMAX")
+    aside = [block for block in ran.blocks if block.swivel and block.swivel.start[:2] != block.swivel.end[:2]]
+    assert [block.swivel.end[2] for block in aside if block.swivel] == pytest.approx([50.0, 50.0, 31.0])
+    assert ran.state.q[203] == pytest.approx(1.0)
+
+
+# --- presets, tools of the table -------------------------------------------------------------------------
+
+PRESETS = {0: DatumPreset(ORIGIN), 3: DatumPreset((100.0, 50.0, -300.0), 90.0)}
+SET = "CYCL DEF 247 DATUM SETTING ~\n  Q339={} ;DATUM NUMBER\n"
+
+
+def test_a_preset_of_the_table_moves_and_turns_the_workpiece() -> None:
+    """Turned by 90 degrees, X+10 Y+2 of the workpiece are 2 back along X and 10 along Y of the machine."""
+    ran = run(f"{SET.format('+3')}L X+10 Y+2 Z+5 FMAX", presets=PRESETS)
+    assert ran.codes == []
+    assert ran.warned == []
+    assert [ran.axes(ran.blocks[-2])[name] for name in "XYZ"] == pytest.approx([98.0, 60.0, -295.0])
+
+
+def test_a_preset_ends_the_datum_shift_and_zero_leads_back() -> None:
+    ran = run(
+        f"{SET.format('+3')}TRANS DATUM AXIS X+7\n{SET.format('+0')}L X+0 Y+0 Z+0 FMAX", presets=PRESETS
+    )
+    assert [ran.axes(ran.blocks[-2])[name] for name in "XYZ"] == pytest.approx(list(ORIGIN))
+
+
+def test_a_plane_counts_in_the_preset_that_is_in_force() -> None:
+    """SPA+45 of a workpiece turned by 90 degrees: the table turns by C 90 first."""
+    plane = "PLANE SPATIAL SPA+45 SPB+0 SPC+0 STAY SYM+"
+    ran = run(f"{SET.format('+3')}{plane}", presets=PRESETS)
+    assert (ran.state.q[120], ran.state.q[122]) == pytest.approx((45.0, 90.0))
+
+
+def test_a_part_clamped_turned_on_its_table_runs_as_before_and_c_goes_on_from_there() -> None:
+    """C carries the part: with its zero at 30 all slides go where they went, and C 30 further."""
+    text = (
+        "L X+10 Y+2 Z+5 C+15 FMAX\nPLANE SPATIAL SPA+20 SPB+10 SPC+5 MOVE FMAX\nL X+3 Y+4 Z+5 FMAX\n"
+        "L A+0 C+0 FMAX\nPLANE RESET TURN FMAX\nPLANE AXIAL A+10 C+50 TURN FMAX\nL X+1 Y+1 Z+1 FMAX\n"
+        "L Z-5 C+10 FMAX M91\nL IC-20 FMAX"
+    )
+    spot = DatumPreset((100.0, 50.0, -300.0), 12.0)
+    for zero in (30.0, -75.0):
+        turned = DatumPreset(spot.origin, spot.rotation, (("C", zero),))
+        plain, other = (run(SET.format("+3") + text, presets={0: spot, 3: each}) for each in (spot, turned))
+        assert plain.codes == other.codes == []
+        assert [other.state.q[q] for q in (120, 122)] == pytest.approx([plain.state.q[q] for q in (120, 122)])
+        for one, two in zip(plain.blocks, other.blocks, strict=True):
+            a, b = plain.axes(one), other.axes(two)
+            assert [b[name] for name in "XYZA"] == pytest.approx([a[name] for name in "XYZA"], abs=1e-9)
+            if one.line and one.text.endswith("M91"):
+                assert b["C"] == pytest.approx(10.0)
+                break
+            if one.line > 4:
+                assert math.remainder(b["C"] - a["C"] - zero, 360.0) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_preset_that_is_not_in_the_table_is_refused() -> None:
+    ran = run(SET.format("+4"), presets=PRESETS)
+    assert ran.codes == ["Input value incorrect"]
+    assert "Preset 4" in ran.errors[0].message
+    turned = run(f"PLANE SPATIAL SPA+45 SPB+0 SPC+0 STAY\n{SET.format('+3')}", presets=PRESETS)
+    assert turned.codes == ["Contradictory entry"]
+
+
+def test_a_tool_is_called_by_its_name_in_the_table() -> None:
+    around = {"tools": {7: ToolOffset(z=80.0)}, "tool_names": {"MILL_D10": 7}}
+    ran = run('TOOL CALL "Mill_D10" Z S1000\nL X+0 Y+0 Z+0 FMAX', tool="", **around)
+    assert ran.codes == []
+    assert ran.state.modal.tool == 7
+    assert ran.axes(ran.blocks[-2])["Z"] == pytest.approx(ORIGIN[2] + 80.0)
+    assert run('TOOL CALL "MILL_D12" Z S1000', tool="", **around).codes == ["Tool not defined"]
+
+
+def test_centring_by_diameter_with_the_point_of_the_table() -> None:
+    """A point of 90 degrees makes 8 mm at a depth of 4."""
+    q = "CYCL DEF 240 C ~\n Q200=2 ~\n Q343=+1 ~\n Q201=-1 ~\n Q344=-8 ~\n Q206=100 ~\n Q203=+1 ~\n Q204=9"
+    ran = run(f"L Z+50 R0 FMAX M3\n{q}\nCYCL CALL", mill_tools={1: MillTool(point=90.0)})
+    assert min(block.swivel.end[2] for block in ran.blocks if block.swivel) == pytest.approx(-3.0)
+    assert run(f"L Z+50 R0 FMAX M3\n{q}\nCYCL CALL").codes == ["Input value incorrect"]

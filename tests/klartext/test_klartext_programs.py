@@ -15,11 +15,15 @@ from core.interpreter.actions import (
     ToolChange,
 )
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.job_setup import ControlLimits, Setup, ToolOffset
+from core.interpreter.klartext.klartext_interpreter import Interpreter
+from core.interpreter.klartext.klartext_program import read_program
 from core.language.klartext import read_line
 from core.language.klartext.canonical_text import written
+from core.language.source import Source
 from tests.klartext.chamfers import AXIAL, POINTS, SYM_MINUS
-from tests.klartext.running import Ran, run, run_file
+from tests.klartext.running import HOME, Ran, run, run_file, whole
+from tests.klartext.table import AC
 from tests.klartext.test_plane_frames import STANDS
 
 
@@ -226,6 +230,12 @@ def test_rotary_moves_take_the_short_way_and_incremental_ones_what_is_written() 
     assert [ran.axes(block)["C"] for block in ran.blocks if block.moves] == [-90.0, 360.0, 360.0]
 
 
+def test_with_m127_rotary_axes_go_by_the_figures() -> None:
+    """From 350 to 10: +20 the short way, -340 by the figures; from 370, which is shown as 10, to 350 +340."""
+    ran = run("L C+350 FMAX\nM127\nL C+10 FMAX\nM126\nL C+350 FMAX")
+    assert [ran.axes(block)["C"] for block in ran.blocks if block.moves] == [-10.0, -350.0, -370.0]
+
+
 def test_the_feed_of_rotary_axes_alone_is_degrees_a_minute() -> None:
     ran = run("M3\nL A+30 C+40 F600")
     block = ran.blocks[-2]
@@ -259,6 +269,7 @@ def test_points_and_datum_in_inches() -> None:
     [
         ("X+4 Y+2 Z+0", "MM", ((0.0, 0.0, -1.0), (4.0, 2.0, 0.0))),
         ("X+4 Y+2 Z+0", "INCH", ((0.0, 0.0, -25.4), (101.6, 50.8, 0.0))),
+        ("IX+4 IY+2 IZ+1", "MM", ((0.0, 0.0, -1.0), (4.0, 2.0, 0.0))),
         ("X+4 Y+2 Z-1", "MM", None),  # no height
         ("X+Q1 Y+2 Z+0", "MM", None),
     ],
@@ -273,3 +284,23 @@ def test_the_blank_is_known_where_it_is_given_in_numbers(
     else:
         assert ran.state.blank is not None
         assert np.allclose(ran.state.blank, corners)
+
+
+def test_a_cylinder_is_drawn_by_the_block_around_it() -> None:
+    blank = run("BLK FORM CYLINDER Z D100 L80 DIST+5 RI10").state.blank
+    assert blank is not None
+    assert np.allclose(blank, ((-50.0, -50.0, -75.0), (50.0, 50.0, 5.0)))
+    lying = run("BLK FORM CYLINDER X R1 L2", unit="INCH").state.blank
+    assert lying is not None
+    assert np.allclose(lying, ((-50.8, -25.4, -25.4), (0.0, 25.4, 25.4)))
+
+
+def test_a_tool_that_the_program_measures_is_one_of_its_tools() -> None:
+    """TOOL DEF tells length and radius, the tool table none: it is used all the same, and not missing."""
+    text = whole("TOOL DEF 7 L+0 R+4\nTOOL CALL 7 Z S100 DR2:+0.05\nTOOL CALL 1 Z")
+    program = read_program(Source("T.H", text))
+    setup = Setup(kinematics=AC, start=HOME, limits=ControlLimits(max_rpm=12000.0), tools={1: ToolOffset()})
+    interpreter = Interpreter(program, setup, AC)
+    list(interpreter.blocks())
+    assert (interpreter.used_tools, interpreter.missing_tools) == ([7, 1], [])
+    assert interpreter.diagnostics == []

@@ -84,9 +84,21 @@ def points(*third: object) -> str:
         ("L X+10 FMAX M3 M8 M5 M9 M30", SYNTAX, "more than 4"),
         ("L X+10 FMAX M3 M3", SYNTAX, "M3 stands twice"),
         ("L X+10 FMAX M89", MISSING, "No machining cycle"),
-        ("L X+10 FMAX M92", UNSUPPORTED, "M92"),
+        ("L X+10 FMAX M92", "M function not defined", "M92"),
+        ("M7", "M function not defined", "M7"),
+        ("M104", UNSUPPORTED, "M104"),
+        ("TOOL CALL 5.1 Z S100", UNSUPPORTED, "5.1"),
+        ("TOOL DEF 5.1", UNSUPPORTED, "5.1"),
+        ("TCH PROBE 412 DATUM INSIDE CIRCLE ~\nQ321=+0", "No touch probe", "TCH PROBE 412"),
+        ("TCH PROBE 0.0 REF. PLANE Q5 X-", "No touch probe", "TCH PROBE 0.0"),
+        ("CYCL DEF 392 ATC ~\n Q240=0", "Cycle not defined", "392"),
+        ("TOOL CALL Q5 Z S100", "Q parameter not defined", "Q5"),
+        ("BLK FORM CYLINDER Z R50", SYNTAX, "and L"),
+        ("BLK FORM CYLINDER Z R50 R40 L10", SYNTAX, "R stands twice"),
+        ("BLK FORM CYLINDER Z R50 L10 HIGH", SYNTAX, "HIGH"),
         ("LP PR+10 PA+0 FMAX", "CC missing", "CC"),
-        ("CYCL DEF 251 POCKET", UNSUPPORTED, "CYCL DEF 251"),
+        ("CYCL DEF 275 TROCHOIDAL", UNSUPPORTED, "CYCL DEF 275"),
+        ("CYCL DEF 251 POCKET\nCYCL CALL", MISSING, "Q218"),
         ("CYCL CALL", MISSING, "No machining cycle"),
         ("CYCL DEF 200 DRILLING\nCYCL CALL", MISSING, "Q201"),
         ("CALL PGM TNC:\\X.H", "Program not found", "X.H"),
@@ -106,7 +118,6 @@ def points(*third: object) -> str:
         ("TOOL CALL 2 Z S20000", "Wrong rpm", "S20000"),
         ("TOOL CALL 0 Z S0\nM3", "Wrong rpm", "M3"),
         ("TRANS DATUM X+10", SYNTAX, "AXIS or RESET"),
-        ("TRANS DATUM TABLE TABLINE5", UNSUPPORTED, "TRANS DATUM TABLE"),
         ("CALL LBL 7", "Label not found", "LBL 7"),
         ("LBL 3\nCALL LBL 3\nLBL 0", "Excessive nesting", "LBL 3"),
         ("LBL 3\nM8\nCALL LBL 3", SYNTAX, "no LBL 0"),
@@ -128,12 +139,13 @@ def points(*third: object) -> str:
         ("RND R5", "Rounding not possible", "before it"),
         ("L X+10 FMAX\nRND R5", "Rounding not possible", "behind it"),
         ("L X+10 FMAX\nRND R5\nL Z+5 FMAX", "Rounding not possible", "behind it"),
+        ("L X+10 RR F99\nL Y+60\nRND R2\nL X+30 R0", "Rounding not possible", "behind it"),
+        ("L X+10 RR F99\nL Y+60\nCHF 2\nDEP LT LEN10", "Rounding not possible", "behind it"),
         ("L X+0 Y+0 FMAX\nL X+10 FMAX\nRND R20\nL Y+10 FMAX", "Rounding not possible", "too short"),
         ("L X+0 Y+0 FMAX\nL X+10 FMAX\nCHF 20\nL Y+10 FMAX", "Rounding not possible", "too short"),
         ("FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS", UNSUPPORTED, "AXIS SPAT"),
         ("FUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR", UNSUPPORTED, "VECTOR"),
         ("FUNCTION TCPM FOO", SYNTAX, "FOO"),
-        ("M127", UNSUPPORTED, "M127"),
         ("M138", UNSUPPORTED, "M138"),
         ("M144", UNSUPPORTED, "M144"),
         ("TRANS SCALE SCL0", INPUT, "factor"),
@@ -161,13 +173,20 @@ def test_refused(block: str, code: str, names: str) -> None:
         "PLANE SPATIAL SPA+359.9999 SPB+0 SPC+0 TURN FMAX",
         "M128\nM129\nPLANE AXIAL A+45 TURN FMAX",
         "M126",
+        "M127",
+        "CYCLE DEF 9.0 DWELL TIME\nCYCLE DEF 9.1 5",
+        "CYCL DEF9 .0 DWELL\nCYCL DEF9.1 DWELL5",
+        ";A comment that is longer ~\n than a line holds ~\n and goes on",
+        "Q5 = 1\nTOOL CALL Q5 Z S100",
+        "BLK FORM ROTATION Z DIM_R LBL1",
     ],
 )
 def test_accepted(block: str) -> None:
     assert run(block).codes == []
 
 
-def test_a_plane_needs_a_tool_axis() -> None:
+def test_a_plane_needs_a_tool_axis_and_its_end_none() -> None:
+    assert run("M129\nM140 MB MAX\nPLANE RESET STAY\nCYCL DEF 19.0 PLANE\nCYCL DEF 19.1", tool="").codes == []
     assert run("PLANE AXIAL A+45 TURN FMAX", tool="").codes == ["Tool axis is missing"]
     assert run("PLANE AXIAL A+45 TURN FMAX", tool="TOOL CALL 1 S100\n").codes == ["Tool axis is missing"]
 
@@ -244,3 +263,13 @@ def test_the_same_words_in_lower_case_with_commas() -> None:
     ran = run_file(whole(TOOL + "l x+1,5 r0 fmax").lower())
     assert not ran.errors
     assert ran.state.at["X"] == pytest.approx(231.5)
+
+
+@pytest.mark.parametrize(
+    "first", ["%PART G71 *", "% 12 G70 *", "N10 G30 G17 X+0 Y+0 Z-40 *", "N5 T1 G17 S500 *"]
+)
+def test_a_program_in_din_iso_is_told_once(first: str) -> None:
+    ran = run_file(f"\n{first}\nN20 G31 X+100 Y+100 Z+0 *\nN30 G00 Z+50 *\nN99 %PART G71 *\n")
+    assert [(error.line, error.code) for error in ran.errors] == [(2, UNSUPPORTED)]
+    assert "DIN/ISO" in ran.errors[0].message
+    assert not ran.blocks

@@ -79,6 +79,12 @@ def test_a_helix_of_three_turns_and_a_half() -> None:
     assert sum(arc.length for arc in arcs) == pytest.approx(math.hypot(70 * math.pi, 7.0))
 
 
+def test_an_arc_without_dr_turns_as_the_one_before() -> None:
+    first, second = ways("CC X+10 Y+0\nC X+20 Y+0 DR- F100\nCC X+30 Y+0\nC X+40 Y+0")
+    assert on_the_way(first, 3)[1][:2] == pytest.approx((10.0, 10.0))
+    assert on_the_way(second, 3)[1][:2] == pytest.approx((30.0, 10.0))
+
+
 def test_a_tangential_arc_goes_on_in_the_direction_before() -> None:
     """Along +X, then to (20, 10): the centre lies above (10, 0) and is as far from both: R 10."""
     line, arc = ways("L X+10 F100\nCT X+20 Y+10")

@@ -7,6 +7,8 @@ import dataclasses
 import numpy as np
 import pytest
 
+from app.compose.kinematics_chain import kinematics_of
+from app.compose.machine_files import shipped_machine
 from app.desk.machine_status import status_of
 from app.desk.readouts import Readout, lamps_of
 from app.path.path_picture import picture_of
@@ -196,6 +198,40 @@ def test_everything_that_stands_on_the_table_is_in_the_picture(chamfers: tuple[S
             if face.role.startswith(("table", "blank")):
                 assert (face.points >= -20.0).all()
                 assert (face.points <= (WIDE + 20.0, HIGH + 20.0)).all()
+
+
+def test_a_small_blank_at_the_far_rim_stands_on_the_table() -> None:
+    """Its own middle lies behind the middle of the table, and is drawn upon it all the same."""
+    small = (
+        "BEGIN PGM S MM\nBLK FORM 0.1 Z X+0 Y+0 Z-10\nBLK FORM 0.2 X+40 Y+40 Z+0\n"
+        "TOOL CALL 1 Z S900\nL X+0 Y+0 Z+5 R0 FMAX\nEND PGM S MM\n"
+    )
+    scene, _blocks = scene_of(small)
+    roles = [face.role for face in drawn(scene, at_line(scene, 5))[0].faces]
+    assert roles[0] == "table"
+    assert {"blank", "blank-top"} <= set(roles[1:])
+
+
+def test_a_head_that_leans_leaves_the_workpiece_where_it_is(chamfers: tuple[Scene, list[Block]]) -> None:
+    head = shipped_machine("head-table-mill")
+    chain = kinematics_of(head)
+    scene = dataclasses.replace(chamfers[0], kinematics=chain)
+    upright, leaning = (
+        drawn(scene, Instant({"X": 500.0, "Y": 300.0, "Z": -400.0, "B": b, "C": 0.0}, None))[0]
+        for b in (0.0, 35.0)
+    )
+
+    def shapes(figure: Figure, *roles: str) -> list[list[list[float]]]:
+        return [face.points.tolist() for face in figure.faces if face.role in roles]
+
+    assert shapes(upright, "table", "blank", "blank-top") == shapes(leaning, "table", "blank", "blank-top")
+    assert shapes(upright, "tool") != shapes(leaning, "tool")
+    lines = [
+        [each.points.tolist() for each in figure.strokes if each.role == "axis"]
+        for figure in (upright, leaning)
+    ]
+    assert len(lines[0]) == 1
+    assert lines[0] == lines[1]  # C, the line of the table
 
 
 def test_looking_around(chamfers: tuple[Scene, list[Block]]) -> None:

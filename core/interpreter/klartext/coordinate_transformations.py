@@ -10,15 +10,18 @@ from dataclasses import replace
 
 from core.geometry.rotation_frames import Vector
 from core.interpreter.klartext import word_values
-from core.interpreter.klartext.klartext_state import ORIGIN, SLIDES, State
-from core.language.klartext.klartext_faults import INPUT_VALUE, WRONG_AXIS
-from core.language.klartext.klartext_nodes import Datum, Transform
+from core.interpreter.klartext.klartext_state import ORIGIN, ROTARY, SLIDES, State
+from core.language.klartext.klartext_faults import INPUT_VALUE, NO_TABLE, WRONG_AXIS
+from core.language.klartext.klartext_nodes import AxisWord, Datum, Transform, Value
 
 MOST_FACTOR = 99.999999
+MOST_ROW = 999_999.0
 
 
 def datum(state: State, node: Datum) -> None:
     """TRANS DATUM and cycle 7: in the workpiece's system, within the plane while one is in force."""
+    if node.row is not None:
+        node = Datum(_of_the_table(state, node.row, node.column))
     if node.reset:
         state.datum = state.shift = ORIGIN
     elif node.axes:
@@ -35,6 +38,23 @@ def datum(state: State, node: Datum) -> None:
         else:
             state.datum = made
     state.derive()
+
+
+def _of_the_table(state: State, row: Value, column: int) -> tuple[AxisWord, ...]:
+    """The axes of a row of the datum table. Raises ProgramError where there is none, or no such row."""
+    if state.datum_table is None:
+        text = "No datum table is selected."
+        raise state.refuse(column, NO_TABLE, text, "Write SEL TABLE with the file before.")
+    number = int(word_values.number(state, row, "#", MOST_ROW, 0.0))
+    found = state.datum_table.get(number)
+    if found is None:
+        text = f"The datum table has no row {number}."
+        raise state.refuse(column, NO_TABLE, text, "Correct the number, or write the row.")
+    told = ((axis, found[axis]) for axis in (*SLIDES, *ROTARY) if axis in found)
+    return tuple(
+        AxisWord(axis, Value(value / (state.scale if axis in SLIDES else 1.0)), column=column)
+        for axis, value in told
+    )
 
 
 def _demand_no_turn(state: State, axis: str, value: float, column: int) -> None:

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 from core.geometry.lines_and_arcs import Arc, Point
 from core.geometry.plane_arcs import HelixMove
-from core.interpreter.actions import Dwell, SpindleRun, SpindleStop
+from core.interpreter.actions import Coolant, Dwell, SpindleRun, SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.klartext.feed_rates import per_minute
 from core.interpreter.klartext.klartext_state import SLIDES, State
+from core.interpreter.klartext.tool_call import radius_of
 from core.language.diagnostics import ProgramError, Severity
-from core.language.klartext.klartext_faults import CYCLE_MISSING, INPUT_VALUE
+from core.language.klartext.klartext_faults import CYCLE_MISSING, INPUT_VALUE, WRONG_RPM
 from core.language.klartext.q_parameters import MAX_FEED, TOOL_FEED
+
+Parameters = Mapping[int, int | float | None]
+"""Numbers of Q parameters: that of another cycle as an int, a value of its own as a float."""
 
 
 class CycleTool:
@@ -25,6 +31,31 @@ class CycleTool:
         self._number = number
         self._value = value
         self._column = column
+        self._told_as: Parameters = {}
+
+    def seen(self, parameters: Parameters) -> CycleTool:
+        """The same tool as another cycle sees it, whose parameters are others of this one, or fixed values.
+
+        Lengths among the values are in the program's unit. What is not named has not been told.
+        """
+
+        def value(q: int) -> float | None:
+            found = parameters.get(q)
+            return self._value(found) if isinstance(found, int) else found
+
+        other = CycleTool(self._state, self._number, value, self._column)
+        other._told_as = parameters
+        return other
+
+    def named(self, q: int) -> str:
+        """A parameter as the program has it."""
+        found = self._told_as.get(q, q)
+        return f"Q{found if isinstance(found, int) else q}"
+
+    @property
+    def scale(self) -> float:
+        """Millimetres of the program's unit."""
+        return self._state.scale
 
     # --- what the cycle was told --------------------------------------------------------------------------
 
@@ -34,7 +65,7 @@ class CycleTool:
         if found is None:
             found = default
         if found is None:
-            text = f"Cycle {self._number} needs Q{q}."
+            text = f"Cycle {self._number} needs {self.named(q)}."
             raise self._state.refuse(self._column, CYCLE_MISSING, text, "Write it behind CYCL DEF.")
         return found
 
@@ -46,11 +77,18 @@ class CycleTool:
         """A feed as programmed; None where it is a rapid."""
         found = self.plain(q)
         if found == TOOL_FEED and self._state.tool_feed is not None:
-            return self._state.tool_feed
+            return per_minute(self._state, self._state.tool_feed, self._state.tool_feed_per, self._column)
         if found <= 0.0:
-            text = f"Q{q} of cycle {self._number} is no feed."
+            text = f"{self.named(q)} of cycle {self._number} is no feed."
             raise self._state.refuse(self._column, INPUT_VALUE, text, "Write a feed above zero.")
         return None if found >= MAX_FEED else found
+
+    def cut(self, q: int) -> float:
+        """A feed that cuts, as programmed. Raises ProgramError for a rapid."""
+        found = self.feed(q)
+        if found is None:
+            raise self.refuse(f"{self.named(q)} is a rapid, and cuts.", "Write a feed.")
+        return found
 
     def refuse(self, text: str, hint: str) -> ProgramError:
         """An error of this cycle, to be raised."""
@@ -60,6 +98,25 @@ class CycleTool:
     def radius(self) -> float:
         """Of the tool, mm."""
         return self._state.tool_radius / self._state.figure.factor
+
+    def radius_of(self, tool: int) -> float | None:
+        """Radius of another tool, mm: as TOOL DEF tells it, else the tool table; None where nobody does."""
+        found = radius_of(self._state, tool)
+        return None if found is None else found / self._state.figure.factor
+
+    def tell(self, text: str) -> None:
+        """Something about this cycle that is done otherwise, once."""
+        said = f"Cycle {self._number}: {text}"
+        self._state.tell_once(self._column, Severity.NOTE, "cycle-otherwise", said)
+
+    @property
+    def point_angle(self) -> float:
+        """Of the tool's point, degrees. Raises ProgramError where the tool table does not tell it."""
+        row = self._state.setup.mill_tools.get(self._state.modal.tool)
+        if row is None or not 0.0 < row.point < 180.0:
+            text = f"Cycle {self._number} by diameter needs the angle of the tool's point."
+            raise self.refuse(text, "Write it into the tool table, or Q343=+0 and Q201.")
+        return row.point
 
     @property
     def here(self) -> Point:
@@ -73,24 +130,58 @@ class CycleTool:
         return self._state.programmed[2]
 
     @property
+    def speed(self) -> float:
+        """S of the last TOOL CALL, whether the spindle turns or not."""
+        return self._state.modal.rpm
+
+    @property
     def rpm(self) -> float:
         """Speed of the spindle, signed. Raises ProgramError where it stands."""
         found = self._state.modal.rpm * self._state.modal.spindle
         if not found:
-            raise self.refuse(f"Cycle {self._number} needs the spindle to turn.", "Start it with M3 before.")
+            text = f"Cycle {self._number} needs the spindle to turn."
+            raise self._state.refuse(self._column, WRONG_RPM, text, "Start it with M3 before.")
         return found
 
     def warn_uncoupled(self) -> None:
-        """Nothing couples the spindle of a mill to its Z here: a rigid tap would break."""
-        text = f"Cycle {self._number} moves at pitch times speed: nothing couples the spindle to Z here."
+        """Z follows the spindle by its speed, not by its angle: it stands while the spindle turns round."""
+        text = (
+            f"Cycle {self._number}: Z stands while the spindle turns round, as nothing ties it to its angle."
+        )
         hint = "Use a floating holder."
         self._state.tell_once(self._column, Severity.WARNING, "tapping-uncoupled", text, hint)
+
+    def warn_unoriented(self) -> None:
+        """Nothing stops the spindle of a mill at an angle here: the edge may point anywhere."""
+        text = f"Cycle {self._number} frees the edge aside, and nothing here stops the spindle at an angle."
+        hint = "Write Q214=0, or turn the edge by hand before the move."
+        self._state.tell_once(self._column, Severity.WARNING, "spindle-not-oriented", text, hint)
 
     # --- what it does -------------------------------------------------------------------------------------
 
     def to(self, z: float, feed: float | None = None) -> Block:
         """Up or down to ``z``; without a feed in rapid."""
         return self.across(self.here, z, feed)
+
+    def tap(self, z: float, lead: float, *, in_hole: bool = False) -> Block:
+        """Into a thread or out of it: ``lead`` mm a revolution, whatever the feed override says.
+
+        Raises ProgramError where Z does not go as fast as that.
+        """
+        state, rpm = self._state, self._state.modal.rpm
+        fastest = state.kinematics.slides[2].vmax
+        if (rate := lead * rpm / 60.0) > fastest:
+            text = (
+                f"A lead of {lead:.10g} mm at S{rpm:g} is faster than Z goes ({fastest * 60.0:.10g} mm/min)."
+            )
+            raise self.refuse(text, "Lower S.")
+        goal = state.machine((*self.here, z))
+        made = state.move(Kind.FEED, dict(zip(SLIDES, goal, strict=True)), rate)
+        return replace(made, feed=lead, per_rev=True, coupled=True, in_hole=in_hole)
+
+    def lead_of(self, feed: float) -> float:
+        """Millimetres a revolution of a feed as programmed. Raises ProgramError where the spindle stands."""
+        return self._state.path_feed(feed) * 60.0 / abs(self.rpm)
 
     def across(self, at: Point, z: float | None = None, feed: float | None = None) -> Block:
         """Straight to a point; without a feed in rapid."""
@@ -111,15 +202,26 @@ class CycleTool:
         goal = dict(zip(SLIDES, state.machine((*arc.end, z)), strict=True))
         return state.move(Kind.PLANE_ARC, goal, state.path_feed(feed), way)
 
-    def dwell(self, seconds: float) -> list[Block]:
+    def dwell(self, seconds: float, *, in_hole: bool = False) -> list[Block]:
         """Rest; nothing where there is no time."""
-        return [self._state.action(Dwell(seconds))] if seconds > 0.0 else []
+        return [replace(self._state.action(Dwell(seconds)), in_hole=in_hole)] if seconds > 0.0 else []
 
-    def turn(self, rpm: float) -> Block:
+    def turn(self, rpm: float, *, in_hole: bool = False) -> Block:
         """The spindle at this speed and in this direction."""
         state = self._state
         state.modal = state.modal._replace(spindle=1 if rpm > 0.0 else -1)
-        return state.action(SpindleRun(rpm))
+        return replace(state.action(SpindleRun(rpm)), in_hole=in_hole)
+
+    def coolant(self, q: int) -> list[Block]:
+        """Coolant by the M function that a parameter holds: 8 on, 9 off, 0 nothing. Raises ProgramError."""
+        number, state = int(self.plain(q, 0.0)), self._state
+        if number == 0:
+            return []
+        if number not in {8, 9}:
+            text = f"Q{q} is M{number}, which is no coolant of this machine."
+            raise self.refuse(text, "Write 8 for on and 9 for off.")
+        state.modal = state.modal._replace(coolant=number == 8)
+        return [state.action(Coolant(number == 8))]
 
     def stop(self) -> Block:
         """The spindle at rest."""

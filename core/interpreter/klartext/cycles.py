@@ -6,36 +6,74 @@ A cycle from 200 on reads its Q parameters when it is called, so that one that h
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping
 
 from core.geometry.lines_and_arcs import Point
+from core.geometry.rotation_frames import Vector
 from core.interpreter.actions import Dwell
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext import word_values
+from core.interpreter.klartext.circular_slot_cycle import circular_slot
+from core.interpreter.klartext.contour_cycles import CONTOURS, Figures, contour_data, run_contour
+from core.interpreter.klartext.contour_figures import area_of, contours_of, replaced
 from core.interpreter.klartext.cycle_moves import CycleTool
+from core.interpreter.klartext.face_milling_cycles import FACES
+from core.interpreter.klartext.finishing_cycles import OLDER_MILLED
 from core.interpreter.klartext.hole_cycles import HOLES
 from core.interpreter.klartext.klartext_state import State
-from core.interpreter.klartext.older_cycles import OLDER
+from core.interpreter.klartext.older_contour_cycles import LAST_LINE as LAST_OF_CONTOURS
+from core.interpreter.klartext.older_contour_cycles import OLDER_CONTOURS
+from core.interpreter.klartext.older_cycles import LAST_LINE, OLDER
 from core.interpreter.klartext.plane_functions import plane
+from core.interpreter.klartext.pocket_cycles import MILLED
+from core.interpreter.klartext.point_patterns import points
 from core.interpreter.klartext.q_functions import value
+from core.interpreter.klartext.thread_milling_cycles import THREADS
 from core.language.diagnostics import Severity
-from core.language.klartext.klartext_faults import CYCLE_MISSING, INPUT_VALUE, unsupported
+from core.language.formulas import Formula
+from core.language.klartext.cycle_blocks import contour_labels
+from core.language.klartext.klartext_faults import (
+    CONTRADICTION,
+    CYCLE_MISSING,
+    CYCLE_UNKNOWN,
+    INPUT_VALUE,
+    syntax,
+    unsupported,
+)
 from core.language.klartext.klartext_nodes import (
     AxisWord,
+    ContourDeclare,
+    ContourDef,
+    ContourFormula,
+    ContourPart,
     Cycle,
     CycleCall,
     CycleLine,
+    PatternDef,
     Plane,
     Positioning,
     Value,
 )
+from core.language.klartext.table_file import Row
 
 _PRESET, _CIRCLE, _ROWS = 247, 220, 221
+_CONTOUR, _CONTOUR_DATA = 14, 20
+_MACHINING = HOLES | MILLED | THREADS | FACES | OLDER_MILLED | {254: circular_slot}
+_SURFACE = 203  # Q203
 _PRESET_NUMBER = 339  # Q339
 _DWELL, _CALL_PROGRAM, _ORIENT, _TILT, _TOLERANCE = 9, 12, 13, 19, 32
-_NO_CYCLE = frozenset({_DWELL, _CALL_PROGRAM, _ORIENT, _TILT, _TOLERANCE})
+_NO_CYCLE = frozenset({_DWELL, _CALL_PROGRAM, _ORIENT, _CONTOUR, _TILT, _TOLERANCE})
+_AT_ONCE = frozenset({_PRESET, _CIRCLE, _ROWS, _CONTOUR_DATA})
 _TRANSFORMS = frozenset({8, 10, 11})  # mirroring, rotation, scaling
 _MOST_PLACES = 10_000
+_MOST_CONTOURS = 128
+_PROGRAM = re.compile(r"(?:PGM\b|%)\s*", re.IGNORECASE)  # before the name of cycle 12
+_SET_UP = frozenset({"ABST", "DIST", "SETUP", "SET-UP", "SET UP"})  # the distance of cycle 19
+_ON_CYLINDER = {27: "surface", 28: "slot", 29: "ridge", 39: "contour"}
+
+
+_Told = Cycle | CycleLine | PatternDef | ContourDef | ContourDeclare | ContourFormula
 
 
 class Cycles:
@@ -47,19 +85,51 @@ class Cycles:
         self._lines: dict[int, CycleLine] = {}
         self.program = ""  # that cycle 12 has named
         self.modal = False
+        self._refused = 0  # the older cycle whose first line has been refused
+        self._points: list[Vector] = []  # of PATTERN DEF
+        self._declared: dict[int, ContourPart] = {}
+        self._formulas: dict[int, Formula] = {}
+        self.formula: Formula | None = None  # of contours, where they are joined by one
+        self._contours: tuple[ContourPart, ...] = ()  # that cycle 14 or CONTOUR DEF has named
+
+    def told(self, node: _Told) -> Iterator[Block]:
+        """CYCL DEF, PATTERN DEF, or what tells contours. Raises ProgramError."""
+        if isinstance(node, PatternDef):
+            self._points = points(self._state, node)
+        elif isinstance(node, ContourDef):
+            self._contours, self.formula = node.parts, None
+        elif isinstance(node, ContourDeclare):
+            self.declare(node)
+        elif isinstance(node, ContourFormula):
+            self.select(node)
+        elif isinstance(node, Cycle):
+            yield from self.define(node)
+        else:
+            yield from self.line(node)
+
+    def select_points(self, rows: Mapping[int, Row]) -> None:
+        """The points of a point table: X, Y, and Z over Q203."""
+        self._points = [(row.get("X", 0.0), row.get("Y", 0.0), row.get("Z", 0.0)) for row in rows.values()]
 
     def define(self, node: Cycle) -> Iterator[Block]:
         """CYCL DEF of a cycle from 200 on. Patterns are run at once. Raises ProgramError."""
         state = self._state
-        known = node.number in HOLES or node.number in {_PRESET, _CIRCLE, _ROWS}
+        known = node.number in _MACHINING.keys() | CONTOURS | _AT_ONCE
+        if 300 <= node.number <= 399:
+            text = f"Cycle {node.number} is a machine builder's, and this machine has none of its own."
+            raise state.refuse(node.column, CYCLE_UNKNOWN, text, "Take it out.")
         if not known:
-            raise unsupported(state.line, node.column, f"CYCL DEF {node.number}")
+            kind = _ON_CYLINDER.get(node.number)
+            name = f"CYCL DEF {node.number}" + (f" (cylinder surface, {kind})" if kind else "")
+            raise unsupported(state.line, node.column, name)
         for each in node.values:
             state.q[each.q] = value(state, each.formula)
         if node.number == _PRESET:
             self._preset(node.column)
         elif node.number in {_CIRCLE, _ROWS}:
             yield from self._pattern(node)
+        elif node.number == _CONTOUR_DATA:
+            contour_data(self._tool(node.number, node.column))
         else:
             self._begin(node.number)
 
@@ -68,17 +138,38 @@ class Cycles:
         self._number, self._lines, self.program = number, {}, ""
 
     def _preset(self, column: int) -> None:
-        """247: no table of presets is kept here, so the workpiece's zero stays that of the machine file."""
-        self._state.preset()
-        text = f"Preset {self._state.q.get(_PRESET_NUMBER, 0.0):g} is not kept here."
-        hint = "The workpiece's zero is that of the machine file: touch off there."
-        self._state.tell_once(column, Severity.WARNING, "preset", text, hint)
+        """247: the workpiece's zero and basic rotation of a row of the preset table. Raises ProgramError.
+
+        Where nobody keeps a table the zero of the machine file stays, which is warned of.
+        """
+        state, number = self._state, self._state.q.get(_PRESET_NUMBER, 0.0)
+        found = state.setup.presets.get(int(number)) if number == int(number) else None
+        if found is None and set(state.setup.presets) - {0}:
+            text = f"Preset {number:g} is not in the preset table."
+            raise state.refuse(column, INPUT_VALUE, text, "Set it on the page PRESETS, or correct Q339.")
+        if (
+            found is not None
+            and state.plane is not None
+            and state.kinematics.with_preset(found).basic != state.kinematics.basic
+        ):
+            text = f"Preset {number:g} turns the workpiece while a tilted plane is in force."
+            raise state.refuse(column, CONTRADICTION, text, "Write PLANE RESET STAY before.")
+        if found is not None:
+            state.kinematics = state.kinematics.with_preset(found)
+        elif number:
+            text = f"No preset table is kept on this machine, so preset {number:g} is its zero."
+            hint = "Set the preset on the page PRESETS."
+            state.tell_once(column, Severity.WARNING, "preset", text, hint)
+        state.preset()
 
     def line(self, node: CycleLine) -> Iterator[Block]:
         """A line of an older cycle. Those that are no machining are done at once. Raises ProgramError."""
         if node.number in _TRANSFORMS and node.part == 0:
             return  # the line behind it says what
-        if node.number not in OLDER and node.number not in _NO_CYCLE:
+        if node.number not in OLDER.keys() | OLDER_CONTOURS.keys() | _NO_CYCLE:
+            if node.part and node.number == self._refused:
+                return  # told at its first line
+            self._refused = node.number
             raise unsupported(self._state.line, node.column, f"CYCL DEF {node.number}")
         if node.number in _NO_CYCLE:
             yield from self._at_once(node)
@@ -87,16 +178,88 @@ class Cycles:
             self._begin(node.number)
         self._lines[node.part] = node
 
-    def call(self, column: int) -> Iterator[Block]:
-        """The cycle where the tool stands. Raises ProgramError where none has been told."""
+    @property
+    def contours(self) -> tuple[ContourPart, ...]:
+        """The contours that the cycle which is in force mills; none for other cycles."""
+        if self._number not in CONTOURS | OLDER_CONTOURS.keys():
+            return ()
+        return tuple(self._resolved(part) for part in self._contours)
+
+    def _resolved(self, part: ContourPart) -> ContourPart:
+        """A contour that is named by DECLARE CONTOUR, as that says. Raises ProgramError where none does."""
+        if part.declared is None:
+            return part
+        found = self._declared.get(part.declared)
+        if found is None:
+            text = f"No DECLARE CONTOUR has named QC{part.declared}."
+            raise self._state.refuse(1, CYCLE_MISSING, text, "Write it before.")
+        return found._replace(pocket=part.pocket, declared=part.declared)
+
+    def declare(self, node: ContourDeclare) -> None:
+        """DECLARE CONTOUR."""
+        self._declared[node.number] = node.part
+
+    def select(self, node: ContourFormula) -> None:
+        """A contour formula, which is what is milled from here on. Raises ProgramError."""
+        formula = node.formula
+        if node.selected and node.number in self._formulas:
+            formula = self._formulas[node.number]
+        formula = replaced(formula, self._formulas)
+        if not node.selected:
+            self._formulas[node.number] = formula
+        self.formula = formula
+        self._contours = tuple(
+            self._resolved(ContourPart(0, True, declared=number)) for number in contours_of(formula)
+        )
+
+    def call(self, column: int, figures: Figures = ()) -> Iterator[Block]:
+        """The cycle where the tool stands. Raises ProgramError where none has been told.
+
+        ``figures`` are the contours of ``contours``, as their subprograms say them.
+        """
         if not self._number:
             text = "No machining cycle has been told."
             raise self._state.refuse(column, CYCLE_MISSING, text, "Write CYCL DEF before.")
+        self._demand_plain_feeds(column)
         if self._number in OLDER:
+            self._demand_lines(column)
             tool = CycleTool(self._state, self._number, lambda _: None, column)
             yield from OLDER[self._number](self._state, tool, self._lines, column)
             return
-        yield from HOLES[self._number](self._tool(self._number, column))
+        if self._number in OLDER_CONTOURS:
+            self._demand_lines(column)
+            self._demand_figures(figures, column)
+            area = area_of(self._state, figures, column, self.formula)
+            tool = CycleTool(self._state, self._number, lambda _: None, column)
+            yield from OLDER_CONTOURS[self._number](self._state, tool, self._lines, area, column)
+            return
+        tool = self._tool(self._number, column)
+        if self._number in CONTOURS:
+            self._demand_figures(figures, column)
+            yield from run_contour(self._state, tool, self._number, figures, column, self.formula)
+            return
+        yield from _MACHINING[self._number](tool)
+
+    def _demand_figures(self, figures: Figures, column: int) -> None:
+        """Raises ProgramError where no contour has been named."""
+        if not figures:
+            text = f"Cycle {self._number} has no contour."
+            raise self._state.refuse(column, CYCLE_MISSING, text, "Name its labels in cycle 14 before.")
+
+    def _demand_lines(self, column: int) -> None:
+        """Raises ProgramError where a line of an older cycle has not been told."""
+        number = self._number
+        missing = next(
+            (
+                part
+                for part in range(1, (LAST_LINE | LAST_OF_CONTOURS)[number] + 1)
+                if part not in self._lines
+            ),
+            None,
+        )
+        if missing is not None:
+            text = f"Line {number}.{missing} of the cycle is missing."
+            raise self._state.refuse(column, CYCLE_MISSING, text, "Write it in CYCL DEF.")
 
     def _tool(self, number: int, column: int) -> CycleTool:
         return CycleTool(self._state, number, self._state.q.get, column)
@@ -105,22 +268,92 @@ class Cycles:
 
     def _at_once(self, node: CycleLine) -> Iterator[Block]:
         if node.number == _DWELL and node.part == 1 and node.words:
-            seconds = value(self._state, node.words[-1].value.formula)
-            yield self._state.action(Dwell(max(seconds, 0.0)))
+            yield self._state.action(Dwell(self._seconds(node.words[-1])))
         elif node.number == _CALL_PROGRAM and node.part == 1:
             self._begin(0)
-            self.program = node.text.removeprefix("PGM").strip().strip('"')
+            self.program = _PROGRAM.sub("", node.text).strip().strip('"')
+        elif node.number == _CONTOUR:
+            self._name_contours(node)
         elif node.number == _TILT and node.part == 1:
-            yield from plane(self._state, _tilted(node))
+            yield from plane(self._state, self._tilted(node))
         elif node.number in {_ORIENT, _TOLERANCE}:
             self._state.unheeded(f"Cycle {node.number}", node.column)
+
+    def _name_contours(self, node: CycleLine) -> None:
+        """14: the labels of its contours; lines behind the first go on. Raises ProgramError."""
+        if node.part == 0:
+            self._contours, self.formula = (), None
+            return
+        labels = contour_labels(node.text)
+        if not labels:
+            text = "Cycle 14 names no label."
+            raise self._state.refuse(node.column, CYCLE_MISSING, text, "Write CONTOUR LABEL1 /2.")
+        self._contours += tuple(ContourPart(label, None) for label in labels)
+        if len(self._contours) > _MOST_CONTOURS:
+            text = f"Cycle 14 names {len(self._contours)} contours; {_MOST_CONTOURS} are the most."
+            raise self._state.refuse(node.column, INPUT_VALUE, text, "Join some of them.")
+
+    def _seconds(self, word: AxisWord) -> float:
+        """The time of cycle 9. Raises ProgramError for one under 0."""
+        seconds = value(self._state, word.value.formula)
+        if seconds < 0.0:
+            text = f"A dwell of {seconds:g} s lies before now."
+            raise self._state.refuse(word.column, INPUT_VALUE, text, "Write a time over 0.")
+        return seconds
+
+    def _tilted(self, node: CycleLine) -> Plane:
+        """Cycle 19 as a PLANE: spatial angles, without which it ends; nothing moves. Raises ProgramError."""
+        if node.text and node.text.upper() not in _SET_UP:
+            raise syntax(
+                self._state.line, node.column, f"{node.text} is no axis.", "Cycle 19 takes A, B and C."
+            )
+        if not node.words:
+            return Plane("RESET", (), Positioning("STAY"), node.column)
+        named = {word.axis: word for word in node.words}
+        way = Positioning("STAY")
+        if node.feed is not None:  # positioned by the control, about the point so far before the tool
+            distance = named[""].value if "" in named else None
+            way = Positioning("MOVE", distance, feed=node.feed)
+        words = tuple(
+            named.get(axis, AxisWord(axis, Value(0.0)))._replace(axis=f"SP{axis}") for axis in "ABC"
+        )
+        return Plane("SPATIAL", words, way, node.column)
+
+    def _demand_plain_feeds(self, column: int) -> None:
+        """The feeds of a cycle are its own: a minute, and with M103 as they are written."""
+        if self._state.per_revolution:
+            raise unsupported(self._state.line, column, "A cycle while M136 is on (write M137 before)")
+        if self._state.plunging is not None:
+            text = "M103 leaves the feeds of a cycle as they are."
+            self._state.tell_once(column, Severity.WARNING, "cycle-feeds", text)
+
+    def call_pattern(self, node: CycleCall) -> Iterator[Block]:
+        """CYCL CALL PAT: the cycle at every point, between them at the safe height. Raises ProgramError."""
+        state = self._state
+        if not self._points:
+            text = "No PATTERN DEF and no SEL PATTERN has told points."
+            raise state.refuse(node.column, CYCLE_MISSING, text, "Write PATTERN DEF before.")
+        if self._number not in _MACHINING:
+            text = "CYCL CALL PAT needs a cycle from 200 on before it."
+            raise state.refuse(node.column, CYCLE_MISSING, text, "Write its CYCL DEF before.")
+        speed = None if node.feed is None else word_values.feed_word(state, node.feed, node.column)
+        surface = state.q.get(_SURFACE, 0.0)
+        for x, y, above in self._points:
+            state.q[_SURFACE] = surface + above / state.scale
+            tool = self._tool(self._number, node.column)
+            safe = tool.length(_SURFACE) + max(tool.length(200), tool.length(204, 0.0))
+            if tool.height < safe:
+                yield tool.to(safe)
+            yield tool.across((x, y), None, speed)
+            yield from self.call(node.column)
+        state.q[_SURFACE] = surface
 
     def call_at(self, node: CycleCall) -> Iterator[Block]:
         """CYCL CALL POS: over the place above the workpiece, whatever stands in the way below."""
         if not self._number:
             yield from self.call(node.column)
         tool = self._tool(self._number, node.column)
-        if self._number not in HOLES:
+        if self._number not in _MACHINING:
             raise unsupported(self._state.line, node.column, f"CYCL CALL POS of cycle {self._number}")
         x, y = tool.here
         for word in node.axes:
@@ -143,7 +376,7 @@ class Cycles:
     def _pattern(self, node: Cycle) -> Iterator[Block]:
         """The cycle told before at every place of a circle (220) or of rows (221)."""
         tool = self._tool(node.number, node.column)
-        if self._number not in HOLES:
+        if self._number not in _MACHINING:
             text = f"Cycle {node.number} needs a machining cycle before it."
             raise self._state.refuse(node.column, CYCLE_MISSING, text, "Write its CYCL DEF before.")
         surface = tool.length(203, 0.0)
@@ -191,12 +424,3 @@ def _count(tool: CycleTool, q: int) -> int:
     if not 1 <= count <= _MOST_PLACES:
         raise tool.refuse(f"Q{q} {count} is no number of places.", "Write how many there are.")
     return count
-
-
-def _tilted(node: CycleLine) -> Plane:
-    """Cycle 19 as a PLANE: spatial angles, without which it ends; nothing moves."""
-    if not node.words:
-        return Plane("RESET", (), Positioning("STAY"), node.column)
-    named = {word.axis: word for word in node.words}
-    words = tuple(named.get(axis, AxisWord(axis, Value(0.0)))._replace(axis=f"SP{axis}") for axis in "ABC")
-    return Plane("SPATIAL", words, Positioning("STAY"), node.column)

@@ -1,4 +1,4 @@
-"""Cycles that make holes: drilling, reaming, boring, tapping, bore milling, centring (200 to 209, 240)."""
+"""Cycles that make holes (200 to 209, 240, 241): drilling, reaming, boring, tapping, milling, centring."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ _MOST_PECKS = 10_000
 
 def drilling(tool: CycleTool) -> Iterator[Block]:
     """200: in infeeds, out of the hole after each."""
-    surface, clear, bottom = _heights(tool)
+    surface, clear, bottom = heights(tool)
     feed = tool.feed(206)
     yield tool.to(clear)
     if abs(bottom - surface) < SMALLEST:
         return
     before = 0.0
-    for depth in _infeeds(tool, surface - bottom, tool.length(202)):
+    for depth in infeeds(tool, surface - bottom, tool.length(202)):
         if before:
             yield from tool.dwell(tool.plain(210, 0.0))
             yield tool.to(min(clear, surface - before + tool.length(200)))
@@ -31,24 +31,24 @@ def drilling(tool: CycleTool) -> Iterator[Block]:
             yield tool.to(clear)
         before = depth
     yield from tool.dwell(tool.plain(211, 0.0))
-    yield from _out(tool, surface, clear, None)
+    yield from out(tool, surface, clear, None)
 
 
 def reaming(tool: CycleTool) -> Iterator[Block]:
     """201: down and out at a feed."""
-    surface, clear, bottom = _heights(tool)
+    surface, clear, bottom = heights(tool)
     feed = tool.feed(206)
     yield tool.to(clear)
     if abs(bottom - surface) < SMALLEST:
         return
     yield tool.to(bottom, feed)
     yield from tool.dwell(tool.plain(211, 0.0))
-    yield from _out(tool, surface, clear, tool.feed(208) if tool.plain(208, 0.0) else feed)
+    yield from out(tool, surface, clear, tool.feed(208) if tool.plain(208, 0.0) else feed)
 
 
 def boring(tool: CycleTool) -> Iterator[Block]:
     """202: down, the spindle stopped, aside where Q214 says so, out, the spindle on again."""
-    surface, clear, bottom = _heights(tool)
+    surface, clear, bottom = heights(tool)
     rpm = tool.rpm
     aside = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}
     way = aside.get(int(tool.plain(214, 0.0)))
@@ -62,23 +62,30 @@ def boring(tool: CycleTool) -> Iterator[Block]:
     yield from tool.dwell(tool.plain(211, 0.0))
     yield tool.stop()
     if way != (0.0, 0.0):
+        tool.warn_unoriented()
         yield tool.across((x + way[0] * _ASIDE, y + way[1] * _ASIDE), None, tool.feed(206))
-    yield from _out(tool, surface, clear, tool.feed(208) if tool.plain(208, 0.0) else None)
+    yield from out(tool, surface, clear, tool.feed(208) if tool.plain(208, 0.0) else None)
     if way != (0.0, 0.0):
         yield tool.across((x, y))
     yield tool.turn(rpm)
 
 
+def back_boring(tool: CycleTool) -> Iterator[Block]:
+    """204 goes through a hole with its edge turned aside, which no spindle here is: refused."""
+    text = "Cycle 204 goes through the hole with the spindle at an angle, and nothing here orients it."
+    raise tool.refuse(text, "Bore from the other side.")
+
+
 def universal_drilling(tool: CycleTool) -> Iterator[Block]:
     """203: Q213 chip breaks between two ways out, infeeds that become smaller by Q212 down to Q205."""
-    surface, clear, bottom = _heights(tool)
+    surface, clear, bottom = heights(tool)
     feed, whole = tool.feed(206), surface - bottom
     back, breaks = tool.length(256, 0.2), int(tool.plain(213, 0.0))
     yield tool.to(clear)
     if whole < SMALLEST:
         return
-    infeeds = _infeeds(tool, whole, tool.length(202), tool.length(212, 0.0), tool.length(205, 0.0))
-    for count, depth in enumerate(infeeds, start=1):
+    depths = infeeds(tool, whole, tool.length(202), tool.length(212, 0.0), tool.length(205, 0.0))
+    for count, depth in enumerate(depths, start=1):
         yield tool.to(surface - depth, feed)
         if depth >= whole - SMALLEST:
             break
@@ -89,12 +96,12 @@ def universal_drilling(tool: CycleTool) -> Iterator[Block]:
             yield from tool.dwell(tool.plain(210, 0.0))
             yield tool.to(min(clear, surface - depth + tool.length(200)))
     yield from tool.dwell(tool.plain(211, 0.0))
-    yield from _out(tool, surface, clear, tool.feed(208) if tool.plain(208, 0.0) else None)
+    yield from out(tool, surface, clear, tool.feed(208) if tool.plain(208, 0.0) else None)
 
 
 def deep_drilling(tool: CycleTool) -> Iterator[Block]:
     """205: as 203, stopping Q258 to Q259 before the chips, chip breaks by depth (Q257), a start (Q379)."""
-    surface, clear, bottom = _heights(tool)
+    surface, clear, bottom = heights(tool)
     feed, begin = tool.feed(206), surface - max(tool.length(379, 0.0), 0.0)
     whole, breaking, back = begin - bottom, tool.length(257, 0.0), tool.length(256, 0.2)
     yield tool.to(clear)
@@ -104,7 +111,7 @@ def deep_drilling(tool: CycleTool) -> Iterator[Block]:
         yield tool.to(begin + tool.length(200), tool.feed(253))
     near, far = tool.length(258, 0.2), tool.length(259, 0.2)
     broken = 0.0
-    for depth in _infeeds(tool, whole, tool.length(202), tool.length(212, 0.0), tool.length(205, 0.0)):
+    for depth in infeeds(tool, whole, tool.length(202), tool.length(212, 0.0), tool.length(205, 0.0)):
         while 0.0 < breaking < depth - broken - SMALLEST:
             broken += breaking
             yield tool.to(begin - broken, feed)
@@ -115,61 +122,62 @@ def deep_drilling(tool: CycleTool) -> Iterator[Block]:
             yield tool.to(clear)
             yield tool.to(begin - depth + near + (far - near) * depth / whole)
     yield from tool.dwell(tool.plain(211, 0.0))
-    yield from _out(tool, surface, clear, tool.feed(208) if tool.plain(208, 0.0) else None)
+    yield from out(tool, surface, clear, tool.feed(208) if tool.plain(208, 0.0) else None)
 
 
 def floating_tapping(tool: CycleTool) -> Iterator[Block]:
     """206: down at Q206, the spindle turned round, out."""
-    surface, clear, bottom = _heights(tool)
-    yield from _tapped(tool, surface, clear, bottom, tool.feed(206) or 0.0)
+    surface, clear, bottom = heights(tool)
+    yield from _tapped(tool, surface, clear, bottom, tool.lead_of(tool.cut(206)))
 
 
 def rigid_tapping(tool: CycleTool) -> Iterator[Block]:
     """207: as 206, the feed from pitch and speed; a pitch under 0 is a left-hand thread."""
-    surface, clear, bottom = _heights(tool)
-    yield from _tapped(tool, surface, clear, bottom, _pitch_feed(tool))
+    surface, clear, bottom = heights(tool)
+    yield from _tapped(tool, surface, clear, bottom, _lead(tool))
 
 
 def tapping_with_chip_breaking(tool: CycleTool) -> Iterator[Block]:
     """209: rigid, the spindle turned round at every Q257 of depth."""
-    surface, clear, bottom = _heights(tool)
-    rpm, feed, back = tool.rpm, _pitch_feed(tool), tool.length(256, 0.0)
+    surface, clear, bottom = heights(tool)
+    rpm, lead, back = tool.rpm, _lead(tool), tool.length(256, 0.0)
     step = tool.length(257, 0.0)
     yield tool.to(clear)
-    for depth in _infeeds(tool, surface - bottom, step or surface - bottom):
-        yield tool.to(surface - depth, feed)
-        yield tool.turn(-rpm)
+    for depth in infeeds(tool, surface - bottom, step or surface - bottom):
         last = depth >= surface - bottom - SMALLEST
-        yield tool.to(clear if last or not back else surface - depth + back, feed)
-        yield tool.turn(rpm)
-    yield from _out(tool, surface, clear, None)
+        stays = not last and bool(back)
+        yield tool.tap(surface - depth, lead, in_hole=True)
+        yield tool.turn(-rpm, in_hole=True)
+        yield tool.tap(surface - depth + back if stays else clear, lead, in_hole=stays)
+        yield tool.turn(rpm, in_hole=stays)
+    yield from out(tool, surface, clear, None)
 
 
-def _pitch_feed(tool: CycleTool) -> float:
-    """Feed as programmed, from pitch and speed."""
+def _lead(tool: CycleTool) -> float:
+    """Millimetres a revolution. Raises ProgramError where there are none."""
     tool.warn_uncoupled()
-    pitch = tool.plain(239)
+    pitch = abs(tool.length(239))
     if pitch == 0.0:
         raise tool.refuse("Q239 is no pitch.", "Write the pitch of the thread.")
-    return abs(pitch) * abs(tool.rpm)
+    return pitch
 
 
-def _tapped(tool: CycleTool, surface: float, clear: float, bottom: float, feed: float) -> Iterator[Block]:
+def _tapped(tool: CycleTool, surface: float, clear: float, bottom: float, lead: float) -> Iterator[Block]:
     rpm = tool.rpm
     yield tool.to(clear)
-    if abs(bottom - surface) < SMALLEST or feed <= 0.0:
+    if abs(bottom - surface) < SMALLEST:
         return
-    yield tool.to(bottom, feed)
-    yield from tool.dwell(tool.plain(211, 0.0))
-    yield tool.turn(-rpm)
-    yield tool.to(clear, feed)
+    yield tool.tap(bottom, lead, in_hole=True)
+    yield from tool.dwell(tool.plain(211, 0.0), in_hole=True)
+    yield tool.turn(-rpm, in_hole=True)
+    yield tool.tap(clear, lead)
     yield tool.turn(rpm)
-    yield from _out(tool, surface, clear, None)
+    yield from out(tool, surface, clear, None)
 
 
 def bore_milling(tool: CycleTool) -> Iterator[Block]:
     """208: a helix of Q334 a turn to the diameter Q335, one turn at the bottom, out in the middle."""
-    surface, clear, bottom = _heights(tool)
+    surface, clear, bottom = heights(tool)
     feed = tool.feed(206) or 0.0
     way = tool.length(335) / 2.0 - tool.radius
     x, y = tool.here
@@ -181,7 +189,7 @@ def bore_milling(tool: CycleTool) -> Iterator[Block]:
     yield tool.to(clear)
     if way < SMALLEST:
         yield tool.to(bottom, feed)
-        yield from _out(tool, surface, clear, None)
+        yield from out(tool, surface, clear, None)
         return
     start = x + way, y
     yield tool.across(start, None, feed)
@@ -191,23 +199,52 @@ def bore_milling(tool: CycleTool) -> Iterator[Block]:
         yield tool.round(circle, max(clear - turn * pitch, bottom), feed)
     yield tool.round(circle, bottom, feed)
     yield tool.across((x, y), None, feed)
-    yield from _out(tool, surface, clear, None)
+    yield from out(tool, surface, clear, None)
 
 
 def centring(tool: CycleTool) -> Iterator[Block]:
-    """240: to a depth; a diameter would need the angle of the tool's point."""
+    """240: to a depth, or to where the tool's point makes a diameter."""
     if tool.plain(343, 0.0) == 1.0:
-        raise tool.refuse(
-            "Cycle 240 by diameter needs the angle of the tool's point.", "Write Q343=+0 and Q201."
-        )
-    surface, clear, bottom = _heights(tool)
+        surface = tool.length(203, 0.0)
+        clear = surface + tool.length(200)
+        half = math.radians(tool.point_angle) / 2.0
+        bottom = surface - abs(tool.length(344)) / 2.0 / math.tan(half)
+    else:
+        surface, clear, bottom = heights(tool)
     yield tool.to(clear)
     yield tool.to(bottom, tool.feed(206))
     yield from tool.dwell(tool.plain(211, 0.0))
-    yield from _out(tool, surface, clear, None)
+    yield from out(tool, surface, clear, None)
 
 
-def _heights(tool: CycleTool) -> tuple[float, float, float]:
+def single_lip_drilling(tool: CycleTool) -> Iterator[Block]:
+    """241: in at Q427 to a start in the hole (Q379), then at Q428 with coolant to the bottom, out as in."""
+    surface, clear, bottom = heights(tool)
+    rpm, sense = tool.rpm, {3: 1.0, 4: -1.0, 5: 0.0}.get(int(tool.plain(426, 3.0)))
+    if sense is None:
+        raise tool.refuse("Q426 is neither 3, 4 nor 5.", "Write the M function of the direction.")
+    drilling = tool.plain(428, 0.0) * (sense or 1.0) or rpm
+    slow, begin = tool.plain(427, 0.0) * sense, surface - max(tool.length(379, 0.0), 0.0)
+    yield tool.to(clear)
+    if begin - bottom < SMALLEST:
+        return
+    yield tool.turn(slow) if slow else tool.stop()
+    yield tool.to(min(begin + tool.length(200), clear), tool.feed(253))
+    yield tool.turn(drilling)
+    yield from tool.coolant(429)
+    feed = tool.feed(206)
+    if 0.0 < (rest := tool.length(435, 0.0)) < surface - bottom and begin > surface - rest:
+        yield tool.to(surface - rest, feed)
+        yield from tool.dwell(tool.plain(211, 0.0))
+    yield tool.to(bottom, feed)
+    yield from tool.dwell(tool.plain(211, 0.0))
+    yield from tool.coolant(430)
+    yield tool.turn(slow) if slow else tool.stop()
+    yield from out(tool, surface, clear, tool.feed(208) if tool.plain(208, 0.0) else None)
+    yield tool.turn(rpm)
+
+
+def heights(tool: CycleTool) -> tuple[float, float, float]:
     """Surface, set-up clearance above it, and bottom. Raises ProgramError for a depth that leads upwards."""
     surface, depth = tool.length(203, 0.0), tool.length(201)
     if depth > 0.0:
@@ -215,7 +252,7 @@ def _heights(tool: CycleTool) -> tuple[float, float, float]:
     return surface, surface + tool.length(200), surface + depth
 
 
-def _infeeds(
+def infeeds(
     tool: CycleTool, whole: float, step: float, smaller: float = 0.0, least: float = 0.0
 ) -> Iterator[float]:
     """Depths of the infeeds one after the other, the whole depth last."""
@@ -231,7 +268,7 @@ def _infeeds(
         step = max(step - smaller, least, SMALLEST) if smaller else step
 
 
-def _out(tool: CycleTool, surface: float, clear: float, feed: float | None) -> Iterator[Block]:
+def out(tool: CycleTool, surface: float, clear: float, feed: float | None) -> Iterator[Block]:
     """To the set-up clearance, and on to the second one where that is higher."""
     second = surface + tool.length(204, 0.0)
     if feed is None:
@@ -247,11 +284,13 @@ HOLES: dict[int, Callable[[CycleTool], Iterator[Block]]] = {
     201: reaming,
     202: boring,
     203: universal_drilling,
+    204: back_boring,
     205: deep_drilling,
     206: floating_tapping,
     207: rigid_tapping,
     208: bore_milling,
     209: tapping_with_chip_breaking,
     240: centring,
+    241: single_lip_drilling,
 }
 """Cycles by their number."""

@@ -2,28 +2,39 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 
 from core.geometry.rotary_axes import Kinematics
 from core.interpreter.actions import ProgramEnd, ProgramStop
+from core.interpreter.checkpoint import Begin, Checkpoint
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES, MOST_LINES_WITHOUT_BLOCK, Interpretation
 from core.interpreter.job_setup import Setup
-from core.interpreter.klartext import m_functions, q_functions, tip_control, word_values
+from core.interpreter.klartext import (
+    feed_rates,
+    m_functions,
+    mid_program_startup,
+    tip_control,
+)
+from core.interpreter.klartext.blocks_without_motion import Reckoned, go_on, reckon
+from core.interpreter.klartext.consequent_faults import Consequences, ends_the_pass
+from core.interpreter.klartext.contour_figures import ContourFigure, FigureRunner, copy_of
 from core.interpreter.klartext.coordinate_transformations import datum, transform
 from core.interpreter.klartext.cycles import Cycles
 from core.interpreter.klartext.klartext_program import Flow, Program
 from core.interpreter.klartext.klartext_state import State
+from core.interpreter.klartext.mid_program_startup import Parts
 from core.interpreter.klartext.path_functions import PathRunner
 from core.interpreter.klartext.plane_functions import plane
+from core.interpreter.klartext.text_values import text_of
 from core.interpreter.klartext.tool_call import define_tool, tool_call
 from core.interpreter.modal_state import Modal
 from core.language.diagnostics import ProgramError
 from core.language.klartext import klartext_nodes as nodes
-from core.language.klartext.klartext_faults import FILE_MISSING
-from core.language.klartext.structure_blocks import MOST_REPEATS
+from core.language.klartext.canonical_text import name_text
+from core.language.klartext.klartext_faults import CYCLE_MISSING, FILE_MISSING, LABEL, unsupported
+from core.language.klartext.table_file import Row
 
 
 class Interpreter(Interpretation):
@@ -37,6 +48,12 @@ class Interpreter(Interpretation):
         self._flow = Flow(program)
         self._path = PathRunner(self._state)
         self._cycles = Cycles(self._state)
+        self._setup = setup
+        self._taken: nodes.KlartextLine | None = None  # a line at which block search has stopped
+        self._approach: Iterator[Block] = iter(())
+        self._consequences = Consequences()
+        if setup.begin is not None:
+            self._go_on_from(setup.begin)
 
     @property
     def source_blocks(self) -> int:
@@ -53,11 +70,54 @@ class Interpreter(Interpretation):
         """The state after the last block that was taken."""
         return self._state.modal
 
+    @property
+    def checkpoint(self) -> Checkpoint:
+        """What the line inherits that would be executed next."""
+        return mid_program_startup.checkpoint_of(self._parts, self._shared)
+
+    @property
+    def waits_for(self) -> str:
+        """Why no other pass can go on from here."""
+        return self._path.waits_for
+
+    @property
+    def _parts(self) -> Parts:
+        return Parts(self._state, self._path, self._cycles, self._flow, self._taken)
+
+    @property
+    def _shared(self) -> tuple[object, ...]:
+        program = self._program
+        return self._setup, self._log, program, self._setup.kinematics, *program.called.values()
+
+    def _go_on_from(self, begin: Begin) -> None:
+        """Take up what the line of ``begin`` inherits: a line of MDI, or the one that was searched."""
+        kept = begin.checkpoint.kept
+        if kept is not None:
+            parts: Parts = kept.parts(self._setup, self._log)
+            self._state, self._path, self._cycles = parts.state, parts.path, parts.cycles
+            if not begin.single:
+                self._flow, self._taken = parts.flow, parts.taken
+        mid_program_startup.take_up(self._state, begin, inch=self._program.inch)
+        self._approach = mid_program_startup.approach_blocks(self._state, begin)
+
+    def _next_line(self) -> nodes.KlartextLine | None:
+        """The line that comes next, which is taken; None at the end."""
+        taken, self._taken = self._taken, None
+        line = taken if taken is not None else self._flow.next()
+        asked = self.stop_before
+        if line is None or line.node is None or asked is None or self._flow.called:
+            return line
+        if not asked(line.number):
+            return line
+        self._taken, self.stopped_before = line, True
+        return None
+
     def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
         """The elementary blocks, made as they are asked for. To be called once."""
         flow = self._flow
         left, idle, made = MOST_LINES, 0, 0
-        while (line := flow.next()) is not None:
+        yield from self._approach
+        while (line := self._next_line()) is not None:
             left -= 1
             idle, made = (idle + 1, made) if self._state.blocks == made else (0, self._state.blocks)
             if left < 0 or idle > MOST_LINES_WITHOUT_BLOCK or self._state.blocks >= MOST_BLOCKS:
@@ -68,7 +128,7 @@ class Interpreter(Interpretation):
                     yield block
             if self._stopped and (to_first_error or self._log.full):
                 return
-        if not self._stopped and not flow.ended_by_code:
+        if not (self._stopped or self.stopped_before or flow.ended_by_code):
             yield from self._end_of_program()
 
     def _end_of_program(self) -> Iterator[Block]:
@@ -92,12 +152,16 @@ class Interpreter(Interpretation):
         if line.error is not None:
             self._log.add(self._flow.located(line.error))
             self._stopped = True
+            self._consequences.unreadable(line.code)
             return
         try:
             yield from self._line(line)
         except ProgramError as problem:
-            self._log.add(problem.diagnostic)
+            if not self._consequences.follows(problem, line.node):
+                self._log.add(problem.diagnostic)
             self._stopped = True
+            if ends_the_pass(line.node):
+                self._flow.end_all()
 
     def _line(self, line: nodes.KlartextLine) -> Iterator[Block]:
         state, node = self._state, line.node
@@ -112,10 +176,12 @@ class Interpreter(Interpretation):
             case nodes.Pole():
                 self._path.pole(node)
             case nodes.Label() | nodes.Call() | nodes.Jump():
-                self._go_on(line.number, node)
-            case nodes.Assign() | nodes.SystemRead() | nodes.ErrorMessage() | nodes.Unheeded():
-                _reckon(state, node)
-            case None | nodes.Begin() | nodes.End() | nodes.BlankForm() | nodes.Heading():
+                go_on(state, self._flow, line.number, node)
+            case _ if isinstance(node, Reckoned):
+                reckon(state, node)
+            case (
+                None | nodes.Begin() | nodes.End() | nodes.BlankForm() | nodes.RoundBlank() | nodes.Heading()
+            ):
                 pass
             case _:
                 yield from self._path.finish(1, state.text.split(" ")[0])
@@ -132,34 +198,100 @@ class Interpreter(Interpretation):
             case nodes.ToolDef():
                 define_tool(state, node)
             case nodes.Datum():
-                datum(state, node)
+                self._shift(node)
             case nodes.Transform():
                 transform(state, node)
             case nodes.TipControl():
                 tip_control.switch(state, on=node.on)
-            case nodes.Cycle():
-                yield from self._cycles.define(node)
-            case nodes.CycleLine():
-                yield from self._cycles.line(node)
-            case nodes.ProgramCall():
-                self._call_program(node.name, node.column)
+            case (
+                nodes.Cycle()
+                | nodes.CycleLine()
+                | nodes.PatternDef()
+                | nodes.ContourDef()
+                | nodes.ContourDeclare()
+                | nodes.ContourFormula()
+            ):
+                yield from self._cycles.told(node)
+            case nodes.Selection() | nodes.ProgramCall() | nodes.TableOpen():
+                self._file(node)
 
-    def _go_on(self, line: int, node: nodes.Label | nodes.Call | nodes.Jump) -> None:
-        """Labels, calls and jumps: where the program goes on."""
-        if isinstance(node, nodes.Label):
-            self._flow.label(node)
-        elif isinstance(node, nodes.Call):
-            repeat = node.repeat or nodes.Value(0.0)
-            times = word_values.number(self._state, repeat, "REP", MOST_REPEATS, 0.0)
-            self._flow.call(line, node, math.floor(times))
-        elif q_functions.jumps(self._state, node):
-            self._flow.jump(node)
+    def _file(self, node: nodes.Selection | nodes.ProgramCall | nodes.TableOpen) -> None:
+        """What names a file beside the program. Raises ProgramError where there is none."""
+        match node:
+            case nodes.Selection():
+                self._select(node)
+            case nodes.ProgramCall():
+                self._call_program(self._named(node.name) or self._selected(node.column), node.column)
+            case nodes.TableOpen():
+                self._open(node)
+
+    def _shift(self, node: nodes.Datum) -> None:
+        """A datum shift; where its block names a table, that one is selected before. Raises ProgramError."""
+        if node.table:
+            self._select(nodes.Selection("TABLE", node.table, node.column))
+        datum(self._state, node)
+
+    def _select(self, node: nodes.Selection) -> None:
+        """SEL TABLE, SEL PATTERN and SEL PGM. Raises ProgramError for a table that is not there."""
+        name = self._named(node.name)
+        if node.kind == "PGM":
+            self._state.selected_program = name
+            return
+        if node.kind == "CONTOUR":
+            self._select_contour(name, node.column)
+            return
+        rows = self._table(name, node.column)
+        if node.kind == "TABLE":
+            self._state.datum_table = rows
+        else:
+            self._cycles.select_points(rows)
+
+    def _select_contour(self, name: str, column: int) -> None:
+        """SEL CONTOUR: the contours and the formula of another program. Raises ProgramError."""
+        program = self._flow.beside(name)
+        if program is None:
+            raise self._missing_program(name, column)
+        for line in program.lines[: program.end]:
+            if line.error is not None:
+                raise self._state.refuse(column, line.error.code, f"{name}: {line.error.message}", "")
+            if isinstance(line.node, nodes.ContourDeclare | nodes.ContourFormula):
+                for _ in self._cycles.told(line.node):
+                    pass
+        if self._cycles.formula is None:
+            text = f"{name} has no contour formula."
+            raise self._state.refuse(column, CYCLE_MISSING, text, "Write QC10 = QC1 | QC2 into it.")
+
+    def _missing_program(self, name: str, column: int) -> ProgramError:
+        text = f"The program {name} is not beside this one."
+        return self._state.refuse(column, FILE_MISSING, text, "Put it into the same folder.")
+
+    def _open(self, node: nodes.TableOpen) -> None:
+        """FN 26: the table of FN 27 and FN 28, as its file has it. Raises ProgramError."""
+        rows = self._table(node.name, node.column)
+        self._state.free_table = {number: dict(row) for number, row in rows.items()}
+
+    def _table(self, name: str, column: int) -> dict[int, Row]:
+        rows = self._flow.table(name)
+        if rows is None:
+            text = f"The table {name} is not beside this program."
+            raise self._state.refuse(column, FILE_MISSING, text, "Put it into the same folder.")
+        return rows
+
+    def _named(self, name: str | nodes.TextName) -> str:
+        """A name as written, or the text of QS that holds it. Raises ProgramError."""
+        return name if isinstance(name, str) else text_of(self._state, name)
+
+    def _selected(self, column: int) -> str:
+        """The program of SEL PGM. Raises ProgramError where none is selected."""
+        if not self._state.selected_program:
+            text = "No program is selected."
+            raise self._state.refuse(column, FILE_MISSING, text, "Write SEL PGM before.")
+        return self._state.selected_program
 
     def _call_program(self, name: str, column: int) -> None:
         called = self._flow.call_program(name, self._state.line)
         if called is None:
-            text = f"The program {name} is not beside this one."
-            raise self._state.refuse(column, FILE_MISSING, text, "Put it into the same folder.")
+            raise self._missing_program(name, column)
 
     # --- moves, M functions, cycles -----------------------------------------------------------------------
 
@@ -167,6 +299,7 @@ class Interpreter(Interpretation):
         """A path function with the M functions before and behind it, and the cycle that M99 or M89 calls."""
         state, path = self._state, self._path
         m_functions.check(state, node.codes)
+        feed_rates.switch(state, node.codes)
         if any(code.number in m_functions.BEFORE for code in node.codes):
             yield from path.between(lambda: m_functions.before(state, node.codes))
         machine = any(code.number == m_functions.M91 for code in node.codes)
@@ -179,10 +312,14 @@ class Interpreter(Interpretation):
         """M functions alone, STOP, CYCL CALL."""
         state, path = self._state, self._path
         m_functions.check(state, node.codes)
+        feed_rates.switch(state, node.codes)
         yield from path.between(lambda: m_functions.before(state, node.codes))
         if isinstance(node, nodes.CycleCall):
             yield from path.finish(node.column, "CYCL CALL")
-            yield from self._cycles.call_at(node) if node.axes else self._run_cycle(node.column)
+            if node.pattern:
+                yield from self._cycles.call_pattern(node)
+            else:
+                yield from self._cycles.call_at(node) if node.axes else self._run_cycle(node.column)
         if isinstance(node, nodes.Stop):
             stop = ProgramStop(optional=False, message=comment)
             yield from path.between(lambda: iter((state.action(stop),)))
@@ -218,24 +355,53 @@ class Interpreter(Interpretation):
         """The machining cycle where the tool stands, or the program that cycle 12 has named."""
         if self._cycles.program:
             self._call_program(self._cycles.program, column)
+            return
+        figures = [self._figure(part, column) for part in self._cycles.contours]
+        yield from self._cycles.call(column, figures)
+
+    def _figure(self, part: nodes.ContourPart, column: int) -> ContourFigure:
+        """The contour of a subprogram, gone through with a copy of all that is in force."""
+        state = copy_of(self._state)
+        if part.file:
+            flow, name = self._flow.through_program(part.file), part.file
+            if flow is None:
+                raise self._missing_program(part.file, column)
         else:
-            yield from self._cycles.call(column)
+            flow, name = self._flow.through_subprogram(part.label), f"LBL {name_text(part.label)}"
+        if flow is None:
+            text = f"{name} of the contour is nowhere in the program, or has no LBL 0."
+            raise self._state.refuse(column, LABEL, text, "Correct the number, or write the label.")
+        runner, lines = FigureRunner(state), MOST_LINES_WITHOUT_BLOCK
+        while (line := flow.next()) is not None:
+            lines -= 1
+            if line.error is not None:
+                raise ProgramError(self._flow.located(line.error))
+            if lines < 0:
+                raise self._state.refuse(column, LABEL, f"{name} does not come to its end.", "Correct it.")
+            if not (line.skip and state.setup.block_delete):
+                state.line, state.text = self._flow.shown_line(line.number), flow.program.text(line)
+                _draw(state, runner, flow, line)
+        runner.close()
+        return ContourFigure(name, runner.elements, runner.side, part.pocket, part.declared)
 
     def _corner_is_next(self) -> bool:
         """Whether the next block is RND or CHF, for which an element has to wait."""
         return isinstance(self._flow.next_node(), nodes.Corner)
 
 
-def _reckon(
-    state: State, node: nodes.Assign | nodes.SystemRead | nodes.ErrorMessage | nodes.Unheeded
-) -> None:
-    """Q parameters and FN functions. Raises ProgramError, and for FN 14 always."""
-    match node:
-        case nodes.Assign():
-            q_functions.assign(state, node)
-        case nodes.SystemRead():
-            q_functions.read_system(state, node)
-        case nodes.ErrorMessage():
-            raise q_functions.own_error(state, node)
-        case nodes.Unheeded():
-            state.unheeded(node.what, node.column)
+def _draw(state: State, runner: FigureRunner, flow: Flow, line: nodes.KlartextLine) -> None:
+    """A line of a contour's subprogram: its geometry counts, feeds, M functions and tools do not."""
+    match line.node:
+        case nodes.Move():
+            runner.draw(line.node)
+        case nodes.Corner():
+            runner.corner(line.node)
+        case nodes.Pole():
+            runner.pole(line.node)
+        case nodes.Label() | nodes.Call() | nodes.Jump():
+            go_on(state, flow, line.number, line.node)
+        case node if isinstance(node, Reckoned):
+            reckon(state, node)
+        case nodes.Datum() | nodes.Transform() | nodes.Plane() | nodes.Cycle() | nodes.CycleLine():
+            what = state.text.split("~")[0].strip()
+            raise unsupported(state.line, 1, f"{what} within a contour of SL cycles")

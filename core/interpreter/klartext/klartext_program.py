@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from core.geometry.rotation_frames import Vector
 from core.interpreter.diagnostic_log import MOST_OF_A_KIND
+from core.interpreter.klartext.consequent_faults import told_once
 from core.interpreter.units import MM_PER_INCH
 from core.interpreter.working_plane import Corners
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.klartext import read_line
 from core.language.klartext.called_programs import file_name
 from core.language.klartext.canonical_text import name_text, written
-from core.language.klartext.klartext_faults import LABEL, LABEL_TWICE, NESTING, fault, syntax
+from core.language.klartext.klartext_faults import LABEL, LABEL_TWICE, NESTING, NOT_SUPPORTED, fault, syntax
 from core.language.klartext.klartext_line import CONTINUED, comment_start
 from core.language.klartext.klartext_nodes import (
     Begin,
@@ -25,7 +27,10 @@ from core.language.klartext.klartext_nodes import (
     KlartextLine,
     Label,
     Node,
+    RoundBlank,
+    TextName,
 )
+from core.language.klartext.table_file import Row, is_table, table_rows
 from core.language.source import Source
 
 Name = int | str
@@ -44,6 +49,7 @@ class Program:
     _texts: dict[int, str] = field(default_factory=dict)
     corners: Corners | None = None  # of BLK FORM, mm
     called: dict[str, Program] = field(default_factory=dict)  # by the file's name in capitals
+    tables: dict[str, dict[int, Row]] = field(default_factory=dict)  # of datums and points, by name too
 
     @property
     def blocks(self) -> int:
@@ -68,15 +74,37 @@ class Program:
 
 def read_program(source: Source) -> Program:
     """Read every line, and the programs that it calls. Raises nothing: see ``problems``."""
+    if (other := _din_iso(source)) is not None:
+        return Program(source, [other], end=1, problems=[other.error] if other.error else [])
     lines = _lines(source)
+    told_once(lines)
     program = Program(source, lines, end=len(lines))
     found = [line.error for line in lines if line.error is not None]
     for look in (_frame, _labels, _calls):
         found += look(program)
     program.problems = sorted(found, key=lambda each: (each.line, each.column))[: 2 * MOST_OF_A_KIND]
     program.corners = _corners(program)
-    program.called = {file_name(each.name): read_program(each) for each in source.subprograms}
+    for each in source.subprograms:
+        name = file_name(each.name)
+        if is_table(name):
+            program.tables[name] = table_rows(each)
+        else:
+            program.called[name] = read_program(each)
     return program
+
+
+_DIN_ISO = re.compile(r"\s*(?:%\s*\S+\s+G7[01]\b|N\s*[0-9]+\s*(?:G[0-9]|[%T]|M[0-9]))", re.IGNORECASE)
+
+
+def _din_iso(source: Source) -> KlartextLine | None:
+    """The first line with text, with its refusal, of a program in DIN/ISO: told once, not line by line."""
+    first = next(((at, text) for at, text in enumerate(source.lines, start=1) if text.strip()), None)
+    if first is None or _DIN_ISO.match(first[1]) is None:
+        return None
+    text = "This program is written in DIN/ISO."
+    hint = "Convert it into Klartext on the control that it comes from, or post it anew."
+    problem = fault(first[0], 1, NOT_SUPPORTED, text, hint).diagnostic
+    return KlartextLine(first[0], error=problem)
 
 
 def _lines(source: Source) -> list[KlartextLine]:
@@ -98,6 +126,8 @@ def _lines(source: Source) -> list[KlartextLine]:
 def _joined(texts: Sequence[str], number: int) -> Iterator[KlartextLine]:
     """The lines of one block: what is wrong is told where it stands."""
     pieces = [text[: comment_start(text)].rstrip().removesuffix(CONTINUED) for text in texts]
+    if not pieces[0].strip().strip("/").strip().strip("0123456789"):
+        pieces[1:] = [""] * (len(pieces) - 1)  # a comment that goes on: the control breaks long ones so
     line = read_line(number, " ".join(pieces))
     if (problem := line.error) is not None:
         row, column = 0, problem.column
@@ -114,12 +144,29 @@ def _corners(program: Program) -> Corners | None:
     scale = MM_PER_INCH if program.inch else 1.0
     found: dict[int, Vector] = {}
     for line in program.lines:
+        if isinstance(line.node, RoundBlank):
+            return _around(line.node, scale)
         if isinstance(line.node, BlankForm) and all(word.value.q is None for word in line.node.corner):
-            at = {word.axis: word.value.number * scale for word in line.node.corner}
+            low = dict(zip("XYZ", found.get(1, (0.0, 0.0, 0.0)), strict=True))
+            at = {
+                word.axis: word.value.number * scale + (low[word.axis] if word.incremental else 0.0)
+                for word in line.node.corner
+            }
             found[line.node.part] = (at["X"], at["Y"], at["Z"])
     if len(found) < 2 or any(low >= high for low, high in zip(found[1], found[2], strict=True)):
         return None
     return found[1], found[2]
+
+
+def _around(blank: RoundBlank, scale: float) -> Corners | None:
+    """Corners of the block around a cylinder; None where it is not told in numbers."""
+    told = (blank.radius, blank.length, blank.above)
+    if any(each.q is not None for each in told) or blank.radius.number <= 0.0 or blank.length.number <= 0.0:
+        return None
+    radius, length, above = (each.number * scale for each in told)
+    ends = dict.fromkeys("XYZ", (-radius, radius)) | {blank.tool_axis: (above - length, above)}
+    low, high = zip(*(ends[axis] for axis in "XYZ"), strict=True)
+    return (low[0], low[1], low[2]), (high[0], high[1], high[2])
 
 
 def _frame(program: Program) -> Iterator[Diagnostic]:
@@ -170,7 +217,7 @@ def _calls(program: Program) -> Iterator[Diagnostic]:
     """Calls of labels that are not there, and of subprograms without an end."""
     for line in program.lines[: program.end]:
         node = line.node
-        if not isinstance(node, (Call, Jump)):
+        if not isinstance(node, (Call, Jump)) or isinstance(node.name, TextName):
             continue
         name, at = name_text(node.name), program.labels.get(node.name)
         if at is None:
@@ -214,6 +261,11 @@ class Flow:
         """The program whose line was taken last."""
         return self._running[-1].program
 
+    @property
+    def called(self) -> bool:
+        """Whether the line that was taken last is one of another file."""
+        return len(self._running) > 1
+
     def next(self) -> KlartextLine | None:
         """The next line; None where the main program is at its END PGM."""
         while self._running:
@@ -225,6 +277,26 @@ class Flow:
                 return None
             self._running.pop()
         return None
+
+    def through_subprogram(self, label: int | str) -> Flow | None:
+        """A way through one subprogram of the program under way; None where it has none of this name."""
+        program = self.program
+        at = program.labels.get(label)
+        if at is None or program.subprogram_end(at) is None:
+            return None
+        own = Flow(program)
+        own._running[0].at = at + 1
+        own._running[0].levels.append(_Level(back=program.end))
+        return own
+
+    def beside(self, name: str) -> Program | None:
+        """A program that lies beside the main one."""
+        return self._running[0].program.called.get(file_name(name))
+
+    def through_program(self, name: str) -> Flow | None:
+        """A way through a program beside the main one; None where there is none of this name."""
+        program = self.beside(name)
+        return None if program is None else Flow(program)
 
     def next_node(self) -> Node | None:
         """What the next line with a block says, where the program goes straight on."""
@@ -253,7 +325,7 @@ class Flow:
     def call(self, line: int, node: Call, times: int) -> None:
         """CALL LBL, or ``times`` repeats of its section. Raises ProgramError for calls nested too deep."""
         running = self._running[-1]
-        target = running.program.labels.get(node.name)
+        target = None if isinstance(node.name, TextName) else running.program.labels.get(node.name)
         if target is None:
             return  # told when the program was read
         if node.repeat is not None:
@@ -275,13 +347,17 @@ class Flow:
     def jump(self, node: Jump) -> None:
         """On behind a label."""
         running = self._running[-1]
-        target = running.program.labels.get(node.name)
+        target = None if isinstance(node.name, TextName) else running.program.labels.get(node.name)
         if target is not None:  # else it was told when the program was read
             running.at = target + 1
 
+    def table(self, name: str) -> dict[int, Row] | None:
+        """The rows of a table that lies beside the program; None where there is none of this name."""
+        return self._running[0].program.tables.get(file_name(name))
+
     def call_program(self, name: str, line: int) -> Program | None:
         """On in another program; None where there is none of this name. Raises ProgramError too deep."""
-        called = self._running[0].program.called.get(file_name(name))
+        called = self.beside(name)
         if called is None:
             return None
         if len(self._running) > DEEPEST_CALL:

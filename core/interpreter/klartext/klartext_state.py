@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from core.geometry.machine_travel import CurvedMove, Travel
-from core.geometry.plane_figure import Figure
-from core.geometry.rotary_axes import Kinematics, Place
+from core.geometry.plane_figure import XY, Figure, Order
+from core.geometry.rotary_axes import Kinematics, Place, Rotary
 from core.geometry.rotation_frames import IDENTITY, Matrix, Vector, applied, plus, product, transposed
 from core.interpreter.actions import Action, Dwell
 from core.interpreter.diagnostic_log import Log
@@ -19,13 +19,15 @@ from core.interpreter.units import MM_PER_INCH
 from core.interpreter.working_plane import Angles, Corners, PlaneSystem, Swivel
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.klartext.klartext_faults import fault
+from core.language.klartext.table_file import Row
 
 ORIGIN: Vector = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
 class WorkingPlane:
-    """The plane in force. ``frame`` in the machine-parallel system; ``targets`` by axis, as shown."""
+    """The plane in force. ``frame`` with the tables at 0; ``targets`` by axis, in the machine, 0 to 360 on a
+    modulo axis."""
 
     frame: Matrix
     targets: Mapping[str, float]
@@ -59,6 +61,7 @@ class State:
         self.frame = IDENTITY
         self.tool_length = 0.0
         self.m128 = False
+        self.short_way = True  # M126: rotary axes without end go the short way; M127 by the figures
         self._shown: Angles | None = None  # worked out again when a rotary axis has turned
         self.place = self._place()
         self.point = self.place.point(self.slides)
@@ -68,13 +71,27 @@ class State:
         self.blocks = 0
         self.tool_axis = ""
         self.feed: float | None = None  # F in force, as programmed
+        self.feed_per = ""  # what it counts: U a revolution, Z a tooth, else a minute
         self.tool_feed: float | None = None  # F of the last TOOL CALL
+        self.tool_feed_per = ""
+        self.per_revolution = False  # M136: F counts a revolution
+        self.rotary_by_way = False  # M116: F of rotary axes alone counts mm of the tip on the workpiece
+        self.plunging: float | None = None  # M103: the share of F that is left for Z on the way down
         self.q: dict[int, float] = {}
         self.q_beside: dict[tuple[str, int], float] = {}  # QL and QR
+        self.texts: dict[int, str | None] = {}  # QS; None: one of the control, which is not known here
+        self.free_table: dict[int, Row] | None = None  # of FN 26, with what FN 27 has written
+        self.q_global: dict[int, float] = {}  # of GLOBAL DEF, for PREDEF
         self.figure = Figure()
-        self.pole: tuple[float, float] | None = None  # of CC, in the program's coordinates
+        self.pole: tuple[float, float] | None = None  # of CC, by the axes of its plane
+        self.pole_plane: Order = XY
+        self.turn = ""  # DR in force, + or -
         self.tool_radius = 0.0
+        self.oversize = (0.0, 0.0)  # DL and DR of the last TOOL CALL, mm
         self.tool_defs: dict[int | str, tuple[float, float]] = {}  # length and radius of TOOL DEF, mm
+        self.tool_cells: dict[tuple[int, int], float] = {}  # of FN 17, by tool and column: read back, no more
+        self.datum_table: dict[int, Row] | None = None  # of SEL TABLE
+        self.selected_program = ""  # of SEL PGM
         self.table_known = False  # the program has positioned it, so it no longer matters where it stood
         self.blank: Corners | None = None
         self.reported: set[object] = set()  # warnings that would otherwise repeat
@@ -103,13 +120,23 @@ class State:
             self.derive()
         self.point = self.place.point(self.slides)
 
+    def stand(self, at: Sequence[float]) -> None:
+        """Stand at these machine positions, in the machine's order: where the slides really are."""
+        self.at, self.there = dict(zip(self.names, at, strict=True)), tuple(at)
+        self._shown = None
+        self.derive()
+
     @property
     def displayed(self) -> Angles:
         """A B C as they are displayed, None for axes the machine lacks."""
         if self._shown is None:
-            axes = {axis.name: axis.displayed(self.at[axis.name]) for axis in self.kinematics.rotaries}
+            axes = {axis.name: self.shown(axis) for axis in self.kinematics.rotaries}
             self._shown = (axes.get("A"), axes.get("B"), axes.get("C"))
         return self._shown
+
+    def shown(self, axis: Rotary) -> float:
+        """Where a rotary axis stands, as words have it."""
+        return self.kinematics.shown(axis, self.at[axis.name])
 
     @property
     def slides(self) -> Vector:
@@ -151,7 +178,7 @@ class State:
         self.derive()
 
     def _place(self) -> Place:
-        angles: Mapping[str, float] = self.plane.targets if self.plane is not None else {}
+        angles = self.plane.targets if self.plane is not None else self.kinematics.zero
         if self.m128:
             angles = self.rotary
         frame = self.plane.frame if self.plane is not None else self.kinematics.basic

@@ -11,8 +11,10 @@ from core.interpreter.klartext import word_values
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.plane_functions import retract, retract_way
 from core.interpreter.klartext.tip_control import switch
+from core.language.diagnostics import Severity
 from core.language.klartext.klartext_faults import (
     CONTRADICTION,
+    M_UNDEFINED,
     NOT_WITH_M128,
     WRONG_RPM,
     syntax,
@@ -21,29 +23,49 @@ from core.language.klartext.klartext_faults import (
 from core.language.klartext.klartext_nodes import MCode
 
 M89, M91, M99 = 89, 91, 99
-BEFORE = frozenset({3, 4, 8, 13, 14, 128, 129, 140})
+FEEDS = frozenset({103, 136, 137})  # of ``feed_rates``: they count as soon as they are read
+ENDS_NOTHING = frozenset({102, 115, 145})  # they end what is not built
+SISTER_TOOL = 101
+BEFORE = frozenset({3, 4, 8, 13, 14, SISTER_TOOL, 116, 117, 126, 127, 128, 129, 140}) | FEEDS | ENDS_NOTHING
 ENDS = frozenset({2, 30})
 _BEHIND = frozenset({0, 1, 2, 5, 6, 9, 30})
-_OF_THE_BLOCK = frozenset({M89, M91, M99, 126})  # 126, the short way of rotary axes, is always on
+_OF_THE_BLOCK = frozenset({M89, M91, M99})
 
 # They steer what this control does in its own way anyhow: smoothing and look-ahead (90, 112, 113, 120, 124),
 # small contour steps and open corners (97, 98), feed at arcs (109, 110, 111), messages (107, 108), the
-# display of rotary axes (94), handwheel superimposed (118), exact stops (134, 135), retract at a stop (148).
-UNHEEDED = frozenset({90, 94, 97, 98, 107, 108, 109, 110, 111, 112, 113, 118, 120, 124, 134, 135, 148})
+# display of rotary axes (94), handwheel superimposed (118), exact stops (134, 135), retract at a stop (148),
+# gains of the loops (105, 106), a touch probe's watch (141).
+UNHEEDED = frozenset(
+    {90, 94, 97, 98, 105, 106, 107, 108, 109, 110, 111, 112, 113, 118, 120, 124, 134, 135, 141, 148}
+)
+
+# Of the control, and not built: the datum of before (104), old ways of leading the tip (114, 144), positions
+# before tilting (130, 138), programs and rotations cleared (142, 143), limits passed (150).
+_NOT_BUILT = frozenset({104, 114, 130, 138, 142, 143, 144, 150})
 _TURNS = {3: 1, 4: -1, 13: 1, 14: -1}
+_OWN = "It is the machine builder's: give it an output under [m_codes], or take it out."
+_ADVICE = {92: "It has no second datum of the machine: count from the machine's zero with M91."}
 
 
 def check(state: State, codes: Sequence[MCode]) -> None:
     """Raises ProgramError for codes this machine lacks, contradictions, and what M128 forbids."""
-    known = BEFORE | _BEHIND | _OF_THE_BLOCK | UNHEEDED | state.setup.limits.m_outputs.keys()
+    limits = state.setup.limits
+    known = BEFORE | _BEHIND | _OF_THE_BLOCK | UNHEEDED | limits.m_outputs.keys() | limits.m_ignored
     for code in codes:
         if code.number in {M91, 92} and state.m128:
             text = f"M{code.number} while M128 is on."
             raise state.refuse(code.column, NOT_WITH_M128, text, "Switch it off with M129 before.")
-        if code.number not in known:
+        if code.number in _NOT_BUILT - known:
             raise unsupported(state.line, code.column, f"M{code.number}")
-        if code.number in UNHEEDED:
+        if code.number not in known:
+            text = f"This machine's file has no M{code.number}."
+            raise state.refuse(code.column, M_UNDEFINED, text, _ADVICE.get(code.number, _OWN))
+        if code.number in UNHEEDED | limits.m_ignored:
             state.unheeded(f"M{code.number}", code.column)
+        if code.number == SISTER_TOOL:
+            text = "M101 changes to no replacement tool here: the tool that was called goes on."
+            hint = "Look at the tool's life before the start."
+            state.tell_once(code.column, Severity.WARNING, "no-replacement-tool", text, hint)
         if sum(other.number == code.number for other in codes) > 1:
             text = f"M{code.number} stands twice in the block."
             raise syntax(state.line, code.column, text, "Take one out.")
@@ -61,6 +83,10 @@ def before(state: State, codes: Sequence[MCode]) -> Iterator[Block]:
             yield _start(state, code)
         if code.number in {8, 13, 14}:
             yield _coolant(state, on=True)
+        if code.number in {126, 127}:
+            state.short_way = code.number == 126
+        if code.number in {116, 117}:
+            state.rotary_by_way = code.number == 116
         if code.number in {128, 129}:
             switch(state, on=code.number == 128)
         if code.number == 140:
@@ -91,6 +117,8 @@ def end(state: State) -> Block:
     """M2, M30 and END PGM: the plane ends, rotary axes stay where they are."""
     state.m128 = False
     state.figure = Figure()
+    state.short_way = True
+    state.per_revolution, state.plunging, state.rotary_by_way = False, None, False
     state.set_plane(None)
     state.modal = state.modal._replace(spindle=0, coolant=False, outputs=frozenset())
     return state.action(actions.ProgramEnd(reset=True))

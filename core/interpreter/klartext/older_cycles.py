@@ -1,4 +1,4 @@
-"""Cycles under 200, told line by line: pecking (1), tapping (2, 17), slot (3), pocket (4), circle (5).
+"""Cycles under 200, line by line: pecking (1), tapping (2, 17, 18), slot (3), pocket (4), circle (5).
 
 They are called with the tool at the set-up clearance above the surface, which is where it stands then.
 """
@@ -23,7 +23,7 @@ _OVERLAP = 0.7  # of the tool's radius from one way to the next: the control's m
 _MOST_LEVELS = 10_000
 
 
-class _Told:
+class Told:
     """What the lines of a cycle say."""
 
     def __init__(self, state: State, lines: Lines, column: int) -> None:
@@ -31,10 +31,14 @@ class _Told:
         self._lines = lines
         self._column = column
 
-    def number(self, part: int, axis: str = "") -> float:
-        """The number of a line, or of its word for an axis. Raises ProgramError where it is missing."""
+    def number(self, part: int, axis: str = "", at: int = 0) -> float:
+        """The number of a line (``at``: how many stand before it), or of its word for an axis.
+
+        Raises ProgramError where it is missing.
+        """
         words = self._lines[part].words if part in self._lines else ()
-        word: AxisWord | None = next((each for each in words if each.axis == axis), None)
+        found = [each for each in words if each.axis == axis]
+        word: AxisWord | None = found[at] if at < len(found) else None
         if word is None:
             number = next(iter(self._lines.values())).number if self._lines else 0
             text = f"Line {number}.{part} of the cycle has no {axis or 'number'}."
@@ -70,7 +74,7 @@ class _Told:
 
 def _pecking(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
     """1: down by infeeds; out in rapid, and in rapid to just before the chips."""
-    told = _Told(state, lines, column)
+    told = Told(state, lines, column)
     clear, feed = tool.height, told.feed(5)
     depth, step = abs(told.length(2)), abs(told.length(3))
     surface = clear - told.length(1)
@@ -86,23 +90,23 @@ def _pecking(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterat
 
 def _tapping(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
     """2 at a feed, 17 by a pitch: the spindle turns round at the bottom."""
-    told = _Told(state, lines, column)
+    told = Told(state, lines, column)
     rigid = next(iter(lines.values())).number == _RIGID
     clear, rpm = tool.height, tool.rpm
     if rigid:
         tool.warn_uncoupled()
-    feed = abs(told.number(3)) * abs(rpm) if rigid else told.feed(4)
-    yield tool.to(clear - told.length(1) - abs(told.length(2)), feed)
+    lead = abs(told.length(3)) if rigid else tool.lead_of(told.cutting_feed(4))
+    yield tool.tap(clear - told.length(1) - abs(told.length(2)), lead, in_hole=True)
     if not rigid:
-        yield from tool.dwell(told.number(3))
-    yield tool.turn(-rpm)
-    yield tool.to(clear, feed)
+        yield from tool.dwell(told.number(3), in_hole=True)
+    yield tool.turn(-rpm, in_hole=True)
+    yield tool.tap(clear, lead)
     yield tool.turn(rpm)
 
 
 def _slot(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
     """3: along the first side by levels, then round at the width."""
-    told = _Told(state, lines, column)
+    told = Told(state, lines, column)
     first, second = _sides(told, 4), _sides(told, 5)
     (x, y), clear = tool.here, tool.height
     end = x + first[0], y + first[1]
@@ -136,7 +140,7 @@ def _round_slot(tool: CycleTool, start: Point, end: Point, width: float, feed: f
 
 def _pocket(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
     """4: from the middle outwards in rectangles, level by level."""
-    told = _Told(state, lines, column)
+    told = Told(state, lines, column)
     (x, y), clear = tool.here, tool.height
     half = abs(told.length(4, "X")) / 2.0 - tool.radius, abs(told.length(5, "Y")) / 2.0 - tool.radius
     if min(half) < -_SMALLEST:
@@ -164,7 +168,7 @@ def _pocket(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterato
 
 def _circular_pocket(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
     """5: from the middle outwards in circles, level by level."""
-    told = _Told(state, lines, column)
+    told = Told(state, lines, column)
     (x, y), clear = tool.here, tool.height
     radius = abs(told.length(4, "R" if told.has(4, "R") else "")) - tool.radius
     if radius < -_SMALLEST:
@@ -183,7 +187,19 @@ def _circular_pocket(state: State, tool: CycleTool, lines: Lines, column: int) -
     yield tool.across((x, y))
 
 
-def _sides(told: _Told, part: int) -> Point:
+def _thread_cutting(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
+    """18: from where the tool stands, at pitch times speed, to the depth; the spindle stops there."""
+    told = Told(state, lines, column)
+    tool.warn_uncoupled()
+    rpm, pitch, depth = tool.speed, told.length(2), told.length(1)
+    if not rpm or not pitch:
+        raise tool.refuse("Cycle 18 needs a speed and a pitch.", "Write S behind TOOL CALL, and PITCH.")
+    yield tool.turn(rpm if pitch > 0.0 else -rpm)
+    yield tool.tap(tool.height + depth, abs(pitch), in_hole=True)
+    yield tool.stop()
+
+
+def _sides(told: Told, part: int) -> Point:
     return (
         told.length(part, "X") if told.has(part, "X") else 0.0,
         told.length(part, "Y") if told.has(part, "Y") else 0.0,
@@ -209,5 +225,9 @@ OLDER: dict[int, Callable[[State, CycleTool, Lines, int], Iterator[Block]]] = {
     4: _pocket,
     5: _circular_pocket,
     17: _tapping,
+    18: _thread_cutting,
 }
 """Cycles by their number."""
+
+LAST_LINE = {1: 5, 2: 4, 3: 6, 4: 6, 5: 5, 17: 3, 18: 2}
+"""The number behind the point of the last line that each has: with one missing the control runs none."""

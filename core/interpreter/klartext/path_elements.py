@@ -1,13 +1,14 @@
 """What a path function comes to: one element of the path, in the coordinates of the program.
 
-C, CR, CT, CP and CTP become arcs, with Z helices; LP and CP count from the pole (CC). mm and degrees.
+C, CR, CT, CP and CTP become arcs, with Z helices; LP and CP count from the pole (CC). mm and degrees. A pole
+in Y and Z, or in Z and X, makes them upright: seen with Y to the right and Z up; Z to the right and X up.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from core.geometry.lines_and_arcs import (
     SAME_POINT,
@@ -18,11 +19,12 @@ from core.geometry.lines_and_arcs import (
     arc_between,
     centre_from_radius,
 )
+from core.geometry.plane_figure import XY, YZ, ZX, Order, seen, unseen
 from core.geometry.rotation_frames import Vector
 from core.interpreter.klartext import word_values
 from core.interpreter.klartext.klartext_state import State
 from core.language.klartext.klartext_faults import ARC_END, DIRECTION, NO_POLE, PREVIOUS
-from core.language.klartext.klartext_nodes import AxisWord, Move
+from core.language.klartext.klartext_nodes import AxisWord, Move, Pole
 
 ON_CIRCLE = 0.016  # mm by which the end of an arc may miss the circle through its start: the control's own
 _PARALLEL = 1e-9
@@ -31,8 +33,9 @@ _MOST_TURNS = 1000
 
 @dataclass(frozen=True, slots=True)
 class PathElement:
-    """From ``start`` to ``end``, straight or on ``arc`` in X and Y; ``feed`` as programmed, None rapid.
+    """From ``start`` to ``end``, straight or on ``arc``; ``feed`` as programmed, None rapid.
 
+    The arc lies in the first two axes of ``order``, mostly in X and Y.
     ``rotary`` are the goals of rotary axes, counted on. ``line`` and ``text`` are those of its block.
     """
 
@@ -44,10 +47,18 @@ class PathElement:
     column: int = 1
     arc: Arc | None = None
     rotary: Mapping[str, float] = field(default_factory=dict)
+    order: Order = XY
+
+    @property
+    def upright(self) -> bool:
+        """Whether it is an arc in Y and Z, or in Z and X."""
+        return self.arc is not None and self.order != XY
 
     @property
     def flat(self) -> Element | None:
-        """What it is in X and Y; None where nothing moves there."""
+        """What it is in X and Y; None where nothing moves there, and of an upright arc."""
+        if self.upright:
+            return None
         if self.arc is not None:
             return self.arc
         start, end = self.start[:2], self.end[:2]
@@ -72,27 +83,58 @@ def elements(
 
     ``before`` is the direction in which the path has come there. Raises ProgramError.
     """
-    made = PathElement(start, start, feed, state.line, state.text, node.column, None, rotary)
+    node = _with_direction(state, node)
+    order = state.pole_plane if node.form in _ABOUT_POLE else XY
+    made = PathElement(start, start, feed, state.line, state.text, node.column, None, rotary, order)
     if node.form == "CP":
         yield from _round_the_pole(state, node, made)
         return
     end = goal(state, node, start)
-    arc = _ARCS[node.form](state, node, start[:2], end[:2], before) if node.form in _ARCS else None
-    yield _with(made, start, end, arc)
+    first, last = seen(order, start), seen(order, end)
+    arc = _ARCS[node.form](state, node, first[:2], last[:2], before) if node.form in _ARCS else None
+    yield replace(made, end=end, arc=arc)
 
 
-def _with(made: PathElement, start: Vector, end: Vector, arc: Arc | None) -> PathElement:
-    return PathElement(start, end, made.feed, made.line, made.text, made.column, arc, made.rotary)
+_ABOUT_POLE = {"C", "CP"}
+
+
+def _with_direction(state: State, node: Move) -> Move:
+    """C, CR and CP without DR turn as the arc before did."""
+    if node.form not in {"C", "CR", "CP"}:
+        return node
+    state.turn = node.turn or state.turn
+    return replace(node, turn=state.turn)
+
+
+def pole_plane(node: Pole, before: Order) -> Order:
+    """The plane that the axes of CC lie in; one that names a single axis stays in the plane before."""
+    named = {word.axis for word in node.axes}
+    if len(named) < 2:
+        return before if named and named <= {"XYZ"[column] for column in before[:2]} else XY
+    return {"YZ": YZ, "XZ": ZX}.get("".join(sorted(named)), XY)
 
 
 def goal(state: State, node: Move, start: Vector) -> Vector:
     """The end point of a path function: its axes, or radius and angle about the pole."""
     x, y, z = (_along(state, node.word(axis), at) for axis, at in zip("XYZ", start, strict=True))
     if node.word("PR") is None and node.word("PA") is None:
-        return x, y, z
+        return _paraxial(state, node, start, (x, y, z))
     (cx, cy), (radius, angle) = pole(state, node), _polar(state, node, start)
-    turned = math.radians(angle)
-    return cx + radius * math.cos(turned), cy + radius * math.sin(turned), z
+    turned, order = math.radians(angle), state.pole_plane
+    third = seen(order, (x, y, z))[2]
+    return unseen(order, (cx + radius * math.cos(turned), cy + radius * math.sin(turned), third))
+
+
+def _paraxial(state: State, node: Move, start: Vector, end: Vector) -> Vector:
+    """R+ makes the way along its one axis longer by the tool's radius, R- shorter (manual)."""
+    if node.compensation not in {"+", "-"}:
+        return end
+    more = math.copysign(state.tool_radius / state.figure.factor, 1.0 if node.compensation == "+" else -1.0)
+    x, y, z = (
+        there if abs(there - here) < SAME_POINT else there + math.copysign(1.0, there - here) * more
+        for here, there in zip(start, end, strict=True)
+    )
+    return x, y, z
 
 
 def pole(state: State, node: Move) -> Point:
@@ -113,8 +155,8 @@ def _along(state: State, word: AxisWord | None, at: float) -> float:
 def _polar(state: State, node: Move, start: Vector) -> tuple[float, float]:
     """Radius (mm) and angle (degrees, from X towards Y) of the end; what is not programmed stays."""
     cx, cy = pole(state, node)
-    radius = math.hypot(start[0] - cx, start[1] - cy)
-    angle = math.degrees(math.atan2(start[1] - cy, start[0] - cx))
+    x, y, _ = seen(state.pole_plane, start)
+    radius, angle = math.hypot(x - cx, y - cy), math.degrees(math.atan2(y - cy, x - cx))
     if (word := node.word("PR")) is not None:
         value = word_values.coordinate(state, word)
         radius = radius + value if word.incremental else value
@@ -173,8 +215,9 @@ _ARCS = {"C": _about_pole, "CR": _by_radius, "CT": _tangential, "CTP": _tangenti
 
 
 def _round_the_pole(state: State, node: Move, made: PathElement) -> Iterator[PathElement]:
-    """CP: an angle about the pole, of any number of turns, with Z a helix."""
-    start, centre = made.start, pole(state, node)
+    """CP: an angle about the pole, of any number of turns, with the third axis a helix."""
+    order, centre = made.order, pole(state, node)
+    start = seen(order, made.start)
     radius = math.dist(start[:2], centre)
     _demand_radius(state, node, radius)
     if not node.turn:
@@ -185,7 +228,7 @@ def _round_the_pole(state: State, node: Move, made: PathElement) -> Iterator[Pat
     if turns > _MOST_TURNS:
         text = f"CP goes round {turns} times."
         raise state.refuse(node.column, ARC_END, text, f"{_MOST_TURNS} turns are the most.")
-    z1 = _along(state, node.word("Z"), start[2])
+    z1 = _along(state, node.word("XYZ"[order[2]]), start[2])
     here = start
     for turn in range(1, turns + 1):
         done = min(turn * 360.0 / abs(sweep), 1.0)
@@ -193,7 +236,8 @@ def _round_the_pole(state: State, node: Move, made: PathElement) -> Iterator[Pat
         point = centre[0] + radius * math.cos(angle), centre[1] + radius * math.sin(angle)
         whole = turn * 360.0 <= abs(sweep) + 1e-9
         end = (*(here[:2] if whole else point), start[2] + (z1 - start[2]) * done)
-        yield _with(made, here, end, Arc(here[:2], end[:2], centre, node.turn == "-"))
+        arc = Arc(here[:2], end[:2], centre, node.turn == "-")
+        yield replace(made, start=unseen(order, here), end=unseen(order, end), arc=arc)
         here = end
 
 

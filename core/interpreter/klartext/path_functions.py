@@ -6,20 +6,29 @@ all elements up to R0 or DEP. Until then elements wait here, with whatever else 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from core.geometry.chamfer_and_rounding import CornerError, chamfer, rounding
 from core.geometry.lines_and_arcs import Arc, Element, Point
 from core.geometry.plane_arcs import HelixMove
+from core.geometry.plane_figure import seen
 from core.geometry.rotation_frames import Vector
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.klartext import word_values
+from core.interpreter.klartext.feed_rates import per_minute, plunged, rotary_feed
 from core.interpreter.klartext.klartext_state import SAME_POINT, SLIDES, State
-from core.interpreter.klartext.path_elements import PathElement, elements, goal
+from core.interpreter.klartext.path_elements import PathElement, elements, goal, pole_plane
 from core.interpreter.klartext.radius_compensation import Contour, Entry, way_in, way_out
 from core.interpreter.klartext.tip_control import swivelled
-from core.language.klartext.klartext_faults import COMPENSATION, PREVIOUS, ROUNDING, WRONG_AXIS
+from core.language.klartext.klartext_faults import (
+    COMPENSATION,
+    PREVIOUS,
+    ROUNDING,
+    WRONG_AXIS,
+    unsupported,
+)
 from core.language.klartext.klartext_nodes import AxisWord, Corner, Move, Pole
 
 AT_TARGET = 0.001  # degrees by which a table may miss its target before a cut is warned of
@@ -64,6 +73,13 @@ class PathRunner:
         return bool(self._side)
 
     @property
+    def waits_for(self) -> str:
+        """What the path waits for, so that no pass can begin here; empty where it waits for nothing."""
+        if self._side:
+            return "radius compensation is on"
+        return "the block before it waits for its corner" if self._waiting or self._corner else ""
+
+    @property
     def here(self) -> Vector:
         """Where the path stands in the program's coordinates, mm: the contour, under compensation."""
         return self._state.programmed if self._end is None else self._end
@@ -74,7 +90,9 @@ class PathRunner:
         for word in node.axes:
             value = word_values.coordinate(self._state, word)
             here[word.axis] = here[word.axis] + value if word.incremental else value
-        self._state.pole = here["X"], here["Y"]
+        self._state.pole_plane = order = pole_plane(node, self._state.pole_plane)
+        first, second, _ = seen(order, (here["X"], here["Y"], here["Z"]))
+        self._state.pole = first, second
 
     def corner(self, node: Corner) -> None:
         """RND or CHF behind an element that waits for it. Raises ProgramError where there is none."""
@@ -119,6 +137,8 @@ class PathRunner:
             yield from self._switched(node)
             return
         self._demand_axes(node)
+        if node.form == "LN":
+            self._demand_uncompensated(node)
         if machine:
             yield from self.finish(node.column, "M91")
             yield from self._by_machine(node)
@@ -142,7 +162,7 @@ class PathRunner:
         state, feed = self._state, self._take_feed(node)
         if feed is not None:
             _warn(state, node)
-        rotary = _rotary(state, node)
+        rotary = _rotary(state, node, state.kinematics.zero)
         if rotary and self._side:
             text = "A rotary axis moves while radius compensation is on."
             raise state.refuse(node.column, COMPENSATION, text, "End the contour with R0 before.")
@@ -151,7 +171,11 @@ class PathRunner:
                 self.here, goal(state, node, self.here), feed, state.line, state.text, node.column
             )
             return
-        yield from elements(state, node, self.here, self._direction, feed, rotary)
+        made = list(elements(state, node, self.here, self._direction, feed, rotary))
+        if made[0].upright and (self._side or node.compensation in {"L", "R"}):
+            text = "Radius compensation holds in X and Y, and this arc stands upright."
+            raise state.refuse(node.column, COMPENSATION, text, "End the contour with R0 before.")
+        yield from (replace(each, feed=_plunged(state, each)) for each in made)
 
     def _add(self, made: list[PathElement], *, hold: bool) -> Iterator[Block]:
         """Elements behind those that wait; without a reason to wait all of them become blocks."""
@@ -159,7 +183,8 @@ class PathRunner:
             made[0] = self._rounded(made[0])
         self._waiting += made
         self._end = made[-1].end
-        self._direction = made[-1].end_direction or self._direction
+        if made[-1].upright or made[-1].end_direction is not None:
+            self._direction = made[-1].end_direction
         approaching = any(isinstance(each, _Approach) for each in self._waiting)
         if self._side or hold:
             return
@@ -193,7 +218,20 @@ class PathRunner:
         yield from self._release()
         yield from self._emit_all(way_out(self._state, node, here, direction, "", 0.0, self._take_feed(node)))
 
+    def _demand_uncompensated(self, node: Move) -> None:
+        """LN goes to its point where there is nothing to compensate along its normal. Raises ProgramError."""
+        state = self._state
+        if any(word.axis[0] == "T" for word in node.words):
+            raise unsupported(state.line, node.column, "LN with the tool's direction (TX TY TZ)")
+        row = state.setup.mill_tools.get(state.modal.tool)
+        off = (*state.oversize, *((row.dl, row.dr, row.dr2) if row is not None else ()))
+        if any(off) or node.compensation in {"L", "R"} or self._side:
+            raise unsupported(state.line, node.column, "LN with 3D compensation (DL, DR, DR2, RL, RR)")
+
     def _demand_same_side(self, node: Move) -> None:
+        if node.compensation in {"+", "-"} and self._side:
+            text = f"R{node.compensation} stands while R{self._side} is on."
+            raise self._state.refuse(node.column, COMPENSATION, text, "Write R0 before.")
         if node.compensation in {"L", "R"} and self._side and node.compensation != self._side:
             text = f"R{node.compensation} stands while R{self._side} is on."
             raise self._state.refuse(node.column, COMPENSATION, text, "Write R0 between them.")
@@ -240,13 +278,7 @@ class PathRunner:
 
     def _release(self) -> Iterator[Block]:
         """Everything that waits, uncompensated."""
-        if self._corner is not None:
-            corner = self._corner
-            self._corner = None
-            text = f"{corner.form} needs a path in the working plane behind it."
-            raise self._state.refuse(
-                corner.column, ROUNDING, text, "Put it between two elements of the contour."
-            )
+        self._demand_no_corner()
         waiting, self._waiting, self._end = self._waiting, [], None
         for index, each in enumerate(waiting):
             if isinstance(each, _Between):
@@ -257,8 +289,18 @@ class PathRunner:
                 first = next((e.flat for e in waiting[index:] if isinstance(e, PathElement) and e.flat), None)
                 yield from self._enter(each, first, "", 0.0)
 
+    def _demand_no_corner(self) -> None:
+        """Raises ProgramError where a corner still waits for the element behind it."""
+        corner, self._corner = self._corner, None
+        if corner is not None:
+            text = f"{corner.form} needs a path in the working plane behind it."
+            raise self._state.refuse(
+                corner.column, ROUNDING, text, "Put it between two elements of the contour."
+            )
+
     def _close(self, leave: Move | None) -> Iterator[Block]:
         """The contour that has been collected, compensated, and the way off it where DEP says one."""
+        self._demand_no_corner()
         side, self._side = self._side, ""
         waiting, self._waiting, self._end = self._waiting, [], None
         radius = self._state.tool_radius / self._state.figure.factor
@@ -314,15 +356,22 @@ class PathRunner:
         goals: Mapping[str, float] = dict(zip(SLIDES, state.machine(each.end), strict=True))
         if not any(abs(goals[name] - state.at[name]) > SAME_POINT for name in SLIDES):
             goals = {}
-        rate = None if each.feed is None else (state.path_feed(each.feed) if goals else each.feed / 60.0)
+        rate = None if each.feed is None else state.path_feed(each.feed)
+        if rate is not None and each.feed is not None and not goals:
+            rate = rotary_feed(state, each.feed, each.rotary)
         return state.move(Kind.RAPID if rate is None else Kind.FEED, {**goals, **each.rotary}, rate)
 
     def _arc(self, each: PathElement, arc: Arc) -> Block:
         state = self._state
-        z0, z1 = (state.figure.plane((0.0, 0.0, at))[2] for at in (each.start[2], each.end[2]))
         names = state.names
         columns = names.index("X"), names.index("Y"), names.index("Z")
-        way = HelixMove(state.place, state.figure.arc(arc), z0, z1, state.there, columns)
+        if each.upright:
+            arc, frame = state.figure.upright(arc, each.order)
+            w0, w1 = (seen(each.order, at)[2] * state.figure.factor for at in (each.start, each.end))
+            way = HelixMove(state.place, arc, w0, w1, state.there, columns, frame)
+        else:
+            z0, z1 = (state.figure.plane((0.0, 0.0, at))[2] for at in (each.start[2], each.end[2]))
+            way = HelixMove(state.place, state.figure.arc(arc), z0, z1, state.there, columns)
         goals = dict(zip(SLIDES, state.machine(each.end), strict=True))
         rate = None if each.feed is None else state.path_feed(each.feed)
         return state.move(Kind.PLANE_ARC, goals, rate, way)
@@ -332,12 +381,14 @@ class PathRunner:
         state, feed = self._state, self._take_feed(node)
         if feed is not None:
             _warn(state, node)
-        goals = _rotary(state, node)
+        goals = _rotary(state, node, dict.fromkeys(state.rotary_names, 0.0))
         for axis, now in zip(SLIDES, state.slides, strict=True):
             if (word := node.word(axis)) is not None:
                 value = word_values.coordinate(state, word)
                 goals[axis] = now + value if word.incremental else value
-        linear = any(abs(goals.get(name, state.at[name]) - state.at[name]) > SAME_POINT for name in SLIDES)
+        ways = [goals.get(name, state.at[name]) - state.at[name] for name in SLIDES]
+        linear = any(abs(way) > SAME_POINT for way in ways)
+        feed = plunged(state, feed, math.hypot(*ways), -ways[2])
         rate = None if feed is None else (state.path_feed(feed) if linear else feed / 60.0)
         yield state.move(Kind.RAPID if rate is None else Kind.FEED, goals, rate)
 
@@ -352,11 +403,27 @@ class PathRunner:
     def _take_feed(self, node: Move) -> float | None:
         """The feed of the block, None for rapid, which holds for this block alone."""
         state = self._state
-        feed = word_values.feed_word(state, node.feed, node.axes[0].column if node.axes else node.column)
-        if feed is not None and feed != state.feed:
-            state.feed = feed
-            state.modal = state.modal._replace(feed=state.path_feed(feed))
+        column = node.axes[0].column if node.axes else node.column
+        found = word_values.programmed_feed(state, node.feed, column)
+        if found is None:
+            return None
+        feed = per_minute(state, *found, column)
+        state.feed, state.feed_per = found
+        if (rate := state.path_feed(feed)) != state.modal.feed:
+            state.modal = state.modal._replace(feed=rate)
         return feed
+
+
+def _plunged(state: State, each: PathElement) -> float | None:
+    """Its feed, which M103 lowers on the way down."""
+    if state.plunging is None:
+        return each.feed
+    down = each.start[2] - each.end[2]
+    if each.upright:
+        text = "An arc that stands upright while M103 is on"
+        raise unsupported(each.line, each.column, text)
+    along = math.dist(each.start, each.end) if each.arc is None else math.hypot(each.arc.length, down)
+    return plunged(state, each.feed, along, down)
 
 
 def _reshaped(element: PathElement, flat: Element, z0: float, z1: float) -> PathElement:
@@ -365,15 +432,20 @@ def _reshaped(element: PathElement, flat: Element, z0: float, z1: float) -> Path
     return replace(element, start=(*flat.start, z0), end=(*flat.end, z1), arc=arc)
 
 
-def _rotary(state: State, node: Move) -> dict[str, float]:
-    """Rotary axes by the short way where they are modulo; an incremental word is the way itself."""
+def _rotary(state: State, node: Move, zero: Mapping[str, float]) -> dict[str, float]:
+    """Rotary axes by the short way where they are modulo; an incremental word is the way itself.
+
+    Words count from ``zero``. With M127 the way is what the figures differ by, as they are displayed.
+    """
     found = {}
     for axis in state.kinematics.rotaries:
         word: AxisWord | None = node.word(axis.name)
         if word is not None:
             value, now = word_values.coordinate(state, word), state.at[axis.name]
             state.table_known = state.table_known or not word.incremental
-            found[axis.name] = now + (value if word.incremental else axis.travel(now, value))
+            begin = now - zero[axis.name]
+            way = axis.travel(begin, value) if state.short_way else value - axis.displayed(begin)
+            found[axis.name] = now + (value if word.incremental else way)
     return found
 
 

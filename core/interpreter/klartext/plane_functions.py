@@ -85,11 +85,14 @@ def _axial(state: State, node: Plane) -> WorkingPlane:
         axis = state.kinematics.rotary(word.axis)
         if axis is None:
             text = f"This machine has no rotary axis {word.axis}."
-            raise state.refuse(word.column, WRONG_AXIS, text, "Take the word out.")
+            hint = f"Take the word out, or choose a machine that has {word.axis}."
+            raise state.refuse(word.column, WRONG_AXIS, text, hint)
         value = word_values.number(state, word.value, word.axis, word_values.MOST_ANGLE)
-        angle = angles[axis.name] + value if word.incremental else value
+        zero = state.kinematics.zero[axis.name]
+        angle = angles[axis.name] + value if word.incremental else value + zero
         if not axis.inside(angle):
-            text = f"{axis.name} {angle:+.7g} is not between {axis.low:g} and {axis.high:g}."
+            ends = f"{axis.low - zero:g} and {axis.high - zero:g}"
+            text = f"{axis.name} {angle - zero:+.7g} is not between {ends}."
             raise state.refuse(word.column, ANGLE, text, "Correct the angle.")
         angles[axis.name] = axis.displayed(angle)
     return WorkingPlane(state.kinematics.frame(angles), angles, state.line)
@@ -166,14 +169,15 @@ def plane(state: State, node: Plane) -> Iterator[Block]:
     """
     _demand_possible(state, node)
     made = None if node.form == "RESET" else working_plane(state, node)
-    targets = dict.fromkeys(state.rotary, 0.0) if made is None else made.targets
+    targets = state.kinematics.zero if made is None else made.targets
     way = node.positioning.way or "STAY"
     feed = word_values.feed_word(state, node.positioning.feed, node.column) if way != "STAY" else None
     up = retract_way(state, node.positioning.retract)
     distance = word_values.length(state, node.positioning.distance, "DIST")
     _warn_of_shift(state, made)
-    for q, axis in zip(Q_TARGETS, ROTARY, strict=True):
-        state.q[q] = targets.get(axis, 0.0)
+    for q, name in zip(Q_TARGETS, ROTARY, strict=True):
+        axis = state.kinematics.rotary(name)
+        state.q[q] = 0.0 if axis is None else state.kinematics.shown(axis, targets[name])
     if up > SAME_POINT:
         yield retract(state, up, feed)
     pivot = _pivot(state, distance) if way == "MOVE" else None
@@ -213,7 +217,7 @@ def _demand_possible(state: State, node: Plane) -> None:
     if state.m128:
         text = "M128 is on."
         raise state.refuse(node.column, M128_ON, text, "Switch it off with M129 before.")
-    if not state.tool_axis:
+    if not state.tool_axis and node.form != "RESET":
         text = "No TOOL CALL has named a tool axis."
         raise state.refuse(node.column, TOOL_AXIS_MISSING, text, "Write TOOL CALL n Z before.")
 

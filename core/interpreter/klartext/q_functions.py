@@ -1,4 +1,4 @@
-"""Q parameters while a program runs: what they hold, formulas, jumps, figures of the control (FN 18)."""
+"""Q parameters while a program runs: what they hold, formulas, jumps, errors of the program."""
 
 from __future__ import annotations
 
@@ -8,20 +8,21 @@ from core.interpreter.formula_values import NoValueError, worth
 from core.interpreter.klartext.klartext_state import State
 from core.language.diagnostics import ProgramError
 from core.language.formulas import Formula, Parameter
+from core.language.klartext.cycle_blocks import PREDEFINED
 from core.language.klartext.klartext_faults import (
     ARITHMETIC,
+    CYCLE_MISSING,
     INPUT_VALUE,
     OWN_ERROR,
-    Q_UNDEFINED,
-    unsupported,
+    MissingValueError,
 )
-from core.language.klartext.klartext_nodes import Assign, ErrorMessage, Jump, SystemRead
+from core.language.klartext.klartext_nodes import Assign, ErrorMessage, GlobalDef, Jump
+from core.language.klartext.q_parameters import WHETHER
 
 MOST_Q = 999_999_999.999999
 SMALLEST = 1e-9  # a result nearer to 0 is what rounding has left of 0
 
-# Parameters that the control itself keeps up to date.
-_OF_THE_CONTROL: dict[int, Callable[[State], float]] = {
+OF_THE_CONTROL: dict[int, Callable[[State], float]] = {
     108: lambda state: state.tool_radius / state.scale,
     109: lambda state: 2.0 if state.tool_axis else -1.0,
     110: lambda state: {1: 0.0, -1: 1.0, 0: -1.0}[state.modal.spindle],
@@ -29,6 +30,7 @@ _OF_THE_CONTROL: dict[int, Callable[[State], float]] = {
     113: lambda state: 0.0 if state.scale == 1.0 else 1.0,
     114: lambda state: state.tool_length / state.scale,
 }
+"""Parameters that the control itself keeps up to date."""
 
 
 def content(state: State, kind: str, number: int, column: int) -> float:
@@ -36,12 +38,31 @@ def content(state: State, kind: str, number: int, column: int) -> float:
     if kind != "Q":
         if (kind, number) in state.q_beside:
             return state.q_beside[kind, number]
-    elif number in _OF_THE_CONTROL:
-        return _OF_THE_CONTROL[number](state)
+    elif number in OF_THE_CONTROL:
+        return OF_THE_CONTROL[number](state)
     elif number in state.q:
         return state.q[number]
-    text = f"{kind}{number} has no value yet."
-    raise state.refuse(column, Q_UNDEFINED, text, f"Write {kind}{number} = … before.")
+    raise MissingValueError(state.line, column, (kind, number))
+
+
+def _has_value(state: State, kind: str, number: int) -> bool:
+    if kind != "Q":
+        return (kind, number) in state.q_beside
+    return number in OF_THE_CONTROL or number in state.q
+
+
+def _predefined(state: State, number: int, column: int) -> float:
+    """What GLOBAL DEF has told for a parameter of cycles. Raises ProgramError where none has."""
+    if number not in state.q_global:
+        text = f"Q{number}=PREDEF, and no GLOBAL DEF has told Q{number}."
+        raise state.refuse(column, CYCLE_MISSING, text, "Write GLOBAL DEF before, or a number.")
+    return state.q_global[number]
+
+
+def predefine(state: State, node: GlobalDef) -> None:
+    """GLOBAL DEF: what PREDEF means in the cycles behind it. Raises ProgramError."""
+    for each in node.values:
+        state.q_global[each.q] = value(state, each.formula)
 
 
 def value(state: State, formula: Formula) -> float:
@@ -49,6 +70,10 @@ def value(state: State, formula: Formula) -> float:
 
     def parameter(asked: Parameter) -> float:
         assert isinstance(asked.number, int)  # Q has no computed numbers
+        if asked.letters == PREDEFINED:
+            return _predefined(state, asked.number, asked.column)
+        if asked.letters.endswith(WHETHER):
+            return float(_has_value(state, asked.letters.removesuffix(WHETHER), asked.number))
         return content(state, asked.letters, asked.number, asked.column)
 
     try:
@@ -83,33 +108,3 @@ def own_error(state: State, node: ErrorMessage) -> ProgramError:
     """FN 14: the fault that the program itself tells, and stops at."""
     text = f"The program tells its error {node.number} and stops."
     return state.refuse(node.column, OWN_ERROR, text, "Look at the conditions before this block.")
-
-
-_POSITIONS = {1: "X", 2: "Y", 3: "Z", 4: "A", 5: "B", 6: "C"}
-
-
-def read_system(state: State, node: SystemRead) -> None:
-    """FN 18. Raises ProgramError for figures that this control has not."""
-    group, number = int(value(state, node.group)), int(value(state, node.number))
-    index = int(value(state, node.index)) if node.index is not None else 0
-    keep(state, node.kind, node.q, _figure(state, node.column, group, number, index))
-
-
-def _figure(state: State, column: int, group: int, number: int, index: int) -> float:
-    known: dict[tuple[int, int], Callable[[], float]] = {
-        (20, 1): lambda: float(state.modal.tool),
-        (20, 3): lambda: 2.0,
-        (20, 4): lambda: state.modal.rpm,
-        (20, 5): lambda: _OF_THE_CONTROL[110](state),
-        (20, 8): lambda: _OF_THE_CONTROL[111](state),
-        (20, 9): lambda: state.feed or 0.0,
-        (50, 1): lambda: state.tool_length / state.scale,
-        (50, 2): lambda: state.tool_radius / state.scale,
-    }
-    if (group, number) in known and (group != 50 or index in {0, state.modal.tool}):
-        return known[group, number]()
-    if (group, number) == (240, 1) and _POSITIONS.get(index) in state.at:
-        return state.at[_POSITIONS[index]] / (state.scale if index <= 3 else 1.0)
-    if (group, number) == (270, 1) and index in {1, 2, 3}:
-        return state.programmed[index - 1] / state.scale
-    raise unsupported(state.line, column, f"FN 18 with ID{group} NR{number} IDX{index}")

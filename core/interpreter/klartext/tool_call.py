@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from core.interpreter.actions import ProgramStop, SpindleRun, SpindleStop, ToolChange
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.interpretation import ToolUse
 from core.interpreter.klartext import word_values
+from core.interpreter.klartext.feed_rates import MOST_FEED, REVOLUTION
 from core.interpreter.klartext.klartext_state import State
+from core.interpreter.klartext.text_values import text_of
 from core.language.klartext.klartext_faults import NOT_WITH_M128, TOOL_UNKNOWN, WRONG_RPM, unsupported
-from core.language.klartext.klartext_nodes import ToolCall, ToolDef, Value
+from core.language.klartext.klartext_nodes import TextName, ToolCall, ToolDef, Value
+from core.language.klartext.structure_blocks import MOST_TOOL
 
 NAMED_TOOLS = 32768
 """Numbers from here on stand for tools that TOOL DEF has named."""
@@ -27,12 +31,14 @@ def tool_call(state: State, node: ToolCall, use: ToolUse) -> Iterator[Block]:
     if node.tool_axis not in {"", "Z"}:
         raise unsupported(state.line, node.column, f"The tool axis {node.tool_axis}")
     number = _number(state, node.tool, node.column)
-    rpm = _speed(state, node)
+    rpm = _speed(state, node, number)
     feed = _feed(state, node)
     longer, thicker = _oversize(state, node.length, "DL"), _oversize(state, node.radius, "DR")
     state.tool_axis = node.tool_axis or state.tool_axis
     if feed is not None:
         state.feed = state.tool_feed = feed
+        per = node.feed_per or (REVOLUTION if state.per_revolution else "")
+        state.feed_per = state.tool_feed_per = per
     elif node.tool is not None:
         state.tool_feed = None
     if number is not None:
@@ -53,15 +59,22 @@ def define_tool(state: State, node: ToolDef) -> None:
     state.tool_defs[node.tool] = length, _oversize(state, node.radius, "R", word_values.MOST_COORDINATE)
 
 
-def _number(state: State, tool: int | str | None, column: int) -> int | None:
-    """The number of a tool that is called; one by name has to be defined in the program."""
+def _number(state: State, tool: int | str | Value | TextName | None, column: int) -> int | None:
+    """The number of a tool that is called; one by name stands in the program or in the tool table."""
+    if isinstance(tool, TextName):
+        tool = text_of(state, tool)
+    if isinstance(tool, Value):
+        return round(word_values.number(state, tool, "TOOL CALL", MOST_TOOL, 0.0))
     if not isinstance(tool, str):
         return tool
     names = [each for each in state.tool_defs if isinstance(each, str)]
-    if tool not in names:
-        text = f'No tool is called "{tool}".'
-        raise state.refuse(column, TOOL_UNKNOWN, text, "Call it by its number, or write TOOL DEF before.")
-    return NAMED_TOOLS + names.index(tool)
+    if tool in names:
+        return NAMED_TOOLS + names.index(tool)
+    if (found := state.setup.tool_names.get(tool.upper())) is not None:
+        return found
+    text = f'No tool is called "{tool}".'
+    hint = "Give a tool of the tool table this name, or call it by its number."
+    raise state.refuse(column, TOOL_UNKNOWN, text, hint)
 
 
 def _oversize(state: State, value: Value | None, what: str, most: float = 99.999) -> float:
@@ -76,8 +89,8 @@ def _change(
     if state.modal.spindle:
         state.modal = state.modal._replace(spindle=0)
         yield state.action(SpindleStop())
-    _measure(state, tool, longer, thicker, use, column)
     state.modal = state.modal._replace(tool=tool)
+    _measure(state, tool, longer, thicker, use, column)
     yield state.action(ToolChange(tool))
     if tool and before not in {0, tool}:
         yield state.action(ProgramStop(optional=False, message=f"TOOL {tool}"))
@@ -88,19 +101,35 @@ def _measure(state: State, tool: int, longer: float, thicker: float, use: ToolUs
 
     0 with a warning where nobody has measured it.
     """
-    length, radius = 0.0, 0.0
-    defined = state.tool_defs.get(tool) or state.tool_defs.get(_name_of(state, tool))
-    if defined is not None:
-        length, radius = defined
-    elif tool:
-        offset = use.offset(tool, state.setup.tools)
-        if offset is not None:
-            length, radius = offset.z, offset.nose_radius
-        else:
-            text = f"Tool {tool} has no offset; 0 is used, and the machine will refuse to start."
-            state.log.warn(state.line, column, "tool-offset-missing", text, "Set the tool's offset.")
+    state.oversize = longer, thicker
+    if 0 < tool < NAMED_TOOLS:
+        use.call(tool)
+    if _defined(state, tool) is None and tool and use.offset(tool, state.setup.tools) is None:
+        text = f"Tool {tool} has no offset; 0 is used, and the machine will refuse to start."
+        state.log.warn(state.line, column, "tool-offset-missing", text, "Set the tool's offset.")
+    measure_again(state)
+
+
+def measure_again(state: State) -> None:
+    """Length and radius of the tool in the spindle as TOOL DEF or the table have them now."""
+    tool, (longer, thicker) = state.modal.tool, state.oversize
+    offset = state.setup.tools.get(tool)
+    table = (offset.z, offset.nose_radius) if tool and offset is not None else (0.0, 0.0)
+    length, radius = _defined(state, tool) or table
     state.tool_length, state.tool_radius = length + longer, radius + thicker
     state.derive()
+
+
+def radius_of(state: State, tool: int) -> float | None:
+    """Radius of a tool without oversizes, mm, as TOOL DEF or the table have it; None where neither does."""
+    if (told := _defined(state, tool)) is not None:
+        return told[1]
+    offset = state.setup.tools.get(tool)
+    return None if offset is None else offset.nose_radius
+
+
+def _defined(state: State, tool: int) -> tuple[float, float] | None:
+    return state.tool_defs.get(tool) or state.tool_defs.get(_name_of(state, tool))
 
 
 def _name_of(state: State, tool: int) -> str:
@@ -109,7 +138,20 @@ def _name_of(state: State, tool: int) -> str:
     return names[at] if 0 <= at < len(names) else ""
 
 
-def _speed(state: State, node: ToolCall) -> float | None:
+def _by_cutting_speed(state: State, node: ToolCall, number: int | None) -> float:
+    """S(VC = 120): metres a minute at the tool's radius, rpm. Raises ProgramError where it has none."""
+    assert node.cutting_speed is not None
+    speed = word_values.number(state, node.cutting_speed, "VC", word_values.MOST_SPEED, 0.0)
+    radius = radius_of(state, state.modal.tool if number is None else number) or 0.0
+    if radius <= 0.0:
+        text = "A cutting speed needs the tool's radius, and it has none."
+        raise state.refuse(node.cutting_speed.column, WRONG_RPM, text, "Write R into the tool table, or S.")
+    return speed * 1000.0 / (2.0 * math.pi * radius)
+
+
+def _speed(state: State, node: ToolCall, number: int | None) -> float | None:
+    if node.cutting_speed is not None:
+        return min(_by_cutting_speed(state, node, number), state.setup.limits.max_rpm)
     if node.speed is None:
         return None
     rpm = word_values.number(state, node.speed, "S", word_values.MOST_SPEED, 0.0)
@@ -123,5 +165,5 @@ def _speed(state: State, node: ToolCall) -> float | None:
 def _feed(state: State, node: ToolCall) -> float | None:
     if node.feed is None:
         return None
-    feed = word_values.number(state, node.feed, "F", word_values.MOST_FEED, 0.0)
+    feed = word_values.number(state, node.feed, "F", MOST_FEED, 0.0)
     return feed or None

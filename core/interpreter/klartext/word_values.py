@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from core.interpreter.klartext.feed_rates import MOST_FEED, REVOLUTION, per_minute
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.q_functions import content
 from core.language.diagnostics import ProgramError
@@ -13,7 +14,6 @@ MOST_ANGLE = 99_999_999.9999999  # of PLANE AXIAL
 MOST_POINT = 999_999_999.999999  # of PLANE POINTS
 MOST_SPATIAL = 359.9999
 MOST_COORDINATE = 99_999.9999
-MOST_FEED = 99_999.999
 MOST_SPEED = 99_999.999
 
 
@@ -42,25 +42,32 @@ def length(state: State, value: Value | None, what: str) -> float:
 
 
 def feed_word(state: State, feed: Feed | None, column: int) -> float | None:
-    """F as programmed, None for rapid; without a word the one in force.
+    """F in its unit a minute, None for rapid; without a word the one in force.
 
-    Raises ProgramError where there is none, and for one that is not above zero.
+    Raises ProgramError where there is none, for one that is not above zero, and for one that counts by a
+    spindle that stands.
     """
+    found = programmed_feed(state, feed, column)
+    return None if found is None else per_minute(state, *found, column if feed is None else feed.column)
+
+
+def programmed_feed(state: State, feed: Feed | None, column: int) -> tuple[float, str] | None:
+    """F as programmed and what it counts by (U a revolution, Z a tooth); None for rapid."""
     if feed is None:
         if state.feed is None:
             raise _missing(state, column, "No feed is in force.", "Write F or FMAX.")
-        return state.feed
+        return state.feed, state.feed_per
     if feed.kind == "max":
         return None
     if feed.kind == "auto":
         if state.tool_feed is None:
             raise _missing(state, feed.column, "The last TOOL CALL has no F.", "Write F behind TOOL CALL.")
-        return state.tool_feed
+        return state.tool_feed, state.tool_feed_per
     assert feed.value is not None
     found = number(state, feed.value, "F", MOST_FEED, 0.0)
     if found <= 0.0:
         raise state.refuse(feed.column, INPUT_VALUE, "F must be above zero.", "Write a feed.")
-    return found
+    return found, feed.per or (REVOLUTION if state.per_revolution else "")
 
 
 def _missing(state: State, column: int, text: str, hint: str) -> ProgramError:

@@ -1,4 +1,4 @@
-"""CALL PGM and cycle 12: the files that a Klartext program names."""
+"""CALL PGM, SEL PGM, cycle 12, SEL TABLE and SEL PATTERN: the files that a Klartext program names."""
 
 from __future__ import annotations
 
@@ -8,14 +8,29 @@ from collections.abc import Iterator
 from core.language.source import Source
 
 ENDING = ".H"
-_CALL = re.compile(r"CALL\s+PGM\s+(.+)|CYCL\s+DEF\s+12\.1\s+(?:PGM\s*)?(.+)", re.IGNORECASE)
+_CALL = re.compile(
+    r"(?:CALL\s+PGM|SEL\s+(?:PGM|TABLE|PATTERN|CONTOUR))\s+(.+)|CYCL\s+DEF\s+12\.1\s+(?:PGM\s*|%\s*)?(.+)|TABOPEN\s+(.+)",
+    re.IGNORECASE,
+)
+_IN_TEXT = re.compile(r'"([^"]*\.(?:H|D|PNT|TAB))"', re.IGNORECASE)  # of a text that may name a file
+_OF_CONTOURS = re.compile(r"(?:DECLARE\s+CONTOUR|CONTOUR\s+DEF)\s", re.IGNORECASE)
+_QUOTED = re.compile(r'"([^"]+)"')
+_HINTS = ("PGM", "TABLE", "PATTERN", "TABOPEN", "12.1", "CONTOUR", "QS", "QC")
 
 
 def called_programs(source: Source) -> Iterator[str]:
-    """Names of the files that the program calls, in capitals."""
+    """Names of the files that the program calls or selects, in capitals."""
     for text in source.lines:
-        if "PGM" in text.upper() and (match := _CALL.search(text.split(";", 1)[0])):
-            yield file_name(match.group(1) or match.group(2))
+        if not any(hint in text.upper() for hint in _HINTS):
+            continue
+        code = text.split(";", 1)[0]
+        if match := _CALL.search(code):
+            yield file_name(next(filter(None, match.groups())))
+        if _OF_CONTOURS.search(code):
+            yield from (file_name(quoted) for quoted in _QUOTED.findall(code))
+            continue
+        for quoted in _IN_TEXT.findall(code):
+            yield file_name(quoted)
 
 
 def file_name(named: str) -> str:

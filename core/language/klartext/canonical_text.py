@@ -54,8 +54,10 @@ def _path(node: nodes.Move) -> str:
 
 
 def _tool_call(node: nodes.ToolCall) -> str:
-    words = (("S", node.speed), ("F", node.feed), ("DL", node.length), ("DR", node.radius))
-    tool = "" if node.tool is None else name_text(node.tool)
+    words = (("S", node.speed), (f"F{node.feed_per}", node.feed), ("DL", node.length), ("DR", node.radius))
+    tool = _value(node.tool, plus=False) if isinstance(node.tool, nodes.Value) else ""
+    if isinstance(node.tool, (int, str, nodes.TextName)):
+        tool = name_text(node.tool)
     shown = [f"{word}{_value(value, plus=word[0] == 'D')}" for word, value in words if value is not None]
     return _joined("TOOL CALL", tool, node.tool_axis, *shown)
 
@@ -82,7 +84,7 @@ def _axes(words: tuple[nodes.AxisWord, ...]) -> str:
 def _feed(feed: nodes.Feed | None) -> str:
     if feed is None:
         return ""
-    return _FEEDS[feed.kind] if feed.value is None else f"F{_value(feed.value, plus=False)}"
+    return _FEEDS[feed.kind] if feed.value is None else f"F{feed.per}{_value(feed.value, plus=False)}"
 
 
 def _retract(way: nodes.Retract | None) -> str:
@@ -97,8 +99,10 @@ def _value(value: nodes.Value, *, plus: bool = True) -> str:
     return f"{value.number:{'+' if plus else ''}.9f}".rstrip("0").rstrip(".")
 
 
-def name_text(name: int | str) -> str:
-    """The number of a label or a tool, or its name in quotes."""
+def name_text(name: int | str | nodes.TextName) -> str:
+    """The number of a label or a tool, its name in quotes, or the text parameter that holds it."""
+    if isinstance(name, nodes.TextName):
+        return f"QS{name.number}"
     return f'"{name}"' if isinstance(name, str) else str(name)
 
 

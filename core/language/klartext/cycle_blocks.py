@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 
+from core.language.formulas import Parameter
 from core.language.klartext import q_parameters
-from core.language.klartext.klartext_faults import syntax
+from core.language.klartext.klartext_faults import unsupported
 from core.language.klartext.klartext_nodes import (
     AxisWord,
     Cycle,
@@ -14,15 +15,22 @@ from core.language.klartext.klartext_nodes import (
     CycleValue,
     Datum,
     Feed,
+    GlobalDef,
     Node,
     Transform,
 )
 from core.language.klartext.line_cursor import Cursor, axis_words, feed
 from core.language.klartext.path_block import codes_to_the_end
 
-_NUMBER = re.compile(r"([0-9]{1,3})(?:\.([0-9]{1,2}))?(?![0-9.])")
+_NUMBER = re.compile(r"([0-9]{1,3})(?:\s*\.([0-9]{1,2}))?(?![0-9.])")
+_TEXT_VALUE = re.compile(r"QS\s*[0-9]+\s*=")
 _Q_VALUE = re.compile(r"Q\s*[0-9]+\s*=")
-_NEW = 200  # cycles from here on are told by Q parameters
+_NEW = 200  # cycles from here on are told by Q parameters,
+_OF_CONTOURS = frozenset(range(20, 30)) | {39}  # and those of contours
+_BY_TEXT = frozenset({12, 14})  # their lines name a program, labels
+_PRESET, _PRESET_NUMBER = 247, 339
+PREDEFINED = "PREDEF"
+"""What a parameter of a cycle holds that GLOBAL DEF has told."""
 _DATUM, _MIRROR, _ROTATION, _SCALE = 7, 8, 10, 11
 
 
@@ -32,8 +40,8 @@ def cycle(cursor: Cursor, column: int) -> Node:
     if match is None:
         raise cursor.expected("CYCL DEF needs the number of a cycle")
     number, part = int(match.group(1)), match.group(2)
-    if number >= _NEW:
-        return Cycle(number, _values(cursor), column)
+    if number >= _NEW or (number in _OF_CONTOURS and part in {None, "0"}):
+        return Cycle(number, _values(cursor, f"CYCL DEF {number}"), column)
     if part is None:
         raise cursor.expected(f"CYCL DEF {number} needs its line", f"Write CYCL DEF {number}.0.")
     if number == _DATUM:
@@ -46,17 +54,39 @@ def cycle(cursor: Cursor, column: int) -> Node:
 def call(cursor: Cursor, column: int) -> CycleCall:
     """Behind ``CYCL CALL``."""
     if cursor.keyword("PAT"):
-        raise syntax(
-            cursor.line, column, "CYCL CALL PAT needs a table of points.", "Write the points with M99."
-        )
+        speed = feed(cursor)
+        return CycleCall((), speed, codes_to_the_end(cursor), column, pattern=True)
     if not cursor.keyword("POS"):
         return CycleCall(codes=codes_to_the_end(cursor), column=column)
     axes = axis_words(cursor, "XYZ")
     return CycleCall(axes, feed(cursor), codes_to_the_end(cursor), column)
 
 
-def _values(cursor: Cursor) -> tuple[CycleValue, ...]:
+_SELECTED = re.compile(r"#")
+
+
+def global_definition(cursor: Cursor, column: int) -> GlobalDef:
+    """Behind ``GLOBAL DEF``: its number, which groups the parameters for the operator, and they."""
+    match = cursor.take(_NUMBER)
+    if match is None:
+        raise cursor.expected("GLOBAL DEF needs its number")
+    return GlobalDef(_values(cursor, f"GLOBAL DEF {match.group(1)}"), column)
+
+
+def preset(cursor: Cursor, column: int) -> Cycle:
+    """``PRESET SELECT #3``, which is cycle 247. Raises ProgramError for what keeps transformations."""
+    if cursor.take(_SELECTED) is None:
+        raise unsupported(cursor.line, column, "PRESET SELECT by a text")
+    at, row = cursor.column, cursor.value("#")
+    if not cursor.done:
+        raise unsupported(cursor.line, cursor.column, f"PRESET SELECT with {cursor.rest()}")
+    return Cycle(_PRESET, (CycleValue(_PRESET_NUMBER, row.formula, at),), column)
+
+
+def _values(cursor: Cursor, of: str) -> tuple[CycleValue, ...]:
     """The Q parameters behind the cycle's name, which says nothing."""
+    if text := _TEXT_VALUE.search(cursor.upper, cursor.at):
+        raise unsupported(cursor.line, text.start() + 1, f"{of} with a text (QS)")
     first = _Q_VALUE.search(cursor.upper, cursor.at)
     if first is None:
         cursor.rest()
@@ -69,13 +99,25 @@ def _values(cursor: Cursor) -> tuple[CycleValue, ...]:
             raise cursor.expected("A cycle takes Q parameters", "Write Q200=+2 and so on.")
         _, number = q_parameters.parameter(cursor)
         cursor.take(re.compile(r"="))
-        found.append(CycleValue(number, q_parameters.formula(cursor, f"Q{number}"), column))
+        if cursor.keyword(PREDEFINED):
+            found.append(CycleValue(number, Parameter(PREDEFINED, number, column), column))
+        else:
+            found.append(CycleValue(number, q_parameters.formula(cursor, f"Q{number}"), column))
     return tuple(found)
+
+
+_FROM_TABLE = re.compile(r"#")
 
 
 def _datum(cursor: Cursor, part: int) -> Datum:
     if part == 0:
         return Datum(cycle=0, text=cursor.rest())
+    column = cursor.column
+    if cursor.take(_FROM_TABLE):
+        made = Datum(cycle=part, row=cursor.value("#"), column=column)
+        if not cursor.done:
+            raise cursor.expected("No word of cycle 7")
+        return made
     axes = axis_words(cursor, "XYZABC")
     if not axes:
         raise cursor.expected(f"CYCL DEF 7.{part} takes X, Y or Z")
@@ -84,7 +126,7 @@ def _datum(cursor: Cursor, part: int) -> Datum:
     return Datum(axes, cycle=part)
 
 
-_LETTERS = re.compile(r"[XYZUVW](?![A-Z0-9])")
+_LETTERS = re.compile(r"[XYZ](?![A-Z0-9])")
 _ROT = re.compile(r"(I?)ROT(?![A-Z])")
 _SCL = re.compile(r"SCL(?![A-Z])")
 
@@ -141,7 +183,7 @@ def _line(cursor: Cursor, number: int, part: int, column: int) -> CycleLine:
     text: list[str] = []
     speed: Feed | None = None
     turn = ""
-    if part == 0 or number == 12:
+    if part == 0 or number in _BY_TEXT:
         return CycleLine(number, part, text=cursor.rest(), column=column)
     while not cursor.done:
         at = cursor.column
@@ -172,3 +214,15 @@ _FEED = re.compile(r"F(?=\s*(?:[0-9.,Q]|MAX|AUTO))")
 
 def _feed(cursor: Cursor) -> Feed | None:
     return feed(cursor) if _FEED.match(cursor.upper, cursor.at) else None
+
+
+_LABEL = re.compile(r'/?\s*(?:([0-9]+)|"([^"]*)")\s*')
+
+
+def contour_labels(text: str) -> tuple[int | str, ...]:
+    """Labels in a line of cycle 14, behind whatever its name is in the language of the control."""
+    first = re.search(r'[0-9"]', text)
+    return tuple(
+        int(match.group(1)) if match.group(1) else match.group(2)
+        for match in _LABEL.finditer(text[first.start() :] if first else "")
+    )

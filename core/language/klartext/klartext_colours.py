@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from core.language.klartext.klartext_line import comment_start, read_line
-from core.language.syntax_colours import Ink, Span
+from core.language.klartext.klartext_line import CONTINUED, comment_start, read_line
+from core.language.syntax_colours import PLAIN, Ink, Span
 
 _VALUE = r"\s*[+-]?\s*(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+|Q[LR]?\s*[0-9]+)"
 _PATTERNS = (
@@ -30,13 +30,33 @@ _HEAD = re.compile(r"\s*(/?\s*[0-9]*\s*/?)")
 _TO_BLANK = re.compile(r"\S*")
 
 
-def spans(text: str) -> list[Span]:
-    """The coloured parts of a line, a fault last so that it is seen."""
-    line = read_line(1, text)
-    end = len(text) if line.comment is None else comment_start(text)
-    found = [*_words(text, end)]
+BLOCK_GOES_ON, COMMENT_GOES_ON = 1, 2
+"""What a line that ends with ~ hands on to the next."""
+
+
+def spans(text: str, before: int = PLAIN) -> tuple[list[Span], int]:
+    """The coloured parts of a line, a fault last so that it is seen, and the state for the next line.
+
+    A block of several lines (~) is one block: a part of it is no fault because it is none of its own. What is
+    wrong in it is told where the program is checked.
+    """
+    goes_on = text.rstrip().endswith(CONTINUED)
+    end = comment_start(text)
+    if before == COMMENT_GOES_ON:
+        return ([Span(0, len(text), Ink.COMMENT)] if text else []), COMMENT_GOES_ON if goes_on else PLAIN
+    found = [*_words(text, end, numbered=before == PLAIN)]
     if end < len(text):
         found.append(Span(end, len(text) - end, Ink.COMMENT))
+    if goes_on:
+        bare = before == PLAIN and not text[:end].strip(" \t/0123456789")
+        return found, COMMENT_GOES_ON if bare and end < len(text) else BLOCK_GOES_ON
+    if before == PLAIN:
+        found += _fault(text)
+    return found, PLAIN
+
+
+def _fault(text: str) -> list[Span]:
+    line, found = read_line(1, text), []
     if line.error is not None:
         at = min(line.error.column, len(text)) - 1
         word = _TO_BLANK.match(text, max(at, 0))
@@ -45,9 +65,9 @@ def spans(text: str) -> list[Span]:
     return found
 
 
-def _words(text: str, end: int) -> list[Span]:
+def _words(text: str, end: int, *, numbered: bool) -> list[Span]:
     found = []
-    head = _HEAD.match(text, 0, end)
+    head = _HEAD.match(text, 0, end) if numbered else None
     at = head.end() if head is not None else 0
     if head is not None and head.group(1).strip():
         found.append(Span(head.start(1), len(head.group(1).rstrip()), Ink.NUMBER))

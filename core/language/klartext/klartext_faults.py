@@ -32,12 +32,26 @@ CYCLE_MISSING = "Cycle incomplete"
 OWN_ERROR = "Error of the program"
 TOOL_UNKNOWN = "Tool not defined"
 FILE_MISSING = "Program not found"
+M_UNDEFINED = "M function not defined"
+NO_PROBE = "No touch probe"
+CYCLE_UNKNOWN = "Cycle not defined"
+NO_TABLE = "Datum table missing"
 
 
 def fault(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
     """The error to raise; the message begins with the code, which is what the control would show."""
     text = message if message.startswith(code) else f"{code}: {message}"
     return program_error(line, column, code, text, hint)
+
+
+class MissingValueError(ProgramError):
+    """A parameter that nothing has given a value: its kind (Q, QL, QR, QS) and number."""
+
+    def __init__(self, line: int, column: int, parameter: tuple[str, int]) -> None:
+        name = f"{parameter[0]}{parameter[1]}"
+        made = fault(line, column, Q_UNDEFINED, f"{name} has no value yet.", f"Write {name} = … before.")
+        super().__init__(made.diagnostic)
+        self.parameter = parameter
 
 
 def syntax(line: int, column: int, message: str, hint: str = "") -> ProgramError:

@@ -6,7 +6,16 @@ import re
 from collections.abc import Callable
 
 from core.language.diagnostics import ProgramError
-from core.language.klartext import cycle_blocks, path_block, plane_block, q_parameters, structure_blocks
+from core.language.klartext import (
+    contour_blocks,
+    cycle_blocks,
+    path_block,
+    pattern_block,
+    plane_block,
+    q_parameters,
+    structure_blocks,
+    text_blocks,
+)
 from core.language.klartext.klartext_faults import syntax, unsupported
 from core.language.klartext.klartext_nodes import (
     AxisWord,
@@ -61,16 +70,21 @@ LONGEST_LINE = 8192
 _HEAD = re.compile(r"\s*(/?)\s*([0-9]+)?\s*(/?)\s*")
 _M = re.compile(r"M(?=\s*[0-9])")
 _Q = re.compile(r"Q[LR]?(?=\s*[0-9])")
+_ONE_AXIS = re.compile(r"I?[XYZABCUVW](?=\s*[+\-.,]?\s*[0-9Q])")
+_QC = re.compile(r"QC\s*[0-9]")
+_QS = re.compile(r"QS\s*[0-9]")
 _FN = re.compile(r"FN\s*([0-9]+)\s*")
 _LONGEST_FIRST = sorted(path_block.FORMS, key=len, reverse=True)
 _PATHS = re.compile("|".join(r"\s+".join(form.split()) + r"(?![A-Z0-9])" for form in _LONGEST_FIRST))
 
 # Blocks of the control that are not read here: the longest name first where one begins another.
 _OUTSIDE = (
-    *("CALL SELECTED", "SEL PGM", "SEL TABLE", "SEL PATTERN", "SEL CONTOUR", "CONTOUR DEF", "PATTERN DEF"),
-    *("TCH PROBE", "POLARKIN", "DECLARE", "STRING", "LN", "LT", "FPOL", "FSELECT", "FLT", "FCT", "FL", "FC"),
-    *("SPL", "QS", "WHILE", "IF", "STRAIGHT"),
+    *("TCH PROBE", "POLARKIN", "LT", "FPOL", "FSELECT", "FLT", "FCT", "FL", "FC"),
+    *("SPL", "WHILE", "IF", "STRAIGHT", "SQL", "TABDATA", "CALL SELECTED CYCLE"),
+    *("SEL CYCLE", "SEL CORR-TABLE", "PRESET COPY", "PRESET CORR", "OPEN FILE"),
 )
+_FREE = "Free contour programming (FK: FPOL, FL, FC, FLT, FCT, FSELECT)"
+_TOGETHER = dict.fromkeys(("FPOL", "FSELECT", "FLT", "FCT", "FL", "FC"), _FREE)  # told as one
 _OUTSIDE_PATTERNS = tuple((name, re.compile(r"\s+".join(name.split()) + r"(?![A-Z])")) for name in _OUTSIDE)
 
 
@@ -126,6 +140,9 @@ def _node(cursor: Cursor) -> Node | None:
 
 def _by_keyword(cursor: Cursor) -> Node | None:
     column = cursor.column
+    for words, meant in _SYNONYMS.items():
+        if cursor.keyword(words):
+            return _KEYWORDS[meant](cursor, column)
     for words, read in _KEYWORDS.items():
         if cursor.keyword(words):
             return read(cursor, column)
@@ -150,20 +167,39 @@ _KEYWORDS: dict[str, Callable[[Cursor, int], Node]] = {
     "TRANS": structure_blocks.transformation,
     "CYCL DEF": cycle_blocks.cycle,
     "CYCL CALL": cycle_blocks.call,
+    "PATTERN DEF": pattern_block.pattern,
+    "CONTOUR DEF": contour_blocks.definition,
+    "DECLARE CONTOUR": contour_blocks.declaration,
+    "SEL CONTOUR": contour_blocks.selection,
+    "GLOBAL DEF": cycle_blocks.global_definition,
+    "PRESET SELECT": cycle_blocks.preset,
+    "WMAT": structure_blocks.material,
     "CALL LBL": lambda cursor, _: structure_blocks.call(cursor),
     "CALL PGM": structure_blocks.call_program,
+    "CALL SELECTED": structure_blocks.call_selected,
+    **{f"SEL {kind}": structure_blocks.selection(kind) for kind in ("PGM", "TABLE", "PATTERN")},
     "LBL": lambda cursor, _: structure_blocks.label(cursor),
     "FUNCTION": structure_blocks.function,
+    "DECLARE STRING": text_blocks.declare,
     "STOP": _stop,
 }
+
+
+_SYNONYMS = {"CYCLE DEF": "CYCL DEF", "CYCLE CALL": "CYCL CALL"}  # as some posts write them
 
 
 def _by_letter(cursor: Cursor) -> Node:
     column = cursor.column
     if _M.match(cursor.upper, cursor.at):
         return path_block.codes_alone(cursor)
+    if _ONE_AXIS.match(cursor.upper, cursor.at):
+        return path_block.paraxial(cursor, column)
     if match := cursor.take(_FN):
         return q_parameters.function(cursor, int(match.group(1)[:4]), column)
+    if _QS.match(cursor.upper, cursor.at):
+        return text_blocks.assign(cursor, column)
+    if _QC.match(cursor.upper, cursor.at):
+        return contour_blocks.formula(cursor, column)
     if _Q.match(cursor.upper, cursor.at):
         return q_parameters.assign(cursor)
     raise _no_block(cursor)
@@ -174,7 +210,9 @@ def _no_block(cursor: Cursor) -> ProgramError:
     column = cursor.column
     for name, pattern in _OUTSIDE_PATTERNS:
         if pattern.match(cursor.upper, cursor.at):
-            return unsupported(cursor.line, column, name)
+            if name == "TCH PROBE":
+                return structure_blocks.touch_probe(cursor, column)
+            return unsupported(cursor.line, column, _TOGETHER.get(name, name))
     text = f"'{cursor.next_word}' begins no block."
     hint = cursor.advice("A block begins with L, PLANE, TOOL CALL, LBL or the like.")
     return syntax(cursor.line, column, text, hint)

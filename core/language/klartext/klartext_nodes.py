@@ -27,6 +27,13 @@ class Value(NamedTuple):
         return Operation("negative", (made,), self.column) if self.negative else made
 
 
+class TextName(NamedTuple):
+    """``QS5`` where a name is asked for: the text that it holds is the name."""
+
+    number: int
+    column: int = 0
+
+
 class AxisWord(NamedTuple):
     """``X+10`` or ``IX+10``."""
 
@@ -37,11 +44,12 @@ class AxisWord(NamedTuple):
 
 
 class Feed(NamedTuple):
-    """``F200``, ``FQ5``, ``FMAX`` or ``F AUTO``."""
+    """``F200``, ``FQ5``, ``FMAX`` or ``F AUTO``; ``FU0.1`` and ``FZ0.05`` count a revolution or a tooth."""
 
     kind: str  # "value", "max" or "auto"
     value: Value | None = None
     column: int = 0
+    per: str = ""  # U or Z; empty: a minute, under M136 a revolution
 
 
 class Retract(NamedTuple):
@@ -52,7 +60,7 @@ class Retract(NamedTuple):
 
 
 class MCode(NamedTuple):
-    """``M3``; M128 may carry a feed, M140 carries its way and may carry a feed."""
+    """``M3``; M128 may carry a feed, M103 its factor, M140 carries its way and may carry a feed."""
 
     number: int
     column: int = 0
@@ -86,16 +94,28 @@ class BlankForm:
 
 
 @dataclass(frozen=True, slots=True)
+class RoundBlank:
+    """``BLK FORM CYLINDER Z R50 L100 DIST+5``: ``above`` is how far it reaches over the datum."""
+
+    tool_axis: str
+    radius: Value
+    length: Value
+    above: Value
+
+
+@dataclass(frozen=True, slots=True)
 class ToolCall:
     """``TOOL CALL 1 Z S3000 F500 DL+0.1``; a call without a tool changes speed or feed only."""
 
-    tool: int | str | None = None
+    tool: int | str | Value | TextName | None = None  # a Value: the number is in a Q parameter
     tool_axis: str = ""
     speed: Value | None = None
     feed: Value | None = None
     length: Value | None = None  # DL
     radius: Value | None = None  # DR
     column: int = 0  # of the tool
+    feed_per: str = ""  # U or Z of FU and FZ
+    cutting_speed: Value | None = None  # S(VC = 120), m/min
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,6 +172,9 @@ class Datum:
     reset: bool = False
     cycle: int | None = None  # n of CYCL DEF 7.n
     text: str = ""  # of CYCL DEF 7.0
+    row: Value | None = None  # of the datum table
+    column: int = 0
+    table: str = ""  # its file, where the block names one
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,7 +189,7 @@ class Label:
 class Call:
     """``CALL LBL 1``, with ``REP n`` a repeat of the section behind the label."""
 
-    name: int | str
+    name: int | str | TextName
     repeat: Value | None = None
     column: int = 0
 
@@ -181,13 +204,79 @@ class Assign:
     kind: str = "Q"  # Q, QL or QR
 
 
+class TextPart(NamedTuple):
+    """A part of a text: in quotes (no ``kind``), ``QS``, or TOCHAR, SUBSTR, SYSSTR, CFGREAD.
+
+    ``first`` and ``second`` are the number and its decimals of TOCHAR, begin and length of SUBSTR.
+    """
+
+    kind: str
+    text: str = ""
+    number: int = 0
+    column: int = 0
+    first: Formula | None = None
+    second: Formula | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TextAssign:
+    """``QS5 = "A" || QS6``; DECLARE STRING may give several: their numbers and parts."""
+
+    texts: tuple[tuple[int, tuple[TextPart, ...]], ...]
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class TextRead:
+    """``Q5 = INSTR( SRC_QS10 SEA_QS13 BEG2 )``: a number that TONUMB, INSTR, STRLEN or STRCOMP finds."""
+
+    kind: str
+    q: int
+    function: str
+    source: int
+    sought: int | None = None
+    begin: Formula | None = None
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class TableOpen:
+    """``FN 26: TABOPEN TAB1.TAB``: the free table of FN 27 and FN 28."""
+
+    name: str
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class TableRead:
+    """``FN 28: TABREAD Q10 = 6/"X,Y"``: cells of a row into Q10, Q11, …"""
+
+    kind: str
+    q: int
+    row: Formula
+    columns: tuple[str, ...]
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class TableWrite:
+    """``FN 27: TABWRITE 5/"RADIUS,DEPTH" = Q5``: Q5, Q6, … into cells of a row."""
+
+    kind: str
+    q: int
+    row: Formula
+    columns: tuple[str, ...]
+    column: int = 0
+
+
 @dataclass(frozen=True, slots=True)
 class Jump:
     """``FN 9: IF +Q1 EQU +5 GOTO LBL 3``; ``condition`` is the whole comparison."""
 
     condition: Formula
-    name: int | str
+    name: int | str | TextName
     column: int = 0
+    texts: tuple[TextPart, TextPart] | None = None  # that are compared instead: 1 means equal, 0 unequal
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,6 +289,17 @@ class SystemRead:
     index: Formula | None = None
     column: int = 0
     kind: str = "Q"
+
+
+@dataclass(frozen=True, slots=True)
+class SystemWrite:
+    """``FN 17: SYSWRITE ID50 NR4 IDX5 = +0``: what is to stand there from now on."""
+
+    group: Formula
+    number: Formula
+    index: Formula | None
+    content: Formula
+    column: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,6 +336,14 @@ class Cycle:
 
 
 @dataclass(frozen=True, slots=True)
+class GlobalDef:
+    """``GLOBAL DEF 100 GENERAL Q200=+2 …``: what ``Q200=PREDEF`` of a cycle behind it means."""
+
+    values: tuple[CycleValue, ...]
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
 class CycleLine:
     """``CYCL DEF 1.2 DEPTH-15``: line ``part`` of a cycle under 200, with its words and numbers in order."""
 
@@ -256,13 +364,75 @@ class CycleCall:
     feed: Feed | None = None
     codes: tuple[MCode, ...] = ()
     column: int = 0
+    pattern: bool = False  # CYCL CALL PAT
+
+
+class PatternPart(NamedTuple):
+    """``ROW1 (X+10 Y+0 D+8 NUM5 ROT+0 Z+0)``."""
+
+    form: str  # POS ROW PAT FRAME CIRC PITCHCIRC
+    words: tuple[AxisWord, ...]
+    column: int
+
+
+@dataclass(frozen=True, slots=True)
+class PatternDef:
+    """``PATTERN DEF`` with its parts: where CYCL CALL PAT runs the cycle."""
+
+    parts: tuple[PatternPart, ...]
+    column: int = 0
+
+
+class ContourPart(NamedTuple):
+    """The subprogram of a contour; ``pocket`` False is an island, None is said by RL and RR (cycle 14)."""
+
+    label: int | str
+    pocket: bool | None
+    file: str = ""  # a program of its own instead of a subprogram,
+    declared: int | None = None  # or the number of DECLARE CONTOUR
+
+
+@dataclass(frozen=True, slots=True)
+class ContourDef:
+    """``CONTOUR DEF P1 = LBL 1 I2 = LBL 2``: what cycle 14 does, with pockets and islands said."""
+
+    parts: tuple[ContourPart, ...]
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class ContourDeclare:
+    """``DECLARE CONTOUR QC1 = "120.H"``."""
+
+    number: int
+    part: ContourPart
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class ContourFormula:
+    """``QC10 = ( QC1 | QC3 ) \\ QC2``, the area that is milled; ``SEL CONTOUR QC10`` takes one again."""
+
+    number: int
+    formula: Formula
+    column: int = 0
+    selected: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """``SEL TABLE "N.D"``, ``SEL PATTERN "P.PNT"``, ``SEL PGM "A.H"``: ``kind`` is the word behind SEL."""
+
+    kind: str
+    name: str | TextName
+    column: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class ProgramCall:
-    """``CALL PGM name``."""
+    """``CALL PGM name``; without a name the one of SEL PGM (``CALL SELECTED PGM``)."""
 
-    name: str
+    name: str | TextName
     column: int = 0
 
 
@@ -338,6 +508,7 @@ Node = (
     Begin
     | End
     | BlankForm
+    | RoundBlank
     | ToolDef
     | ToolCall
     | Move
@@ -349,14 +520,26 @@ Node = (
     | Label
     | Call
     | ProgramCall
+    | Selection
     | Assign
+    | TextAssign
+    | TextRead
+    | TableOpen
+    | TableRead
+    | TableWrite
     | Jump
     | SystemRead
+    | SystemWrite
     | ErrorMessage
     | Unheeded
     | Cycle
+    | GlobalDef
     | CycleLine
     | CycleCall
+    | PatternDef
+    | ContourDef
+    | ContourDeclare
+    | ContourFormula
     | TipControl
     | Stop
     | Heading

@@ -6,8 +6,8 @@ import re
 from functools import lru_cache
 
 from core.language.diagnostics import ProgramError
-from core.language.klartext.klartext_faults import INPUT_VALUE, fault, syntax
-from core.language.klartext.klartext_nodes import AxisWord, Feed, Retract, Value
+from core.language.klartext.klartext_faults import INPUT_VALUE, fault, syntax, unsupported
+from core.language.klartext.klartext_nodes import AxisWord, Feed, Retract, TextName, Value
 from core.language.typography import ascii_upper, typed
 
 _NUMBER = r"(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)"
@@ -17,6 +17,7 @@ _TEXT = re.compile(r"\(?[^\W\d_]{3}|\(")
 _WHOLE = re.compile(r"[0-9]+(?![0-9.,])")
 _QUOTED = re.compile(r'"([^"]*)"')
 _WORD = re.compile(r"[^\s]+")
+_TEXT_PARAMETER = re.compile(r"QS\s*([0-9]{1,4})(?![0-9])")
 _HIGHEST_Q = 1999
 
 
@@ -112,6 +113,8 @@ class Cursor:
     def name(self, what: str, most: int) -> int | str:
         """A number, or a name in quotes."""
         start = self.at
+        if text := _TEXT_PARAMETER.match(self.upper, self.at):
+            raise unsupported(self.line, start + 1, f"{what} by the text of {text.group()}")
         match = self.take(_QUOTED)
         if match is None:
             return self.whole(what, most)
@@ -119,6 +122,21 @@ class Cursor:
         if not name.strip():
             raise syntax(self.line, start + 1, f"{what} has an empty name.", "Write the name.")
         return name
+
+    def name_or_text(self, what: str, most: int) -> int | str | TextName:
+        """A number, a name in quotes, or a text parameter that holds the name."""
+        return self.text_name() or self.name(what, most)
+
+    def text_name(self) -> TextName | None:
+        """A text parameter where one stands here."""
+        column, match = self.column, self.take(_TEXT_PARAMETER)
+        return None if match is None else TextName(int(match.group(1)), column)
+
+    def quoted(self) -> str | None:
+        """What stands in quotes here; None where nothing does."""
+        start = self.at
+        match = self.take(_QUOTED)
+        return None if match is None else self.text[start + 1 : start + len(match.group(1)) + 1]
 
     def expected(self, message: str, hint: str = "") -> ProgramError:
         """A syntax error here, saying what stands in the place."""
@@ -149,19 +167,22 @@ def _number(sign: str, digits: str) -> float:
 
 
 _FEED = re.compile(r"F\s*(MAX|AUTO)(?![A-Z0-9])")
-_FEED_VALUE = re.compile(r"F(?=\s*[+-]?\s*[0-9.,Q])")
+_FEED_VALUE = re.compile(r"F([UZ]?)(?=\s*[+-]?\s*[0-9.,Q])")
+_FEED_TIME = re.compile(r"F(?:MAX)?T(?=\s*[0-9.,Q])")
 _FEED_WORD = re.compile(r"F(?![A-Z])")
 _RETRACT = re.compile(r"MB(?![A-Z])|MB(?=MAX)")
 
 
 def feed(cursor: Cursor) -> Feed | None:
-    """``F200``, ``FQ5``, ``FMAX``, ``F AUTO`` where one stands here."""
+    """``F200``, ``FQ5``, ``FU0.1``, ``FZ0.05``, ``FMAX``, ``F AUTO`` where one stands here."""
     column = cursor.column
     fixed = cursor.take(_FEED)
     if fixed is not None:
         return Feed(fixed.group(1).lower(), None, column)
-    if cursor.take(_FEED_VALUE):
-        return Feed("value", cursor.value("F"), column)
+    if _FEED_TIME.match(cursor.upper, cursor.at):
+        raise unsupported(cursor.line, column, "A feed by time (FT, FMAXT)")
+    if match := cursor.take(_FEED_VALUE):
+        return Feed("value", cursor.value(match.group()), column, match.group(1))
     if cursor.take(_FEED_WORD):
         raise cursor.expected("F has no value", "Write a number, Q, MAX or AUTO behind F.")
     return None

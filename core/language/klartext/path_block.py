@@ -12,7 +12,10 @@ from core.language.klartext.line_cursor import Cursor, axis_words, doubled, feed
 
 MOST_CODES = 4
 AXES = "XYZABCUVW"
-_COMPENSATION = re.compile(r"R([0LR])(?![A-Z0-9])")
+_NOT_PROGRAMMED = re.compile(r"F(?=\s+M\s*(?:[0-9]|$))|M(?=\s*$)")  # older controls write R F M for nothing
+_COMPENSATION = re.compile(
+    r"R(?:([0LR]?)(?![A-Z0-9]|\s*[+\-.,0-9])|([+-])(?!\s*[0-9.,Q]))"
+)  # a bare R leaves it as it is
 _M = re.compile(r"M(?=\s*[0-9])")
 _AXIS_ALONE = re.compile(r"I?[XYZABCUVW](?=\s*$)")
 _TURN = re.compile(r"DR\s*([+-])(?![0-9Q])")
@@ -33,6 +36,7 @@ _FORMS = {
     "C": _Form(turn=True),
     "CR": _Form(("R",), ("R",), turn=True),
     "CT": _Form(),
+    "LN": _Form(("NX", "NY", "NZ", "TX", "TY", "TZ")),
     "CP": _Form(("PA",), turn=True),
     "CTP": _Form(_POLAR),
     "APPR LT": _Form(("LEN",), ("LEN",)),
@@ -52,7 +56,7 @@ _FORMS = {
 FORMS = tuple(_FORMS)
 """Every path function by the words that it begins with."""
 
-_KNOWN_WORDS = re.compile(r"(I?P[RA]|LEN|CCA|R)(?=\s*[+\-0-9.,Q])")
+_KNOWN_WORDS = re.compile(r"(I?P[RA]|LEN|CCA|[NT][XYZ]|R)(?=\s*[+\-0-9.,Q])")
 
 
 def move(cursor: Cursor, form: str, column: int) -> Move:
@@ -67,13 +71,17 @@ def move(cursor: Cursor, form: str, column: int) -> Move:
         if found:
             axes = _joined(cursor, axes, found)
         elif radius := cursor.take(_COMPENSATION):
-            compensation = _once(cursor, at, compensation, radius.group(1), f"R{radius.group(1)}")
+            kind = radius.group(1) or radius.group(2) or ""
+            _demand_paraxial(cursor, at, kind, axes)
+            compensation = _once(cursor, at, compensation, kind, f"R{kind}")
         elif direction := cursor.take(_TURN):
             turn = _once(cursor, at, turn, direction.group(1), "DR")
         elif word := _word(cursor, form):
             if word.axis in words:
                 raise doubled(cursor, word.column, word.axis)
             words[word.axis] = word
+        elif cursor.take(_NOT_PROGRAMMED):
+            continue
         elif read := feed(cursor):
             speed = _once_feed(cursor, speed, read)
         elif code := m_code(cursor):
@@ -84,6 +92,22 @@ def move(cursor: Cursor, form: str, column: int) -> Move:
     made = Move(axes, compensation, speed, tuple(codes), form, tuple(words.values()), turn, column)
     _demand_whole(cursor, made)
     return made
+
+
+def paraxial(cursor: Cursor, column: int) -> Move:
+    """A block of one axis without the L before it: ``Z+100 R0 FMAX M3``. Raises ProgramError."""
+    made = move(cursor, "L", column)
+    if len(made.axes) > 1:
+        text = "A block without L moves one axis."
+        raise syntax(cursor.line, made.axes[1].column, text, "Write L before it.")
+    return made
+
+
+def _demand_paraxial(cursor: Cursor, column: int, kind: str, axes: tuple[AxisWord, ...]) -> None:
+    """R+ and R- make a move along one axis longer or shorter by the tool's radius."""
+    if kind in {"+", "-"} and len(axes) != 1:
+        text = f"R{kind} belongs to a block that moves one axis."
+        raise syntax(cursor.line, column, text, "Write RL or RR along a contour.")
 
 
 def _word(cursor: Cursor, form: str) -> AxisWord | None:
@@ -154,7 +178,11 @@ def codes_to_the_end(cursor: Cursor) -> tuple[MCode, ...]:
     return tuple(codes)
 
 
-_WITH_WORDS = {120: re.compile(r"LA\s*[0-9]+"), 118: re.compile(r"(?:[XYZABC]\s*[0-9.,]+\s*)+")}
+_WITH_WORDS = {
+    94: re.compile(r"[ABC](?![A-Z0-9+\-])"),
+    120: re.compile(r"LA\s*[0-9]+"),
+    118: re.compile(r"(?:[XYZABC]\s*[0-9.,]+\s*)+"),
+}
 
 
 def m_code(cursor: Cursor) -> MCode | None:
@@ -165,6 +193,8 @@ def m_code(cursor: Cursor) -> MCode | None:
     number = cursor.whole("M", 999)
     if number == 128:
         return MCode(number, column, feed=_plain_feed(cursor))
+    if number == 103:
+        return MCode(number, column, feed=_factor(cursor))
     if number == 140:
         way = retract(cursor)
         if way is None:
@@ -175,9 +205,18 @@ def m_code(cursor: Cursor) -> MCode | None:
     return MCode(number, column)
 
 
+def _factor(cursor: Cursor) -> Feed | None:
+    """The factor of M103, percent, written as F; without it M103 ends."""
+    found = feed(cursor)
+    if found is not None and (found.kind != "value" or found.per):
+        text = "M103 takes its factor as F and a number."
+        raise syntax(cursor.line, found.column, text, "Write M103 F20 for a fifth of the feed.")
+    return found
+
+
 def _plain_feed(cursor: Cursor) -> Feed | None:
     found = feed(cursor)
-    if found is not None and found.kind == "auto":
+    if found is not None and (found.kind == "auto" or found.per):
         raise syntax(
             cursor.line, found.column, "M128 takes a feed in numbers, or FMAX.", "Write F and a number."
         )

@@ -104,7 +104,7 @@ def _with_word(cursor: Cursor, form: str, made: Positioning) -> Positioning:
     if form != "RESET" and (rotation := cursor.take(_ROTATION)):
         _once(cursor, column, made.rotation, "COORD ROT or TABLE ROT")
         return dataclasses.replace(made, rotation=f"{rotation.group(1)} ROT")
-    if cursor.keyword("DIST"):
+    if cursor.keyword("DIST", "ABST", "SETUP"):  # as German controls write it
         if made.way != "MOVE":
             text = f"DIST belongs to MOVE, not to {made.way}."
             raise syntax(cursor.line, column, text, "Take it out.")

@@ -1,12 +1,33 @@
-"""Q parameters: formulas, and the functions FN 0 to FN 18."""
+"""Q parameters: formulas, and the functions FN 0 to FN 38."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 
-from core.language.formulas import Formula, FormulaError, FormulaReader, Grammar, Operation
+from core.language.formulas import (
+    TRIGONOMETRY,
+    Formula,
+    FormulaError,
+    FormulaReader,
+    Grammar,
+    Number,
+    Operation,
+    Parameter,
+)
+from core.language.klartext import text_blocks
 from core.language.klartext.klartext_faults import syntax, unsupported
-from core.language.klartext.klartext_nodes import Assign, ErrorMessage, Jump, Node, SystemRead, Unheeded
+from core.language.klartext.klartext_nodes import (
+    Assign,
+    ErrorMessage,
+    Jump,
+    Node,
+    SystemRead,
+    SystemWrite,
+    TextPart,
+    TextRead,
+    Unheeded,
+)
 from core.language.klartext.line_cursor import Cursor
 
 _NUMBER = re.compile(r"(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)(?:E[+-]?[0-9]{1,3})?")
@@ -31,11 +52,7 @@ GRAMMAR = Grammar(
         "^": (_POWER, "power"),
     },
     functions={
-        "SIN": "sine",
-        "COS": "cosine",
-        "TAN": "tangent",
-        "ASIN": "arc sine",
-        "ACOS": "arc cosine",
+        **TRIGONOMETRY,
         "ATAN": "arc tangent",
         "SQ": "square",
         "SQRT": "square root",
@@ -68,7 +85,16 @@ _TWO = {1: ("+", "plus"), 2: ("-", "minus"), 3: ("*", "times"), 4: ("DIV", "over
 _ONE = {5: ("SQRT", "square root"), 6: ("SIN", "sine"), 7: ("COS", "cosine")}
 _ANGLE = 13
 _JUMPS = {9: ("EQU", "equal"), 10: ("NE", "unequal"), 11: ("GT", "greater"), 12: ("LT", "less")}
-_UNHEEDED = {15: "PRINT", 16: "F-PRINT"}
+_EQUAL, _UNEQUAL = 9, 10
+_A_TEXT = re.compile(r'"|QS')
+WHETHER = "?"
+"""Behind the letters of a parameter: 1 where it has a value, else 0."""
+_UNHEEDED = {15: "PRINT", 16: "F-PRINT", 38: "SEND"}
+_OF_THE_BUILDER = {
+    19: "PLC, which hands figures to the machine builder's PLC,",
+    29: "PLC, which hands figures to the machine builder's PLC,",
+    37: "EXPORT, which belongs into cycles of the machine builder,",
+}
 MOST_LABEL = 65535
 
 
@@ -86,9 +112,11 @@ def formula(cursor: Cursor, what: str) -> Formula:
     return made
 
 
-def assign(cursor: Cursor) -> Assign:
+def assign(cursor: Cursor) -> Assign | TextRead:
     """``Q5 = …`` to the end of the line."""
     column, (kind, number) = cursor.column, _target(cursor)
+    if (text := text_blocks.read(cursor, kind, number)) is not None:
+        return text
     made = formula(cursor, f"{kind}{number}")
     if not cursor.done:
         raise cursor.expected("An operator was expected")
@@ -98,18 +126,17 @@ def assign(cursor: Cursor) -> Assign:
 def function(cursor: Cursor, number: int, column: int) -> Node:
     """Behind ``FN n:``. Raises ProgramError for those that this control does not execute."""
     cursor.take(_COLON)
-    if number in _JUMPS:
-        return _jump(cursor, number, column)
-    if number == 14:
-        return _error(cursor, column)
     if number in _UNHEEDED:
         cursor.rest()
         return Unheeded(f"FN {number} {_UNHEEDED[number]}", column)
-    if number == 18:
-        return _system(cursor, column)
+    if number in _JUMPS:
+        return _jump(cursor, number, column)
+    if number in _READERS:
+        return _READERS[number](cursor, column)
     if number == 0 or number in _TWO or number in _ONE or number == _ANGLE:
         return _arithmetic(cursor, number, column)
-    raise unsupported(cursor.line, column, f"FN {number}")
+    what = f" {_OF_THE_BUILDER[number]}" if number in _OF_THE_BUILDER else ""
+    raise unsupported(cursor.line, column, f"FN {number}{what}")
 
 
 def parameter(cursor: Cursor) -> tuple[str, int]:
@@ -167,16 +194,45 @@ def _jump(cursor: Cursor, number: int, column: int) -> Jump:
     word, name = _JUMPS[number]
     if not cursor.take(re.compile(r"IF")):
         raise cursor.expected(f"FN {number} needs IF")
-    first = _operand(cursor, 0)
+    if (texts := _texts(cursor, number, word)) is not None:
+        condition: Formula = Number(1.0 if number == _EQUAL else 0.0)
+        return _whole_jump(cursor, condition, texts)
+    value = cursor.value("IF")
+    if number == _EQUAL and (state := cursor.keyword("IS UNDEFINED", "IS DEFINED")):
+        condition = Parameter(value.kind + WHETHER, value.q, value.column)
+        if state == "IS UNDEFINED":
+            condition = Operation("not", (condition,), column)
+    else:
+        _demand(cursor, word, number)
+        condition = Operation(name, (value.formula, _operand(cursor, 0)), column)
+    return _whole_jump(cursor, condition)
+
+
+def _texts(cursor: Cursor, number: int, word: str) -> tuple[TextPart, TextPart] | None:
+    """Two texts that FN 9 or FN 10 compares; None where it compares numbers."""
+    if number not in {_EQUAL, _UNEQUAL} or not _A_TEXT.match(cursor.upper, cursor.at):
+        return None
+    first = text_blocks.part(cursor)
     _demand(cursor, word, number)
-    second = _operand(cursor, 0)
+    return first, text_blocks.part(cursor)
+
+
+def _whole_jump(cursor: Cursor, condition: Formula, texts: tuple[TextPart, TextPart] | None = None) -> Jump:
+    """The label behind GOTO. Raises ProgramError."""
     if not cursor.keyword("GOTO LBL"):
-        raise cursor.expected(f"FN {number} needs GOTO LBL")
+        raise cursor.expected("A jump needs GOTO LBL")
     at = cursor.column
-    made = Jump(Operation(name, (first, second), column), cursor.name("GOTO LBL", MOST_LABEL), at)
+    made = Jump(condition, cursor.name_or_text("GOTO LBL", MOST_LABEL), at, texts)
     if not cursor.done:
         raise cursor.expected("No word of a jump")
     return made
+
+
+def _wait(cursor: Cursor, column: int) -> Unheeded:
+    """FN 20: WAIT FOR SYNC waits for what is read ahead. Raises ProgramError for a condition of the PLC."""
+    if not cursor.keyword("WAIT FOR SYNC") or not cursor.done:
+        raise unsupported(cursor.line, column, "FN 20 with a condition of the machine builder's PLC")
+    return Unheeded("FN 20 WAIT FOR SYNC", column)
 
 
 def _error(cursor: Cursor, column: int) -> ErrorMessage:
@@ -189,12 +245,41 @@ def _system(cursor: Cursor, column: int) -> SystemRead:
     if not cursor.keyword("SYSREAD"):
         raise cursor.expected("FN 18 needs SYSREAD")
     kind, q = _target(cursor)
+    group, number, index = _place(cursor, 18)
+    if not cursor.done:
+        raise cursor.expected("No word of FN 18")
+    return SystemRead(q, group, number, index, column, kind)
+
+
+def _system_write(cursor: Cursor, column: int) -> SystemWrite:
+    if not cursor.keyword("SYSWRITE"):
+        raise cursor.expected("FN 17 needs SYSWRITE")
+    group, number, index = _place(cursor, 17)
+    if cursor.take(_EQUALS) is None:
+        raise cursor.expected("FN 17 needs = and what is to be written")
+    made = SystemWrite(group, number, index, _operand(cursor, 0), column)
+    if not cursor.done:
+        raise cursor.expected("No word of FN 17")
+    return made
+
+
+def _place(cursor: Cursor, function: int) -> tuple[Formula, Formula, Formula | None]:
+    """Group, number and index of a figure of the control."""
     found: dict[str, Formula] = {}
     for word in ("ID", "NR", "IDX"):
         if cursor.take(re.compile(rf"{word}(?=\s*[+\-0-9Q])")):
-            found[word] = _operand(cursor, q)
+            found[word] = _operand(cursor, 0)
     if "ID" not in found or "NR" not in found:
-        raise cursor.expected("FN 18 needs ID and NR")
-    if not cursor.done:
-        raise cursor.expected("No word of FN 18")
-    return SystemRead(q, found["ID"], found["NR"], found.get("IDX"), column, kind)
+        raise cursor.expected(f"FN {function} needs ID and NR")
+    return found["ID"], found["NR"], found.get("IDX")
+
+
+_READERS: dict[int, Callable[[Cursor, int], Node]] = {
+    14: _error,
+    17: _system_write,
+    18: _system,
+    20: _wait,
+    26: text_blocks.open_table,
+    27: text_blocks.write_table,
+    28: text_blocks.read_table,
+}

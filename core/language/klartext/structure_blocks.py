@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 
+from core.language.diagnostics import ProgramError
 from core.language.klartext.cycle_blocks import mirrored_axes, rotation, scale
-from core.language.klartext.klartext_faults import syntax, unsupported
+from core.language.klartext.klartext_faults import NO_PROBE, fault, syntax, unsupported
 from core.language.klartext.klartext_nodes import (
     AxisWord,
     Begin,
     BlankForm,
     Call,
+    CycleLine,
     Datum,
     End,
     Label,
     ProgramCall,
+    RoundBlank,
+    Selection,
+    TextName,
     TipControl,
     ToolCall,
     ToolDef,
@@ -27,8 +33,12 @@ from core.language.klartext.line_cursor import Cursor, axis_words, doubled
 _PROGRAM = re.compile(r"(?:(\S.*?)\s+)?(MM|INCH)\s*$")
 _PART = re.compile(r"0\.([12])(?![0-9])")
 _AXIS = re.compile(r"([XYZUVW])(?![A-Z0-9+\-])")
-_TOOL_WORD = re.compile(r"(DL|DR2|DR|S|F)(?=\s*[+\-0-9.,Q])")
-_TOOL = re.compile(r'(?=[0-9"])')
+_TOOL_WORD = re.compile(r"(DL|DR2(?=:|\s*[+\-,.Q]|\s+[0-9])|DR|S|F)([UZ]?):?(?=\s*[+\-0-9.,Q])")
+_CUTTING_SPEED = re.compile(r"S\s*\(\s*VC\s*=?")
+_CLOSED = re.compile(r"\)")
+_INDEXED = re.compile(r"[0-9]+\.[0-9]")
+_TOOL = re.compile(r'(?=[0-9"]|QS)')
+_TOOL_BY_Q = re.compile(r"(?=[+]?Q[LR]?\s*[0-9])")
 MOST_TOOL = 32767
 
 
@@ -56,8 +66,34 @@ def _named(cursor: Cursor, what: str) -> tuple[str, bool]:
     return name, match.group(2) == "INCH"
 
 
-def blank_form(cursor: Cursor) -> BlankForm:
-    """Behind ``BLK FORM``: two corners of a block. Raises ProgramError for other forms."""
+_ROUND_WORD = re.compile(r"(RI|DI|R|D|L|DIST)(?=\s*[+\-0-9.,Q])")
+
+
+def _round_blank(cursor: Cursor) -> RoundBlank:
+    """Behind ``BLK FORM CYLINDER``: axis, radius or diameter, length, and how far it reaches up."""
+    axis = cursor.take(_AXIS)
+    words: dict[str, Value] = {}
+    while not cursor.done:
+        at, match = cursor.column, cursor.take(_ROUND_WORD)
+        if match is None:
+            raise cursor.expected("No word of BLK FORM CYLINDER", "It takes R or D, L, DIST, RI or DI.")
+        if match.group(1) in words:
+            raise doubled(cursor, at, match.group(1))
+        words[match.group(1)] = cursor.value(match.group(1))
+    if axis is None or not {"R", "D"} & words.keys() or "L" not in words:
+        raise cursor.expected("BLK FORM CYLINDER needs its axis, R or D, and L")
+    wide = words.get("R") or words["D"]._replace(number=words["D"].number / 2.0)
+    return RoundBlank(axis.group(1), wide, words["L"], words.get("DIST", Value(0.0)))
+
+
+def blank_form(cursor: Cursor) -> BlankForm | RoundBlank | Unheeded:
+    """Behind ``BLK FORM``: two corners of a block, or a cylinder. Blanks by contour or file are not drawn."""
+    column = cursor.column
+    if cursor.keyword("CYLINDER"):
+        return _round_blank(cursor)
+    if form := cursor.keyword("ROTATION", "FILE"):
+        cursor.rest()
+        return Unheeded(f"BLK FORM {form}", column)
     part = cursor.take(_PART)
     if part is None:
         raise unsupported(cursor.line, cursor.column, f"BLK FORM {cursor.rest()}".strip())
@@ -67,7 +103,7 @@ def blank_form(cursor: Cursor) -> BlankForm:
         if found is None or found.group(1) not in "XYZ":
             raise cursor.expected("BLK FORM 0.1 needs the tool axis", "Write Z behind 0.1.")
         axis = found.group(1)
-    corner = axis_words(cursor, "XYZ", incremental=False)
+    corner = axis_words(cursor, "XYZ", incremental=part.group(1) == "2")
     _demand_all(cursor, corner)
     return BlankForm(int(part.group(1)), corner, axis)
 
@@ -81,22 +117,40 @@ def _demand_all(cursor: Cursor, corner: tuple[AxisWord, ...]) -> None:
 
 
 def tool_call(cursor: Cursor) -> ToolCall:
-    """The words behind ``TOOL CALL``: tool, axis, S, F, DL and DR."""
+    """The words behind ``TOOL CALL``: tool, axis, S, F (FU, FZ), DL and DR."""
     column = cursor.column
-    tool = cursor.name("TOOL CALL", MOST_TOOL) if cursor.take(_TOOL) else None
+    tool: int | str | Value | TextName | None = None
+    _demand_no_index(cursor)
+    if cursor.take(_TOOL):
+        tool = cursor.name_or_text("TOOL CALL", MOST_TOOL)
+    elif cursor.take(_TOOL_BY_Q):
+        tool = cursor.value("TOOL CALL")
     found = cursor.take(_AXIS)
     axis = "" if found is None else found.group(1)
     words: dict[str, Value] = {}
+    per = ""
     while not cursor.done:
         at = cursor.column
+        if cursor.take(_CUTTING_SPEED):
+            words["VC"] = cursor.value("VC")
+            if not cursor.take(_CLOSED):
+                raise cursor.expected("The bracket behind VC is not closed", "Write S(VC = 120).")
+            continue
         match = cursor.take(_TOOL_WORD)
-        if match is None:
+        if match is None or (match.group(2) and match.group(1) != "F"):
             raise cursor.expected("No word of TOOL CALL", "It takes a tool, its axis, S, F, DL, DR and DR2.")
-        name = match.group(1)
+        name, per = match.group(1), match.group(2) or per
         if name in words:
             raise doubled(cursor, at, name)
         words[name] = cursor.value(name)
-    return ToolCall(tool, axis, words.get("S"), words.get("F"), words.get("DL"), words.get("DR"), column)
+    length, radius = words.get("DL"), words.get("DR")
+    return ToolCall(tool, axis, words.get("S"), words.get("F"), length, radius, column, per, words.get("VC"))
+
+
+def _demand_no_index(cursor: Cursor) -> None:
+    """Raises ProgramError for 5.1, another edge of tool 5: the tool table has one row a tool."""
+    if found := _INDEXED.match(cursor.upper, cursor.at):
+        raise unsupported(cursor.line, cursor.column, f"A tool with an index ({found.group()})")
 
 
 # --- datum shifts, labels, calls and Q parameters
@@ -107,6 +161,7 @@ _LENGTHS = re.compile(r"([LR])(?=\s*[+\-0-9.,Q])")
 
 def tool_def(cursor: Cursor, column: int) -> ToolDef:
     """The words behind ``TOOL DEF``: the tool, and its length and radius where the program tells them."""
+    _demand_no_index(cursor)
     tool = cursor.name("TOOL DEF", MOST_TOOL)
     words: dict[str, Value] = {}
     while not cursor.done:
@@ -154,7 +209,9 @@ def _datum(cursor: Cursor, column: int) -> Datum:
         if not made.axes:
             raise cursor.expected("TRANS DATUM AXIS needs X, Y or Z")
     elif cursor.keyword("TABLE"):
-        raise unsupported(cursor.line, column, "TRANS DATUM TABLE")
+        table = cursor.quoted() or ""
+        cursor.keyword("TABLINE")
+        made = Datum(row=cursor.value("TABLINE"), column=column, table=table)
     else:
         raise cursor.expected("TRANS DATUM needs AXIS or RESET")
     if not cursor.done:
@@ -174,7 +231,7 @@ def label(cursor: Cursor) -> Label:
 def call(cursor: Cursor) -> Call:
     """The label behind ``CALL LBL``, and its repeats; ``REP 3/3`` is how older controls write three."""
     column = cursor.column
-    name = cursor.name("CALL LBL", MOST_LABEL)
+    name = cursor.name_or_text("CALL LBL", MOST_LABEL)
     if name == 0:
         text = "LBL 0 ends a subprogram; it cannot be called."
         raise syntax(cursor.line, column, text, "Call another label.")
@@ -197,14 +254,71 @@ def _repeats(cursor: Cursor) -> Value:
 
 def call_program(cursor: Cursor, column: int) -> ProgramCall:
     """The file behind ``CALL PGM``, in quotes or not."""
-    name = cursor.rest().strip('"')
+    name = cursor.text_name() or cursor.rest().strip('"')
     if not name:
         raise cursor.expected("CALL PGM needs the name of a program")
     return ProgramCall(name, column)
 
 
-def function(cursor: Cursor, column: int) -> TipControl | Unheeded:
-    """Behind ``FUNCTION``: TCPM on and off; MODE MILL steers nothing here.
+def call_selected(cursor: Cursor, column: int) -> ProgramCall:
+    """Behind ``CALL SELECTED``: PGM."""
+    cursor.keyword("PGM")
+    if not cursor.done:
+        raise cursor.expected("CALL SELECTED takes PGM alone")
+    return ProgramCall("", column)
+
+
+def selection(kind: str) -> Callable[[Cursor, int], Selection]:
+    """What reads the file behind ``SEL TABLE``, ``SEL PATTERN`` or ``SEL PGM``."""
+
+    def read(cursor: Cursor, column: int) -> Selection:
+        name = cursor.text_name() or cursor.rest().strip('"')
+        if not name:
+            raise cursor.expected(f"SEL {kind} needs the name of a file")
+        return Selection(kind, name, column)
+
+    return read
+
+
+_PROBE = re.compile(r"[0-9]+(?:\.[0-9]+)?")
+
+
+def touch_probe(cursor: Cursor, column: int) -> ProgramError:
+    """The error for ``TCH PROBE``: there is no touch probe on any machine."""
+    cursor.keyword("TCH PROBE")
+    match = cursor.take(_PROBE)
+    what = f"TCH PROBE {match.group()}" if match else "TCH PROBE"
+    text = f"{what} measures with a touch probe, and this machine has none."
+    hint = "Touch off by hand on the Jog page, and take the block out."
+    return fault(cursor.line, column, NO_PROBE, text, hint)
+
+
+# They end or watch what this control does not do: its own ways stay as they are.
+_STEERS_NOTHING = (
+    *("MODE MILL", "FEED RESET", "S-PULSE RESET", "PARAXCOMP DISPLAY", "PARAXCOMP RESET", "PARAXMODE OFF"),
+    *("COUNT", "LIFTOFF", "DCM", "AFC", "MONITORING", "PROG PATH", "CORRDATA RESET"),
+)
+_SECONDS = re.compile(r"TIME(?=\s*[0-9.,Q])")
+
+
+def _dwell(cursor: Cursor, column: int) -> CycleLine:
+    """``FUNCTION DWELL TIME10``, as cycle 9. Raises ProgramError."""
+    if cursor.take(_SECONDS) is None:
+        raise unsupported(cursor.line, column, "FUNCTION DWELL by revolutions")
+    made = CycleLine(9, 1, (AxisWord("", cursor.value("TIME")),), column=column)
+    if not cursor.done:
+        raise cursor.expected("No word of FUNCTION DWELL")
+    return made
+
+
+def material(cursor: Cursor, column: int) -> Unheeded:
+    """Behind ``WMAT``: the material, by which older controls propose cutting data."""
+    cursor.rest()
+    return Unheeded("WMAT", column)
+
+
+def function(cursor: Cursor, column: int) -> TipControl | Unheeded | CycleLine:
+    """Behind ``FUNCTION``: TCPM on and off, DWELL; what steers nothing here is told.
 
     Raises ProgramError for AXIS SPAT and PATHCTRL VECTOR, by which the same words mean other ways.
     """
@@ -212,11 +326,17 @@ def function(cursor: Cursor, column: int) -> TipControl | Unheeded:
         while not cursor.done:
             if cursor.keyword("AXIS SPAT", "PATHCTRL VECTOR"):
                 raise unsupported(cursor.line, column, "FUNCTION TCPM with AXIS SPAT or PATHCTRL VECTOR")
-            if not cursor.keyword("F TCP", "F CONT", "AXIS POS", "PATHCTRL AXIS"):
+            if cursor.keyword("REFPNT TIP-CENTER", "REFPNT CENTER-CENTER"):
+                raise unsupported(cursor.line, column, "FUNCTION TCPM about the centre of a ball (REFPNT)")
+            if not cursor.keyword("F TCP", "F CONT", "AXIS POS", "PATHCTRL AXIS", "REFPNT TIP-TIP"):
                 raise cursor.expected("No word of FUNCTION TCPM", "It takes F TCP, AXIS POS, PATHCTRL AXIS.")
         return TipControl(on=True, column=column)
     if cursor.keyword("RESET TCPM"):
         return TipControl(on=False, column=column)
-    if cursor.keyword("MODE MILL"):
-        return Unheeded("FUNCTION MODE MILL", column)
+    if cursor.keyword("DWELL"):
+        return _dwell(cursor, column)
+    for words in _STEERS_NOTHING:
+        if cursor.keyword(words):
+            cursor.rest()
+            return Unheeded(f"FUNCTION {words}", column)
     raise unsupported(cursor.line, column, f"FUNCTION {cursor.rest()}".strip())

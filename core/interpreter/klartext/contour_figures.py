@@ -1,0 +1,203 @@
+"""Contours of SL cycles: what cycle 14 and CONTOUR DEF name, and the area that they come to.
+
+A contour is a subprogram, gone through without moving anything. Run clockwise with RR, or counter-clockwise
+with RL, it is a pocket, else an island. Pockets that meet are one, or, where the first begins inside the
+other, only what lies in both (manual: area of inclusion, of intersection); islands are left standing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from copy import deepcopy
+from dataclasses import dataclass
+from functools import partial
+
+from core.geometry.intersections import intersections
+from core.geometry.lines_and_arcs import Element, Point
+from core.geometry.pocket_area import AreaError, Loop, Winding, boundary, follows, goes_round
+from core.interpreter.klartext.klartext_state import State
+from core.interpreter.klartext.path_elements import PathElement
+from core.interpreter.klartext.path_functions import PathRunner
+from core.language.formulas import Formula, Operation, Parameter
+from core.language.klartext.klartext_faults import CYCLE_MISSING, INPUT_VALUE, unsupported
+from core.language.klartext.klartext_nodes import Move
+
+OPEN = 0.016  # mm by which a contour may miss its start: as much as an arc its circle
+
+
+@dataclass(frozen=True, slots=True)
+class ContourFigure:
+    """The elements of one contour, in the program's X and Y; ``side`` L or R, empty where nothing said so.
+
+    ``label`` is how it is told of, ``pocket`` what CONTOUR DEF says of it; None where the side says it.
+    """
+
+    label: str
+    elements: tuple[Element, ...]
+    side: str = ""
+    pocket: bool | None = None
+    declared: int | None = None  # QC of a contour formula
+
+
+class FigureRunner(PathRunner):
+    """Takes the elements of a contour as they come, corners cut, and makes no blocks of them."""
+
+    def __init__(self, state: State) -> None:
+        super().__init__(state)
+        self._begun = -1  # index of the element that leads to the start
+        self.side = ""
+
+    @property
+    def elements(self) -> tuple[Element, ...]:
+        """Behind the block that leads to the contour's start."""
+        behind = self._waiting[self._begun + 1 :]
+        return tuple(each.flat for each in behind if isinstance(each, PathElement) and each.flat is not None)
+
+    def draw(self, node: Move) -> None:
+        """The element of a path function. Raises ProgramError for what no contour has."""
+        if node.form.startswith(("APPR", "DEP")):
+            raise unsupported(self._state.line, node.column, f"{node.form} within a contour of SL cycles")
+        if not node.axes and not node.words and node.form == "L":
+            return
+        self.side = self.side or node.compensation.strip("0+-")
+        made = list(self._elements(node))
+        if any(each.upright for each in made):
+            raise unsupported(self._state.line, node.column, "An upright arc within a contour of SL cycles")
+        if self._corner is not None:
+            made[0] = self._rounded(made[0])
+        if self._begun < 0 and (node.words or any(word.axis in "XY" for word in node.axes)):
+            self._begun = len(self._waiting)
+        self._waiting += made
+        self._end = made[-1].end
+        self._direction = made[-1].end_direction or self._direction
+
+    def _take_feed(self, node: Move) -> float | None:
+        del node  # a contour is a figure: its feeds say nothing
+        return None
+
+    def close(self) -> None:
+        """The end of the subprogram."""
+        self._demand_no_corner()
+
+
+def copy_of(state: State) -> State:
+    """A state to go through a contour with: what is assigned there stays there."""
+    shared = (state.setup, state.log, state.kinematics)
+    copied = deepcopy(state, {id(each): each for each in shared})
+    copied.m128 = False
+    return copied
+
+
+# --- the area
+
+
+def area_of(
+    state: State, figures: Sequence[ContourFigure], column: int, formula: Formula | None = None
+) -> list[Loop]:
+    """The boundary of what is to be cleared. Raises ProgramError where the contours enclose nothing."""
+    if formula is not None:
+        loops = {figure.declared: _closed(state, figure, column) for figure in figures}
+        windings = {number: Winding(loop) for number, loop in loops.items()}
+        return _bounded(state, list(loops.values()), partial(_holds, formula, windings), column)
+    pockets: list[Loop] = []
+    islands: list[Loop] = []
+    for figure in figures:
+        loop = _closed(state, figure, column)
+        (pockets if _is_pocket(state, figure, loop, column) else islands).append(loop)
+    if not pockets:
+        text = "No contour of cycle 14 is a pocket: there is nothing to clear between islands."
+        raise state.refuse(column, INPUT_VALUE, text, "Write the outer contour clockwise with RR.")
+    return _bounded(state, [*pockets, *islands], _inside(pockets, islands), column)
+
+
+def contours_of(formula: Formula) -> tuple[int, ...]:
+    """Numbers of the contours of a formula, each once."""
+    if isinstance(formula, Parameter):
+        return (formula.number,) if isinstance(formula.number, int) else ()
+    operands = formula.operands if isinstance(formula, Operation) else ()
+    return tuple(dict.fromkeys(number for each in operands for number in contours_of(each)))
+
+
+def replaced(formula: Formula, known: Mapping[int, Formula]) -> Formula:
+    """A formula in which those that were told before stand in the place of their QC."""
+    if isinstance(formula, Parameter) and isinstance(formula.number, int):
+        return known.get(formula.number, formula)
+    if isinstance(formula, Operation):
+        return formula._replace(operands=tuple(replaced(each, known) for each in formula.operands))
+    return formula
+
+
+def _holds(formula: Formula, windings: Mapping[int | None, Winding], point: Point) -> bool:
+    """Whether a point lies in the area of a contour formula."""
+    if isinstance(formula, Operation):
+        first, second = (_holds(each, windings, point) for each in formula.operands)
+        return _JOINED[formula.name](first, second)
+    assert isinstance(formula, Parameter)
+    assert isinstance(formula.number, int)
+    return windings[formula.number].round(point) != 0
+
+
+_JOINED: dict[str, Callable[[bool, bool], bool]] = {
+    "union": lambda a, b: a or b,
+    "intersection": lambda a, b: a and b,
+    "without": lambda a, b: a and not b,
+    "either": lambda a, b: a != b,
+}
+
+
+def _bounded(state: State, loops: Sequence[Loop], inside: Callable[[Point], bool], column: int) -> list[Loop]:
+    """The boundary of an area. Raises ProgramError where it cannot be followed, or is empty."""
+    try:
+        found = boundary(loops, inside)
+    except AreaError as problem:
+        raise state.refuse(column, INPUT_VALUE, f"Of the contours {problem}.", "Correct them.") from None
+    if not found:
+        text = "The contours enclose nothing: the islands cover the pockets."
+        raise state.refuse(column, INPUT_VALUE, text, "Correct the contours.")
+    return found
+
+
+def _closed(state: State, figure: ContourFigure, column: int) -> Loop:
+    """The contour as a loop. Raises ProgramError for an open one."""
+    if not figure.elements:
+        text = f"The contour {figure.label} has no elements."
+        raise state.refuse(column, CYCLE_MISSING, text, "Write its path functions.")
+    gap = math.dist(figure.elements[-1].end, figure.elements[0].start)
+    if gap > OPEN:
+        text = f"The contour {figure.label} ends {gap:.10g} mm from its start."
+        raise state.refuse(column, INPUT_VALUE, text, "Close it: end it where it begins.")
+    return follows(figure.elements)
+
+
+def _is_pocket(state: State, figure: ContourFigure, loop: Loop, column: int) -> bool:
+    if figure.pocket is not None:
+        return figure.pocket
+    if not figure.side:
+        text = f"Nothing says on which side of the contour {figure.label} is milled."
+        raise state.refuse(column, CYCLE_MISSING, text, "Write RL or RR in its first block.")
+    return goes_round(loop) == (figure.side == "L")
+
+
+def _inside(pockets: Sequence[Loop], islands: Sequence[Loop]) -> Callable[[Point], bool]:
+    """Tells of a point whether it is to be cleared."""
+    first, *others = [Winding(loop) for loop in pockets]
+    stay = [Winding(loop) for loop in islands]
+    start = pockets[0][0].start
+    both = [
+        within.round(start) != 0 and _meet(pockets[0], loop)
+        for within, loop in zip(others, pockets[1:], strict=True)
+    ]
+
+    def inside(point: Point) -> bool:
+        found = first.round(point) != 0
+        for within, only_both in zip(others, both, strict=True):
+            other = within.round(point) != 0
+            found = found and other if only_both else found or other
+        return found and not any(within.round(point) for within in stay)
+
+    return inside
+
+
+def _meet(one: Loop, other: Loop) -> bool:
+    return any(intersections(a, b) for a in one for b in other)

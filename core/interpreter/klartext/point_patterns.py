@@ -1,0 +1,78 @@
+"""PATTERN DEF: the machining points of its parts, in the order in which CYCL CALL PAT goes to them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from core.geometry.rotation_frames import Vector
+from core.interpreter.klartext import word_values
+from core.interpreter.klartext.klartext_state import State
+from core.language.klartext.klartext_faults import INPUT_VALUE
+from core.language.klartext.klartext_nodes import PatternDef, PatternPart
+
+MOST_POINTS = 10_000
+_LENGTHS = frozenset({"X", "Y", "Z", "D", "DX", "DY"})
+
+
+def points(state: State, node: PatternDef) -> list[Vector]:
+    """X, Y and the height of the surface over Q203 of every point, mm. Raises ProgramError."""
+    found: list[Vector] = []
+    for part in node.parts:
+        told = _numbers(state, part)
+        found += [(*at, told.get("Z", 0.0)) for at in _of_a_part(state, part, told)]
+    if len(found) > MOST_POINTS:
+        text = f"The pattern has {len(found)} points."
+        raise state.refuse(node.column, INPUT_VALUE, text, f"{MOST_POINTS} are the most.")
+    return found
+
+
+def _numbers(state: State, part: PatternPart) -> dict[str, float]:
+    return {
+        word.axis: word_values.number(state, word.value, word.axis, word_values.MOST_COORDINATE)
+        * (state.scale if word.axis in _LENGTHS else 1.0)
+        for word in part.words
+    }
+
+
+def _of_a_part(state: State, part: PatternPart, told: dict[str, float]) -> Iterator[tuple[float, float]]:
+    x, y = told["X"], told["Y"]
+    if part.form == "POS":
+        yield x, y
+    elif part.form == "ROW":
+        angle = math.radians(told.get("ROT", 0.0))
+        for at in range(_count(state, part, told["NUM"])):
+            yield x + at * told["D"] * math.cos(angle), y + at * told["D"] * math.sin(angle)
+    elif part.form in {"PAT", "FRAME"}:
+        yield from _grid(state, part, told)
+    else:
+        count = _count(state, part, told["NUM"])
+        step = told["STEP"] if part.form == "PITCHCIRC" else 360.0 / count
+        for at in range(count):
+            angle = math.radians(told.get("START", 0.0) + at * step)
+            yield x + told["D"] / 2.0 * math.cos(angle), y + told["D"] / 2.0 * math.sin(angle)
+
+
+def _grid(state: State, part: PatternPart, told: dict[str, float]) -> Iterator[tuple[float, float]]:
+    """Rows there and back; of a frame the border alone."""
+    columns, rows = _count(state, part, told["NUMX"]), _count(state, part, told["NUMY"])
+    turn = told.get("ROT", 0.0)
+    u = math.radians(turn + told.get("ROTX", 0.0))
+    v = math.radians(turn + 90.0 + told.get("ROTY", 0.0))
+    for row in range(rows):
+        order = range(columns) if row % 2 == 0 else range(columns - 1, -1, -1)
+        for column in order:
+            if part.form == "FRAME" and 0 < row < rows - 1 and 0 < column < columns - 1:
+                continue
+            along, across = column * told["DX"], row * told["DY"]
+            yield (
+                told["X"] + along * math.cos(u) + across * math.cos(v),
+                told["Y"] + along * math.sin(u) + across * math.sin(v),
+            )
+
+
+def _count(state: State, part: PatternPart, number: float) -> int:
+    if number != int(number) or not 1 <= number <= MOST_POINTS:
+        text = f"{part.form} has {number:g} points."
+        raise state.refuse(part.column, INPUT_VALUE, text, "Write a whole number from 1 on.")
+    return int(number)

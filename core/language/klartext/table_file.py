@@ -1,0 +1,63 @@
+"""Tables of the control, their rows by number: datums (.D), points (.PNT), free ones (.TAB).
+
+``BEGIN NAME.D MM``, a line with the names of the columns, a line a row below their names, ``[END]``. A cell
+stands from under its column's name to the next one; an empty one tells nothing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from core.language.source import Source
+
+ENDINGS = (".D", ".PNT", ".TAB")
+_FREE = ".TAB"
+_NAME = re.compile(r"[A-Z0-9_]+")
+_INCH = re.compile(r"BEGIN\s.*\bINCH\b", re.IGNORECASE)
+
+Row = dict[str, float]
+
+
+def is_table(name: str) -> bool:
+    """Whether a file of this name is a table and no program."""
+    return name.upper().endswith(ENDINGS)
+
+
+def table_rows(source: Source) -> dict[int, Row]:
+    """Rows by number, in the file's order: columns by name, lengths in mm; without those that FADE hides."""
+    lines = source.lines
+    head = next((at for at, text in enumerate(lines) if text.strip().upper().startswith("NR")), None)
+    if head is None:
+        return {}
+    free = source.name.upper().endswith(_FREE)  # its cells are what they are
+    scale = 25.4 if not free and any(_INCH.match(text) for text in lines[:head]) else 1.0
+    columns = [(match.group(), match.start()) for match in _NAME.finditer(lines[head].upper())]
+    found: dict[int, Row] = {}
+    for text in lines[head + 1 :]:
+        cells = _cells(text, columns)
+        if not cells.get("NR", "").isdigit() or cells.get("FADE", "N").upper()[:1] in {"Y", "1"}:
+            continue
+        found[int(cells["NR"])] = {
+            name: number * (scale if name in {"X", "Y", "Z"} else 1.0)
+            for name, cell in cells.items()
+            if name != "NR" and (number := _number(cell)) is not None
+        }
+    return found
+
+
+def _cells(text: str, columns: Sequence[tuple[str, int]]) -> dict[str, str]:
+    """The cells of a row that hold something; a row number may begin before its column's name."""
+    if len(split := text.split()) == len(columns):
+        return {name: cell for (name, _), cell in zip(columns, split, strict=True)}
+    ends = [start for _, start in columns[1:]] + [len(text)]
+    starts = [0, *(start for _, start in columns[1:])]
+    cut = {name: text[a:b].strip() for (name, _), a, b in zip(columns, starts, ends, strict=True)}
+    return {name: cell for name, cell in cut.items() if cell}
+
+
+def _number(cell: str) -> float | None:
+    try:
+        return float(cell.replace(",", "."))
+    except ValueError:
+        return None

@@ -1,0 +1,86 @@
+"""The code book of Klartext: each construct has an entry, each example proves, each refusal is told."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from app.compose.machine_files import shipped_machine
+from app.compose.machine_setup import setup_for
+from core.interpreter.code_book_page import page
+from core.interpreter.job_setup import ToolOffset
+from core.interpreter.klartext import contour_cycles, cycles, m_functions, older_contour_cycles, older_cycles
+from core.language.code_book import Entry
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.klartext import klartext_line, path_block, plane_block, q_parameters, text_blocks
+from core.language.klartext.klartext_book import BOOK
+from core.language.source import Dialect, Source
+from core.proving.prove_program import prove
+
+END = "END PGM EXAMPLE MM\n"
+MILL = shipped_machine("ac-table-mill")
+
+
+def errors_of(entry: Entry, lines: str) -> list[Diagnostic]:
+    text = lines if entry.whole else f"{BOOK.head}{lines}\n{BOOK.tail}{entry.behind}{END}"
+    files = tuple(Source(name, each) for name, each in entry.files)
+    setup = setup_for(MILL, tools={1: ToolOffset()}, secondary={})
+    report = prove(Source("EXAMPLE.H", text, subprograms=files), setup, MILL)
+    return [each for each in report.diagnostics if each.severity is Severity.ERROR]
+
+
+@pytest.mark.parametrize("entry", BOOK.entries, ids=lambda entry: entry.head)
+def test_the_example_proves(entry: Entry) -> None:
+    assert [each.in_one_line("") for each in errors_of(entry, entry.example)] == []
+    assert any(BOOK.at(line, 1) is not None for line in entry.example.splitlines())
+    assert entry.what.endswith(".")
+
+
+def test_every_construct_has_its_entry() -> None:
+    """What the reader and the interpreter know, by their own tables."""
+    heads = {entry.head for entry in BOOK.entries}
+    blocks = {*klartext_line._KEYWORDS, *path_block.FORMS} - {
+        "PLANE",
+        "FUNCTION",
+        "CYCL DEF",
+        "BLK FORM",
+        "TRANS",
+    }
+    planes = {f"PLANE {form}" for form in plane_block.FORMS}
+    told = {
+        *cycles._MACHINING,
+        *contour_cycles.CONTOURS,
+        *older_cycles.OLDER,
+        *older_contour_cycles.OLDER_CONTOURS,
+        *cycles._NO_CYCLE,
+    }
+    told |= {*cycles._TRANSFORMS, *cycles._AT_ONCE, 7}
+    codes = m_functions.BEFORE | m_functions._BEHIND | m_functions._OF_THE_BLOCK | m_functions.UNHEEDED
+    known = blocks | planes | {f"CYCL DEF {number}" for number in told} | {f"M{code}" for code in codes}
+    jumps_and_sums = {*q_parameters._JUMPS, *q_parameters._TWO, *q_parameters._ONE, 0, q_parameters._ANGLE}
+    known |= {f"FN {n}" for n in (*jumps_and_sums, *q_parameters._READERS, *q_parameters._UNHEEDED)}
+    known |= {*text_blocks.READERS, "TOCHAR", "SUBSTR", "SYSSTR"}
+    assert known - heads == set()
+    assert len(heads) == len(BOOK.entries)
+
+
+def test_what_can_be_written_wrongly_has_its_refusal() -> None:
+    """Without one are blocks that take any text, and words that take nothing."""
+    free = {each.head for each in BOOK.entries if not each.refused}
+    any_text = {"*", "FN 15", "FN 16", "FN 38", "WMAT", "CYCL DEF 13", "CYCL DEF 32"}
+    assert free == any_text | {"R0", "RR", "FUNCTION RESET TCPM"}
+
+
+@pytest.mark.parametrize(
+    "entry", [each for each in BOOK.entries if each.refused], ids=lambda entry: entry.head
+)
+def test_what_is_no_program_is_refused(entry: Entry) -> None:
+    said = [f"{each.message} {each.hint}" for each in errors_of(entry, entry.refused)]
+    assert said, entry.refused
+    assert any(entry.why in each for each in said), said
+
+
+def test_the_page_is_that_of_the_book() -> None:
+    written = Path(__file__).parents[2] / "docs" / "klartext-codes.md"
+    assert written.read_text(encoding="utf-8") == page(Dialect.KLARTEXT), "print it anew: CONTRIBUTING.md"
