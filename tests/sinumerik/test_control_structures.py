@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 
 import pytest
 
 from core.interpreter.actions import Coolant
-from tests.sinumerik.lathe import run
+from core.interpreter.sinumerik import subprogram_flow
+from core.language.sinumerik.sinumerik_lexer import lex_line
+from core.language.sinumerik.sinumerik_words import Line
+from tests.sinumerik.lathe import good, refused, run
 
 
 def r(text: str, *behind: str) -> float:
@@ -102,3 +106,33 @@ def test_a_message_is_shown_and_its_semicolon_begins_no_comment() -> None:
     ran = run('MSG("ROUGH; THEN FINISH")\nG0 X10\nM30')
     assert ran.found == []
     assert ran.blocks[0].modal.comment == "ROUGH; THEN FINISH"
+
+
+# --- how often a line is read
+
+
+@pytest.mark.parametrize(
+    "loop",
+    [
+        "AGAIN: R1=R1+1\nIF R1<500 GOTO AGAIN",
+        "AGAIN: R1=R1+1\nIF R1>=500 GOTOF OUT\nGOTOB AGAIN",
+        "FOR R1=1 TO 500\nR2=R1\nENDFOR",
+        "WHILE R1<500\nR1=R1+1\nENDWHILE",
+    ],
+)
+def test_a_loop_reads_no_line_at_each_pass(loop: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Once for its structure, once for a label, and twice when it runs first."""
+    read: Counter[int] = Counter()
+
+    def counted(number: int, text: str, third_axis: str) -> Line:
+        read[number] += 1
+        return lex_line(number, text, third_axis)
+
+    monkeypatch.setattr(subprogram_flow, "lex_line", counted)
+    good(f"R1=0\n{loop}\nG0 X30\nOUT: G0 X40\nM30")
+    assert max(read.values()) <= 4
+
+
+def test_a_block_number_is_not_found_in_a_longer_one() -> None:
+    assert [block.x for block in good("G0 X20\nGOTOF N3\nN33 G0 X30\nn3 G0 X40")] == [10.0, 20.0]
+    assert refused("N20 GOTOF N3\nN33 G0 X30 ; N3").code == "14080"

@@ -93,7 +93,7 @@ def test_a_full_circle() -> None:
         ("G3 X40 Z-10 AR=30 I2", "arc-both"),
         ("G3 X20 Z0 CR=15", "arc-no-chord"),
         ("G3 AR=30", "arc-centre-missing"),
-        ("G3 X40 Z-10 I7 K0", "arc-radius"),
+        ("G3 X40 Z-10 I7 K0", "14040"),
         ("G3 X40 Z-10 I0 K0", "arc-radius"),
         ("G3 C90", "arc-centre-missing"),
     ],

@@ -165,7 +165,46 @@ def test_g94_again_keeps_f() -> None:
     assert times("G1 Z0 F600\nG94\nZ-10")[-1][1] == pytest.approx(1.0, abs=1e-6)
 
 
-def test_g96_says_that_f_still_counts_in_minutes() -> None:
-    """The maker's controls differ here: on some of them G96 makes F a feed per revolution."""
-    assert [each.code for each in run("N5 G96 S120 M3").found] == ["g96-by-minute"]
-    assert run("G95 G96 S120 M3").found == []
+def test_g96_counts_f_by_the_revolution() -> None:
+    """22 mm at 0.2 mm a revolution and 763.944 rpm, which is 120 m/min on Ø 50: 8.639 s, and not 6 600 s."""
+    found = times("G0 X50 Z2\nG96 S120 LIMS=2500 M3\nG1 Z-20 F0.2")
+    assert found[-1][1] == pytest.approx(22.0 / (0.2 * 763.9437268 / 60.0), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "per_rev", "css"),
+    [
+        ("G96 S120 M3", True, True),
+        ("G961 S120 M3", False, True),
+        ("G962 S120 M3", False, True),
+        ("G95\nG962 S120 M3", True, True),
+        ("G97 S500 M3", True, False),
+        ("G971 S500 M3", False, False),
+        ("G95\nG972 S500 M3", True, False),
+        ("G973 S500 M3", True, False),
+        ("G96 S120 M3\nG94", False, False),
+        ("G961 S120 M3\nG95", True, False),
+        ("G96 S120 M3\nG97", True, False),
+    ],
+)
+def test_one_group_says_feed_and_speed(text: str, per_rev: bool, css: bool) -> None:
+    modal = run(text + "\nG0 X30").blocks[-1].modal
+    assert (modal.per_rev, modal.css) == (per_rev, css)
+
+
+def test_g97_keeps_the_speed_that_g96_has_led_to() -> None:
+    """120 m/min on Ø 50: 120 000 / (50 pi)."""
+    assert run("G0 X50\nG96 S120 M3\nG97\nG0 X20").blocks[-1].rpm == pytest.approx(763.9437268)
+
+
+def test_g94_behind_g96_goes_back_to_the_s_of_before() -> None:
+    assert run("S900 M3\nG0 X50\nG96 S120\nG94\nG0 X20").blocks[-1].rpm == pytest.approx(900.0)
+
+
+def test_g96_wants_a_new_f() -> None:
+    assert refused("G1 X40 F200\nG96 S120 M3\nN30 Z0").code == "10860"
+
+
+@pytest.mark.parametrize("two", ["G96 G95", "G94 G97", "G961 G971", "G95 G94"])
+def test_two_of_the_group_are_refused(two: str) -> None:
+    assert refused(f"S100 {two}").code == "12060"

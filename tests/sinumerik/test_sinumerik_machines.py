@@ -103,3 +103,44 @@ def test_a_machine_file_makes_c_linear_or_takes_it_away() -> None:
     without = changed("enabled = true", "enabled = false")
     assert codes("G0 C5", without) == ["unknown-axis"]
     assert codes("G0 X5", without) == []
+
+
+def test_fixed_points_of_the_shipped_lathes_lie_away_from_the_part() -> None:
+    """The part is cut towards -Z and the axis of the spindle; the ends of the travel are X300 and Z800."""
+    for machine in (MODULO, LINEAR):
+        x, z, c = machine.axes
+        assert (x.fixed_points, z.fixed_points, c.fixed_points) == ((299.0,), (799.0,), ())
+        assert codes("TRANS Z20\nG0 X20 Z5\nG75 X1=0 Z1=0", machine) == []
+
+
+def test_a_fixed_point_behind_the_soft_limit_stops_the_proof() -> None:
+    """As where the travel has been made smaller: the machine file would not have been read."""
+    x, *others = MODULO.axes
+    shorter = replace(MODULO, axes=(replace(x, travel=(-20.0, 298.0)), *others))
+    assert codes("G75 X1=0", shorter) == ["soft-limit"]
+
+
+@pytest.mark.parametrize(
+    ("new", "told"),
+    [
+        ("[300.5]", "300.5 mm lies outside axis.X.travel, -20 mm to 300 mm"),
+        ("[299.0, -21.0]", "-21 mm lies outside axis.X.travel"),
+        ("[]", "one to four numbers"),
+        ("[1.0, 2.0, 3.0, 4.0, 5.0]", "one to four numbers"),
+        ('["far"]', "one to four numbers"),
+        ("299.0", "one to four numbers"),
+        ("[nan]", "one to four numbers"),
+    ],
+)
+def test_fixed_points_refused(new: str, told: str) -> None:
+    with pytest.raises(MachineFileError, match=r"axis\.X\.fixed_points") as error:
+        changed("fixed_points = [299.0] ", f"fixed_points = {new} ")
+    assert told in str(error.value)
+
+
+def test_fixed_points_need_no_order_and_a_mill_has_none() -> None:
+    machine = changed("fixed_points = [299.0] ", "fixed_points = [100.0, 20.0, -20.0, 300.0] ")
+    assert machine.axes[0].fixed_points == (100.0, 20.0, -20.0, 300.0)
+    mill = resources.machine_file("ac-table-mill.toml")
+    with pytest.raises(MachineFileError, match="only a lathe goes to fixed points"):
+        parse_machine(mill.replace("[axis.X]\n", "[axis.X]\nfixed_points = [0.0]\n"), "mill.toml")

@@ -28,7 +28,7 @@ ZERO: Mapping[int, ZeroOffset] = {54: ZeroOffset(0.0, -5.0, 15.0)}
 
 COMMON = """\
 ; everything that both kinds of C take
-N10 G18 G71 G90 G54 DIAMON G94 G97
+N10 G18 G71 G90 G54 DIAMON G94
 R1=40 R2=0.2
 N20 G0 X=R1 Z2 C0
 N30 S800 M3

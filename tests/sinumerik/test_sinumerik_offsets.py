@@ -103,7 +103,6 @@ def test_trans_in_inches() -> None:
         "TRANS C30 F100",
         "TRANS C30 M3",
         "ATRANS X1 S100",
-        "TRANS ATRANS X1",
         "N5 G0 TRANS",
     ],
 )
@@ -143,7 +142,7 @@ def test_the_picture_is_drawn_from_the_zero_of_the_program() -> None:
     here = setup(start=(0.0, 0.0, 0.0))
     there = setup(start=(0.0, 0.0, 0.0), zero={54: ZeroOffset(50.0, -200.0, 0.0)})
     ends = [
-        [(b.mx - b.modal.tool_x, b.mz - b.modal.tool_z) for b in good(text, around)]
+        [(b.mx - b.modal.base_x, b.mz - b.modal.base_z) for b in good(text, around)]
         for around in (here, there)
     ]
     assert ends[0][:3] == [(10.0, 5.0), (10.0, -10.0), (10.0, -30.0)]

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from core.interpreter.job_setup import Setup
+from core.language.diagnostics import Severity
 from tests.sinumerik.lathe import LINEAR, MODULO, good, refused, run, setup
 
 
@@ -51,14 +52,18 @@ def one_speed() -> Setup:
         ("N30 G1 Z0 F0", "not-positive"),
         ("N30 G1 Z0 F-100", "not-positive"),
         ("N30 M99", "m-unknown"),
-        ("N30 M6", "m-unknown"),
-        ("N30 G33 Z5", "g-unknown"),
-        ("N30 G999", "g-unknown"),
+        ("N30 M98", "m-unknown"),
+        ("N30 G33 Z5", "thread-lead-missing"),
+        ("N30 G33 Z5 K1", "g95-spindle-stopped"),
+        ("N30 G999", "12470"),
         ("N30 M3 M5 S1", "m-conflict"),
         ("N30 M0 M30", "m-conflict"),
-        ("N30 T1 D1", "not-in-subset"),
+        ("N30 D2", "17180"),
+        ("N30 T1.5", "12080"),
+        ("N30 T1 D10", "12080"),
         ("N30 G1 Y5 F1", "not-in-subset"),
-        ("N30 CYCLE95(1,2)", "not-in-subset"),
+        ("N30 CYCLE95(1,2)", "61605"),
+        ("N30 CYCLE84(1,2)", "cycle-plane"),
         ("N30 GOTOF WEITER", "14080"),
         ("N30 IF R1>0", "12640"),
         ("N30 ENDFOR", "12640"),
@@ -68,13 +73,14 @@ def one_speed() -> Setup:
         ("N30 R1=SQRT(-1)", "arithmetic"),
         ("N30 R1=(2+3", "12080"),
         ("N30 R1=2+", "12080"),
-        ("N30 DEPTH=5", "unknown-name"),
+        ("N30 DEPTH=5", "12550"),
         ("N30 DEF STRING[5] A1", "12080"),
-        ("N30 MSG(HELLO)", "12080"),
+        ('N30 MSG("HELLO"', "12080"),
         ("N30 FOR R1=1", "12080"),
         ("N30 STOPRE G1 X5", "12080"),
-        ("N30 SPOS=90", "not-in-subset"),
-        ("N30 TRANSMIT", "not-in-subset"),
+        ("N30 SPOS=90", "spindle-position"),
+        ("N30 M19", "spindle-position"),
+        ("N30 TRANSMIT(2)", "14401"),
         ("N30 M3", "speed-missing"),
         ("N30 S-100 M3", "speed-sign"),
         ("N30 S9000 M3", "speed-range"),
@@ -185,3 +191,39 @@ def test_the_linear_axis_names_its_range() -> None:
     error = refused("N30 G0 C400", setup(LINEAR))
     assert error.code == "10720"
     assert "-360 to +360" in error.message
+
+
+@pytest.mark.parametrize(
+    ("block", "named"), [("M80", "M80"), ("M9 M50", "M50"), ("M50 M80 M81", "M50 M80 M81"), ("M138", "M138")]
+)
+def test_m_functions_of_another_builder_are_told_once_each_and_the_rest_goes_on(
+    block: str, named: str
+) -> None:
+    """The control itself raises no alarm; the lines that bind the code are told letter by letter."""
+    passed = run(f"N10 G0 X20 Z5\nN20 {block}\nN30 {block}\nN40 G0 X30")
+    assert passed.errors == []
+    assert passed.moves[-1].mx == 15.0
+    told = [(each.line, each.code, each.severity) for each in passed.found]
+    assert told == [(2, "m-unanswered", Severity.WARNING)] * len(named.split())
+    for each, code in zip(passed.found, named.split(), strict=True):
+        number = code.removeprefix("M")
+        assert f"{code} is the machine builder's" in each.message
+        assert f'{number} = {{ output = "NAME", on = true }} under [m_codes]' in each.hint
+        assert f"{number} = {{ ignored = true }}" in each.hint
+
+
+def test_m_functions_that_the_machine_file_ignores_do_nothing() -> None:
+    limits = replace(setup().limits, m_ignored=frozenset({80}))
+    passed = run("M80\nG0 X30\nM80", replace(setup(), limits=limits))
+    assert [(each.line, each.code, each.severity) for each in passed.found] == [
+        (1, "no-effect", Severity.NOTE)
+    ]
+    assert len(passed.blocks) == 1
+
+
+def test_what_a_post_switches_off_is_taken_and_what_it_would_switch_on_is_not() -> None:
+    """No transformation is ever on, and no other language."""
+    assert run("G290\nTRAFOOF\nG0 X20 Z5").found == []
+    assert refused("N10 G291").code == refused("N10 TRAANG").code == "not-in-subset"
+    assert refused("N10 G290 G291").code == "not-in-subset"
+    assert refused("N10 TRAFOOF TRAFOOF").code == "12060"

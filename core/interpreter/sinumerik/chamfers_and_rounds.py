@@ -13,12 +13,13 @@ from core.geometry.chamfer_and_rounding import (
     leg_of,
     rounding,
 )
-from core.geometry.lines_and_arcs import Element, Line
+from core.geometry.lines_and_arcs import Element
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.adjusted_moves import element_of, standstill_at
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.sinumerik.linear_moves import AxisTravel
+from core.interpreter.sinumerik.moves_along import along, inserted
+from core.interpreter.sinumerik.sinumerik_feeds import feed_of
 from core.interpreter.sinumerik.sinumerik_state import State, positive
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
@@ -36,6 +37,8 @@ class Corner:
     statement: Statement
     word: Word
     size: float
+    feed: float | None = None  # FRC, FRCM
+    modal: bool = False  # RNDM: where there is no corner, none is asked for
 
     def refuse(self, code: str, why: str, hint: str) -> ProgramError:
         """An error at the corner's word."""
@@ -46,16 +49,28 @@ def corner_of(state: State, statement: Statement, block: Block) -> Corner | None
     """The corner of a block that has been made. Raises ProgramError."""
     word = statement.corner
     if word is None:
-        return None
-    corner = Corner(
-        statement, word, positive(statement, word, state.length(statement, word), "the size of a corner")
-    )
+        return _modal_corner(state, statement, block)
+    size = positive(statement, word, state.length(statement, word), "the size of a corner")
+    corner = Corner(statement, word, size, _feed(state, statement))
     if block.kind not in _CUT - {Kind.RAPID} or not _moves(block):
         hint = "CHF, CHR and RND take G1, G2 and G3."
         raise corner.refuse("corner-next", "the block is no line or arc", hint)
     if state.plane != 18:
         raise corner.refuse("corner-plane", "corners of X and Z need G18", "Write G18 before it.")
     return corner
+
+
+def _modal_corner(state: State, statement: Statement, block: Block) -> Corner | None:
+    """The rounding of RNDM; None where the block is no line or arc of the contour."""
+    if not state.rounding or block.kind not in _CUT - {Kind.RAPID} or not _moves(block) or state.plane != 18:
+        return None
+    word = Word("RND", state.rounding, 1, f"RNDM={state.rounding:g}")
+    return Corner(statement, word, state.rounding, _feed(state, statement), modal=True)
+
+
+def _feed(state: State, statement: Statement) -> float | None:
+    word = statement.words.get("FRC")
+    return state.corner_feed if word is None else feed_of(state, statement, word)
 
 
 @dataclass(slots=True)
@@ -71,6 +86,11 @@ class Corners:
     def __init__(self, state: State, log: Log) -> None:
         self._state, self._log = state, log
         self._held: _Held | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether a move is held back."""
+        return self._held is not None
 
     def drop(self) -> None:
         """Forget the move that is held back, after an error."""
@@ -90,13 +110,19 @@ class Corners:
             self._held = None
             yield from self._cut(held, block, corner)
 
-    def end(self) -> None:
-        """No block comes any more. Raises ProgramError where a corner is left."""
+    def end(self) -> Iterator[Block]:
+        """No block comes any more: what is held back. Raises ProgramError where a corner is left."""
         held, self._held = self._held, None
-        if held is not None:
+        if held is not None and held.corner.modal:
+            yield from (held.block, *held.between)
+        elif held is not None:
             raise held.corner.refuse("corner-next", "no move follows", "A corner needs two moves in a row.")
 
     def _cut(self, held: _Held, after: Block, corner: Corner | None) -> Iterator[Block]:
+        if held.corner.modal and (after.kind not in _CUT - {Kind.RAPID} or not _moves(after)):
+            yield from (held.block, *held.between)
+            yield from self.take(after, corner)
+            return
         if after.kind not in _CUT or not _moves(after):
             why = f"the next move, on line {after.line}, is no line or arc of X and Z"
             raise held.corner.refuse("corner-next", why, "A corner needs two moves in a row.")
@@ -105,6 +131,10 @@ class Corners:
         try:
             cut, between, rest = self._elements(held.corner, first, last)
         except NoCornerError:
+            if held.corner.modal:
+                yield from (block, *held.between)
+                yield from self.take(after, corner)
+                return
             text = f"lines {block.line} and {after.line} run in one direction: there is no corner to cut."
             self._log.add(
                 held.corner.statement.warning(held.corner.word, "corner-straight", text, "Take it out.")
@@ -116,11 +146,12 @@ class Corners:
             raise self._too_large(held, after, problem) from None
         except CornerError as problem:
             raise held.corner.refuse("corner-next", str(problem), "Give another end point.") from None
-        yield self._along(block, cut)
-        yield self._inserted(block, between)
+        yield along(self._state, block, cut)
+        made = inserted(self._state, block, between)
+        yield made if held.corner.feed is None else replace(made, feed=held.corner.feed)
         for each in held.between:
             yield standstill_at(each, between.end, self._state.setup.limits.max_rpm)
-        there = _moved(self._along(_moved(after, dx, dz), rest), -dx, -dz)
+        there = _moved(along(self._state, _moved(after, dx, dz), rest), -dx, -dz)
         yield from self.take(there, corner)
 
     def _elements(self, corner: Corner, first: Element, last: Element) -> tuple[Element, Element, Element]:
@@ -128,28 +159,6 @@ class Corners:
             return rounding(first, last, corner.size)
         leg = leg_of(first, last, corner.size) if corner.word.name == "CHF" else corner.size
         return chamfer(first, last, leg)
-
-    def _along(self, block: Block, element: Element) -> Block:
-        """The block's own move on a part of its way; a rapid takes the time of its slowest axis."""
-        (x0, z0), (x, z) = element.start, element.end
-        travel = AxisTravel(x0, z0, block.c0, x, z, block.c, block.modal, block.offset_x, block.offset_z)
-        rapid = block.kind is Kind.RAPID
-        feed = travel.rapid_rate(self._state.setup.limits.speeds) if rapid else block.feed
-        made = replace(block, x0=x0, z0=z0, x=x, z=z, feed=feed, rpm=self._rpm(block, x))
-        if isinstance(element, Line):
-            return made
-        cx, cz = element.centre
-        return replace(made, kind=Kind.ARC, cx=cx, cz=cz, clockwise=element.clockwise)
-
-    def _inserted(self, block: Block, element: Element) -> Block:
-        """The corner: a move of X and Z alone; C has ended with the block before it."""
-        straight = replace(block, kind=Kind.FEED) if isinstance(element, Line) else block
-        return replace(self._along(straight, element), c0=block.c, text=f"{block.text} ›")
-
-    def _rpm(self, block: Block, x: float) -> float:
-        if block.css is None or not block.modal.spindle:
-            return block.rpm
-        return self._state.rpm_at(x)
 
     def _too_large(self, held: _Held, after: Block, problem: CornerTooLargeError) -> ProgramError:
         of = held.block if problem.first else after

@@ -1,4 +1,4 @@
-"""Where a SINUMERIK program goes on behind GOTO, IF, WHILE, FOR, LOOP and REPEAT; DEF and MSG."""
+"""Where a SINUMERIK program goes on behind GOTO, IF, CASE, WHILE, FOR, LOOP, REPEAT; DEF and MSG."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterable
 from typing import Protocol
 
 from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.variables import LARGEST_ARRAY
 from core.language.diagnostics import ProgramError
-from core.language.formulas import Formula
+from core.language.formulas import Formula, Parameter
 from core.language.sinumerik.program_jumps import Jump, Steering
-from core.language.sinumerik.sinumerik_alarms import NESTING, NO_TARGET, fault
+from core.language.sinumerik.sinumerik_alarms import NESTING, NO_TARGET, NOT_DEFINED, fault
 from core.language.sinumerik.sinumerik_words import Line
 
 _ENDS = {
@@ -20,7 +21,8 @@ _ENDS = {
     Steering.UNTIL: Steering.REPEAT,
 }
 _BEGINS = frozenset(_ENDS.values())
-_GOTO = frozenset({Steering.GOTO, Steering.GOTO_BACK, Steering.GOTO_FORWARD})
+_SAME = 1e-12  # numbers of CASE that differ by less are equal
+_GOTO = frozenset({Steering.GOTO, Steering.GOTO_BACK, Steering.GOTO_FORWARD, Steering.GOTO_START})
 
 
 class Lines(Protocol):
@@ -30,6 +32,10 @@ class Lines(Protocol):
 
     def line(self, at: int) -> Line:
         """The line with this index."""
+        ...
+
+    def labelled(self, label: str) -> tuple[int, ...]:
+        """Indices, rising, of the lines with this label or block number."""
         ...
 
     def partners(self) -> dict[int, tuple[int, ...]]:
@@ -46,7 +52,7 @@ def belonging(lines: Iterable[Line]) -> dict[int, tuple[int, ...]]:
         if jump is None:
             continue
         at = line.number - 1
-        if jump.steering in _BEGINS:
+        if jump.steering in _BEGINS and not jump.target:
             opened.append((line, jump, [at]))
         elif jump.steering is Steering.ELSE and opened and opened[-1][1].steering is Steering.IF:
             opened[-1][2].append(at)
@@ -67,15 +73,59 @@ def follow(line: Line, jump: Jump, state: State, program: Lines, at: int) -> int
     steering = jump.steering
     if steering in _GOTO:
         wanted = jump.condition is None or _holds(line, jump, state, jump.condition)
+        if not wanted and jump.other is not None:
+            return follow(line, jump.other, state, program, at)
         return _target(line, jump, program, at) if wanted else None
+    if steering is Steering.CASE:
+        return _case(line, jump, state, program, at)
     if steering is Steering.DEFINE:
-        for name, formula in jump.defined:
-            state.variables[name] = 0.0 if formula is None else _worth(line, jump, state, formula)
+        _define(line, jump, state)
     elif steering is Steering.MESSAGE:
-        state.adopt(state.modal._replace(comment=jump.text))
-    elif steering in _BEGINS or steering in _ENDS or steering is Steering.ELSE:
+        state.adopt(state.modal._replace(comment=_message(line, jump, state)))
+    elif steering is Steering.ALARM and jump.condition is not None:
+        number = _worth(line, jump, state, jump.condition)
+        text = f"the program raises its alarm {number:g}."
+        raise _refused(line, jump, "program-alarm", text, "Look at the lines before it for the reason.")
+    elif (steering in _BEGINS or steering in _ENDS or steering is Steering.ELSE) and not jump.target:
         return _STEPS[steering](line, jump, state, program.partners()[at], program)
     return None
+
+
+def _case(line: Line, jump: Jump, state: State, program: Lines, at: int) -> int | None:
+    """The jump of the first branch with the value of CASE, or of DEFAULT."""
+    assert jump.condition is not None
+    value = _worth(line, jump, state, jump.condition)
+    for formula, steering, target in jump.choices:
+        if formula is None or abs(_worth(line, jump, state, formula) - value) <= _SAME:
+            return _target(line, jump._replace(steering=steering, target=target), program, at)
+    return None
+
+
+def _define(line: Line, jump: Jump, state: State) -> None:
+    """DEF: numbers, arrays, and texts that MSG shows."""
+    scope = state.variables.scope
+    for name, formula, kind, length, text in jump.defined:
+        if kind == "STRING":
+            scope.texts[name] = text
+            continue
+        size = None if length is None else int(_worth(line, jump, state, length))
+        if size is not None and not 1 <= size <= LARGEST_ARRAY:
+            told = f"{name}[{size}] is no array of 1 to {LARGEST_ARRAY:,} elements."
+            raise _refused(line, jump, "array-index", told, "Correct its size.")
+        scope.define(name, 0.0 if formula is None else _worth(line, jump, state, formula), size)
+
+
+def _message(line: Line, jump: Jump, state: State) -> str:
+    """The text of MSG: numbers as they are written, without needless zeros."""
+    shown = []
+    for piece in jump.pieces:
+        if isinstance(piece, str):
+            shown.append(piece)
+        elif isinstance(piece, Parameter) and piece.letters in state.variables.scope.texts:
+            shown.append(state.variables.scope.texts[piece.letters])
+        else:
+            shown.append(f"{_worth(line, jump, state, piece):.6g}")
+    return "".join(shown)
 
 
 Places = tuple[int, ...]
@@ -144,13 +194,16 @@ _STEPS: dict[Steering, _Step] = {
 
 
 def _set(line: Line, jump: Jump, state: State, value: float) -> None:
-    if not state.keep(jump.name, value):
-        text = f"{jump.name} is no variable of this program."
-        raise _refused(line, jump, "unknown-name", text, f"Write DEF INT {jump.name} before it.")
+    if not state.variables.keep(jump.name, value):
+        text = f"the name {jump.name} is not defined: no DEF has named it."
+        raise _refused(line, jump, NOT_DEFINED, text, f"Write DEF INT {jump.name} before it.")
 
 
 def _variable(jump: Jump, state: State) -> float:
-    return state.variables[jump.name] if jump.name in state.variables else state.r[int(jump.name[1:])]
+    variables = state.variables
+    if jump.name in variables.scope.numbers:
+        return variables.scope.numbers[jump.name]
+    return variables.r[int(jump.name[1:])]
 
 
 def _holds(line: Line, jump: Jump, state: State, condition: Formula) -> bool:
@@ -163,20 +216,23 @@ def _worth(line: Line, jump: Jump, state: State, formula: Formula) -> float:
 
 def _target(line: Line, jump: Jump, program: Lines, at: int) -> int:
     """The index of the label: GOTOF behind the line, GOTOB before it, GOTO behind and then before."""
-    behind = range(at + 1, program.lines.stop)
-    before = range(at, program.lines.start - 1, -1)
-    wheres = {
-        Steering.GOTO_FORWARD: (behind,),
-        Steering.GOTO_BACK: (before,),
-        Steering.GOTO: (behind, before),
-    }
-    for places in wheres[jump.steering]:
-        for place in places:
-            other = program.line(place)
-            if jump.target in {other.label, other.block}:
-                return place
-    text = f"the label {jump.target} is not where {jump.steering} looks for it."
-    raise _refused(line, jump, NO_TARGET, text, "Correct the label, or the direction of the jump.")
+    if jump.steering is Steering.GOTO_START:
+        return program.lines.start
+    place = find_label(jump.steering, jump.target, program, at)
+    if place is None:
+        text = f"the label {jump.target} is not where {jump.steering} looks for it."
+        raise _refused(line, jump, NO_TARGET, text, "Correct the label, or the direction of the jump.")
+    return place
+
+
+def find_label(steering: Steering, target: str, program: Lines, at: int) -> int | None:
+    """Index of the line with this label or number, where the jump looks for it; None without one."""
+    places = program.labelled(target)
+    behind = next((place for place in places if place > at), None)
+    before = next((place for place in reversed(places) if place <= at), None)
+    if steering is Steering.GOTO_BACK or (steering is Steering.GOTO and behind is None):
+        return before
+    return behind
 
 
 def _refused(line: Line, jump: Jump, code: int | str, text: str, hint: str) -> ProgramError:

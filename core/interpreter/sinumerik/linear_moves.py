@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from math import hypot
+from math import cos, hypot, radians, sin, tan
 from typing import NamedTuple
 
+from core.interpreter.adjusted_moves import element_of
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
 from core.interpreter.sinumerik import third_axis
-from core.interpreter.sinumerik.modes_and_offsets import check_c
-from core.interpreter.sinumerik.sinumerik_state import State, positive
+from core.interpreter.sinumerik.modes_and_offsets import check_area, check_c
+from core.interpreter.sinumerik.programmed_frame import ProgrammedFrame
+from core.interpreter.sinumerik.sinumerik_feeds import check_feed
+from core.interpreter.sinumerik.sinumerik_state import NO_FRAME, Motion, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.sinumerik.sinumerik_words import ARC, Form, Word
+from core.language.sinumerik.word_table import SUPPRESSION
 
 # --- where the words lead, in machine coordinates
 
@@ -23,7 +27,7 @@ NO_WAY = 1e-6
 class AxisTravel(NamedTuple):
     """From where to where, machine coordinates: mm, X a radius, C in degrees over its turns.
 
-    ``offset_x offset_z`` and ``modal`` hold the frame of the block: none under G53.
+    ``offset_x offset_z``, ``modal`` and ``frame`` are those of the block: under G53 the edge's alone.
     """
 
     x0: float
@@ -35,6 +39,7 @@ class AxisTravel(NamedTuple):
     modal: Modal
     offset_x: float
     offset_z: float
+    frame: ProgrammedFrame = NO_FRAME
 
     @property
     def length(self) -> float:
@@ -45,6 +50,16 @@ class AxisTravel(NamedTuple):
     def turn(self) -> float:
         """Signed travel of C, degrees."""
         return self.c - self.c0
+
+    @property
+    def begun(self) -> tuple[float, float]:
+        """X and Z of the start as the program counts them: mm, X a radius."""
+        return self.frame.unturned(self.x0 - self.offset_x, self.z0 - self.offset_z)
+
+    def placed(self, x: float, z: float) -> tuple[float, float]:
+        """Machine X and Z of a point of the program."""
+        x, z = self.frame.turned(x, z)
+        return x + self.offset_x, z + self.offset_z
 
     def rapid_rate(self, speeds: tuple[float, float, float]) -> float:
         """Speed along the path of a rapid, or of C where there is none: mm/s or degrees/s.
@@ -59,29 +74,104 @@ class AxisTravel(NamedTuple):
 def travel_of(state: State, statement: Statement) -> AxisTravel:
     """Where a block leads. Raises ProgramError for a word that names no place."""
     check_c(state, statement)
-    modal = state.modal
+    modal, frame = state.modal, state.programmed
     dx, dz = modal.offset_x, modal.offset_z
-    if "suppression of offsets" in statement.g:
-        modal, dx, dz = modal._replace(offset_c=0.0), 0.0, 0.0
-    x, z = _slide(state, statement, "X", state.x, dx), _slide(state, statement, "Z", state.z, dz)
-    travel = AxisTravel(
-        state.x, state.z, state.c, x, z, state.c + _turn(state, statement, modal), modal, dx, dz
-    )
+    if SUPPRESSION in statement.g:
+        frame, dx, dz = NO_FRAME, modal.base_x - modal.settable_x, modal.base_z - modal.settable_z
+        modal = modal._replace(offset_c=0.0)
+    still = AxisTravel(state.x, state.z, state.c, state.x, state.z, state.c, modal, dx, dz, frame)
+    x, z = _ends(state, statement, still)
+    travel = still._replace(x=x, z=z, c=state.c + _turn(state, statement, modal))
+    check_area(state, statement, travel.x, travel.z)
     return travel._replace(x=state.x, z=state.z) if travel.length < NO_WAY else travel
 
 
-def _slide(state: State, statement: Statement, name: str, at: float, offset: float) -> float:
-    """The end of a linear axis."""
+def _ends(state: State, statement: Statement, still: AxisTravel) -> tuple[float, float]:
+    """Machine X and Z of the end."""
+    words = statement.words
+    if "RP" in words or "AP" in words:
+        return still.placed(*_polar(state, statement))
+    begun = still.begun
+    x, z = _slide(state, statement, "X", begun[0]), _slide(state, statement, "Z", begun[1])
+    if "ANG" in words:
+        x, z = _inclined(state, statement, begun, x, z)
+    if x is None and z is None:
+        return still.x, still.z
+    there = still.placed(begun[0] if x is None else x, begun[1] if z is None else z)
+    if not still.frame.plain:
+        return there
+    return (still.x if x is None else there[0]), (still.z if z is None else there[1])
+
+
+def _slide(state: State, statement: Statement, name: str, begun: float) -> float | None:
+    """The end of a linear axis as the program counts it; None where no word says it."""
     word = statement.words.get(name)
     if word is None:
-        return at
+        return None
     if word.form in third_axis.NO_ROTARY:
         text = f"{word.text}: {word.form} needs a rotary axis."
         raise statement.refuse(
             word, third_axis.NO_ROTARY[word.form], text, f"Write {name}=AC( ) or {name}=IC( )."
         )
-    value = state.length(statement, word) / (2.0 if name == "X" and state.modal.diameter else 1.0)
-    return at + value if _form(state, word) is Form.IC else value + offset
+    relative = _form(state, word) is Form.IC
+    halved = name == "X" and state.modal.diameter and not (relative and state.distance_is_radius)
+    value = state.length(statement, word) / (2.0 if halved else 1.0)
+    if not relative:
+        state.moved_by_tool.discard(name)
+        return value
+    if name in state.moved_by_tool:
+        text = f"{word.text} is a distance, and T or D has just changed where {name} stands."
+        raise statement.refuse(word, "distance-behind-tool", text, f"Write a position of {name} before it.")
+    return begun + value
+
+
+def _polar(state: State, statement: Statement) -> tuple[float, float]:
+    """The point of RP and AP about the pole; what is missing stays as it was."""
+    last = state.polar or (0.0, 0.0)
+    radius, angle = statement.words.get("RP"), statement.words.get("AP")
+    for name in ("X", "Z", "ANG"):
+        if name in statement.words:
+            text = f"{statement.words[name].text} stands beside RP and AP."
+            raise statement.refuse(statement.words[name], "polar-both", text, "Write one or the other.")
+    if (radius is None or angle is None) and state.polar is None:
+        text = "the first polar move needs RP and AP."
+        raise statement.refuse(radius or angle, "polar-half", text, "Write both.")
+    far = last[0] if radius is None else state.length(statement, radius)
+    turn = last[1] if angle is None else state.number(statement, angle)
+    far += last[0] if radius is not None and radius.form is Form.IC else 0.0
+    turn += last[1] if angle is not None and angle.form is Form.IC else 0.0
+    if far < 0.0:
+        raise statement.refuse(radius, "not-positive", "RP comes to less than 0.", "Correct it.")
+    state.polar = far, turn
+    state.moved_by_tool.clear()
+    return state.pole[0] + far * sin(radians(turn)), state.pole[1] + far * cos(radians(turn))
+
+
+_STEEP = 1e-9
+
+
+def _inclined(
+    state: State, statement: Statement, begun: tuple[float, float], x: float | None, z: float | None
+) -> tuple[float | None, float | None]:
+    """The end of a line by its angle and one coordinate."""
+    word = statement.words["ANG"]
+    if state.motion is not Motion.LINE and state.motion is not Motion.RAPID:
+        raise statement.refuse(word, "word-unused", f"{word.text} belongs to a line.", "Write G1.")
+    if x is None and z is None:
+        text = f"{word.text} alone begins a contour of two lines, which is not worked out here."
+        raise statement.refuse(word, "not-in-subset", text, "Write X or Z of its end beside it.")
+    if x is not None and z is not None:
+        text = f"{word.text} stands beside X and Z, which say the end."
+        raise statement.refuse(word, "angle-both", text, "Keep X or Z beside ANG.")
+    angle = radians(state.number(statement, word))
+    if x is None and z is not None:
+        if abs(cos(angle)) < _STEEP:
+            raise statement.refuse(word, "angle-none", "this line never reaches Z.", "Write X beside ANG.")
+        return begun[0] + (z - begun[1]) * tan(angle), z
+    assert x is not None
+    if abs(sin(angle)) < _STEEP:
+        raise statement.refuse(word, "angle-none", "this line never reaches X.", "Write Z beside ANG.")
+    return x, begun[1] + (x - begun[0]) / tan(angle)
 
 
 def _turn(state: State, statement: Statement, modal: Modal) -> float:
@@ -89,7 +179,12 @@ def _turn(state: State, statement: Statement, modal: Modal) -> float:
     word = statement.words.get("C")
     if word is None:
         return 0.0
-    value, form, at = state.number(statement, word), _form(state, word), state.c - modal.offset_c
+    return turn_of_c(state, statement, word, _form(state, word), state.c - modal.offset_c)
+
+
+def turn_of_c(state: State, statement: Statement, word: Word, form: Form, at: float) -> float:
+    """Signed travel of C to where a word leads from ``at``. Raises ProgramError."""
+    value = state.number(statement, word)
     try:
         if state.setup.limits.c_modulo:
             return third_axis.modulo_travel(form, value, at)
@@ -110,70 +205,31 @@ def _form(state: State, word: Word) -> Form:
 
 
 _WHOLE_TURN = "Write an angle from 0 to 359.999, or IC( ) for a distance."
-_NOT_MODULO = "C of this machine counts -360 to +360; write AC( ) or IC( )."
+_NOT_MODULO = "This axis counts -360 to +360; write AC( ) or IC( )."
 _HINTS = {
     third_axis.WRONG_MODULO: _WHOLE_TURN,
-    third_axis.WRONG_RANGE: "Correct the target or the offset of C.",
+    third_axis.WRONG_RANGE: "Correct the target or the offset of the axis.",
     **dict.fromkeys(third_axis.NO_ROTARY.values(), _NOT_MODULO),
 }
-
-# --- feed: one word, read by the kind of block
-
-
-NO_FEED = 10860
-
-
-def feed_words(state: State, statement: Statement) -> None:
-    """G94, G95 and F of a block. Changing between the two forgets F. Raises ProgramError."""
-    code = statement.code("kind of feed")
-    if code is not None and (code == 95) != state.modal.per_rev:
-        state.adopt(state.modal._replace(per_rev=code == 95, feed=None))
-    word = statement.words.get("F")
-    if word is None or statement.code("dwell") is not None:
-        return
-    value = positive(statement, word, state.number(statement, word), "the feed")
-    # mm/min and degrees/min, or mm and degrees a revolution: the kind of block tells which.
-    state.adopt(state.modal._replace(feed=value if state.modal.per_rev else value / 60.0))
-
-
-def check_feed(state: State, statement: Statement, x0: float, x1: float) -> float:
-    """The feed in force for a block from radius ``x0`` to ``x1``, mm (degrees) a second or a revolution.
-
-    Raises ProgramError: alarm 10860 where there is none; ours where G95 has no speed to go by.
-    """
-    modal = state.modal
-    if modal.feed is None:
-        hint = "Write F. Between G94 and G95 the old value is forgotten."
-        raise statement.refuse(_mover(statement), NO_FEED, "no feedrate is programmed.", hint)
-    if modal.css and modal.spindle and not modal.surface_speed:
-        text = "G96 is in force and no S has given a surface speed."
-        raise statement.refuse(statement.words.get("S"), "surface-speed-missing", text, "Write S beside G96.")
-    if modal.per_rev and not (state.rpm_at(x0) and state.rpm_at(x1)):
-        text = "no spindle speed for G95: the spindle stands."
-        raise statement.refuse(
-            _mover(statement), "g95-spindle-stopped", text, "Start it with S and M3 or M4, or use G94."
-        )
-    return modal.feed
-
-
-def _mover(statement: Statement) -> Word | None:
-    """The word that wants to move."""
-    return next((statement.words[name] for name in statement.axes), None)
 
 
 def straight(state: State, statement: Statement) -> Block:
     """G0 or G1 to where the words lead. Raises ProgramError."""
     for name in sorted(ARC & statement.words.keys()):
-        text = f"{statement.words[name].text} belongs to an arc, and G{state.motion} is in force."
+        text = f"{statement.words[name].text} belongs to an arc, and G{state.motion:d} is in force."
         raise statement.refuse(statement.words[name], "word-unused", text, "Write G2 or G3, or take it out.")
     travel = travel_of(state, statement)
-    offset = travel.offset_x
-    if state.motion == 0:
-        speeds = state.setup.limits.speeds
-        return block_of(state, statement, travel, Kind.RAPID, travel.rapid_rate(speeds))
-    feed = check_feed(state, statement, travel.x0 - offset, travel.x - offset)
+    if state.motion is Motion.RAPID:
+        return rapid(state, statement, travel)
     kind = Kind.ROTATE if travel.turn and not travel.length else Kind.FEED
+    offset = travel.offset_x
+    feed = check_feed(state, statement, travel.x0 - offset, travel.x - offset, in_degrees=kind is Kind.ROTATE)
     return block_of(state, statement, travel, kind, feed)
+
+
+def rapid(state: State, statement: Statement, travel: AxisTravel) -> Block:
+    """A rapid: all axes end together, the slowest at its limit."""
+    return block_of(state, statement, travel, Kind.RAPID, travel.rapid_rate(state.setup.limits.speeds))
 
 
 def block_of(state: State, statement: Statement, travel: AxisTravel, kind: Kind, feed: float) -> Block:
@@ -181,10 +237,19 @@ def block_of(state: State, statement: Statement, travel: AxisTravel, kind: Kind,
     state.x, state.z, state.c = travel.x, travel.z, travel.c
     modal = travel.modal
     dx, dz, dc = travel.offset_x, travel.offset_z, modal.offset_c
+    if travel.length and kind is not Kind.ARC:
+        state.direction = (travel.x - travel.x0) / travel.length, (travel.z - travel.z0) / travel.length
     return Block(
         n=0, line=statement.line.number, kind=kind, text=statement.line.text,
         x0=travel.x0 - dx, z0=travel.z0 - dz, c0=travel.c0 - dc,
         x=travel.x - dx, z=travel.z - dz, c=travel.c - dc,
-        offset_x=dx, offset_z=dz, modal=modal, feed=feed, per_rev=modal.per_rev and kind is not Kind.RAPID,
+        offset_x=dx, offset_z=dz, modal=modal, feed=feed,
+        per_rev=modal.per_rev and kind is not Kind.RAPID and state.master == 1,
         rpm=state.rpm_at(travel.x - dx), css=state.css,
     )  # fmt: skip
+
+
+def keep_direction(state: State, arc: Block) -> Block:
+    """Remember in which direction an arc ends, for CT."""
+    state.direction = element_of(arc).end_direction
+    return arc

@@ -1,38 +1,63 @@
-"""The G codes that stay in force: motion, plane, units, G90 and G91, and where the program's zero lies."""
+"""G functions that stay in force: motion, plane, units, G90 and G91, and where the program's zero lies."""
 
 from __future__ import annotations
 
-from core.interpreter.job_setup import ZeroOffset
-from core.interpreter.sinumerik.sinumerik_state import NO_OFFSET, State
+from dataclasses import replace
+
+from core.interpreter.sinumerik.sinumerik_state import NO_FRAME, NO_OFFSET, Motion, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
-from core.language.sinumerik.sinumerik_words import Form
+from core.language.diagnostics import Severity
+from core.language.sinumerik import word_table as table
+from core.language.sinumerik.sinumerik_words import Form, Word
+
+_NAMED_MOTION = {"CIP": Motion.THROUGH, "CT": Motion.TANGENT}
+_FIFTH = {505: 58, 506: 59}  # of the six that are kept
 
 
 def settable_offset(state: State, statement: Statement) -> None:
-    """Take up the settable offset that G54 to G59 name; none under G500."""
-    code = statement.code("settable offset")
+    """Take up the settable offset that G54 to G59, G505 and G506 name; none under G500."""
+    code = statement.code(table.SETTABLE)
     if code is None:
         return
+    code = _FIFTH.get(code, code)
     state.settable = state.setup.zero.get(code, NO_OFFSET) if code != 500 else NO_OFFSET
     state.adopt(state.modal._replace(settable=0 if code == 500 else code))
     state.derive_offsets()
 
 
-def programmed_offset(state: State, statement: Statement) -> None:
-    """TRANS replaces, ATRANS adds, TRANS alone clears. Raises ProgramError."""
-    key = statement.offset_key
+def programmed_frame(state: State, statement: Statement) -> None:
+    """TRANS, ROT, SCALE and MIRROR replace the frame, those with A add to it; alone they clear it.
+
+    Raises ProgramError.
+    """
+    key = statement.frame_key
     if key is None:
         return
     check_c(state, statement)
-    base = state.programmed if key.name == "ATRANS" else NO_OFFSET
-    x, z, c = (_shift(state, statement, name) for name in "XZC")
-    state.programmed = ZeroOffset(base.x + x, base.z + z, base.c + c)
+    name = key.name.removeprefix("A")
+    if name == "ROT":
+        _refuse_axes(statement, key, "turns the plane by RPL=")
+    elif word := statement.words.get("RPL"):
+        raise statement.refuse(word, "word-unused", f"{word.text} belongs to ROT.", "Take it out.")
+    frame = state.programmed if key.name[0] == "A" else NO_FRAME
+    if name == "TRANS":
+        frame = frame.shifted(*(_shift(state, statement, axis) for axis in "XZC"))
+    elif name == "ROT":
+        angle = statement.words.get("RPL")
+        frame = frame.rotated(0.0 if angle is None else state.number(statement, angle))
+    elif name == "SCALE":
+        frame = frame.scaled(_factor(state, statement, "X"), _factor(state, statement, "Z"))
+    else:
+        frame = frame.scaled(*(-1.0 if axis in statement.words else 1.0 for axis in "XZ"))
+    if name in {"SCALE", "MIRROR"} and (word := statement.words.get("C")):
+        raise statement.refuse(word, "offset-form", f"{key.name} takes X and Z.", "Take C out.")
+    state.programmed = frame
     state.derive_offsets()
 
 
 def leave_offsets(state: State) -> None:
     """The end of a program takes its offsets away: what comes next, in whatever language, counts without."""
-    state.settable = state.programmed = NO_OFFSET
+    state.settable, state.programmed = NO_OFFSET, NO_FRAME
     state.adopt(state.modal._replace(settable=0))
     state.derive_offsets()
 
@@ -43,35 +68,174 @@ def check_c(state: State, statement: Statement) -> None:
     if word is not None and not state.setup.limits.c_enabled:
         text = "unknown axis: this machine has no third axis."
         raise statement.refuse(
-            word, "unknown-axis", text, "Take C out, or choose a machine file that has it."
+            word, "unknown-axis", text, "Take it out, or choose a machine file that has it."
         )
+
+
+def check_y(state: State, statement: Statement) -> None:
+    """Raises ProgramError for a word of Y, which TRANSMIT and TRACYL alone make of X and C."""
+    word = statement.words.get("Y") or statement.words.get("J")
+    if word is None or state.transformation is not None:
+        return
+    text = f"{word.name}: this lathe has no axis Y."
+    if word.name == "J":
+        text = "J: an arc in G18 has I and K."
+    hint = "Take it out; TRANSMIT and TRACYL make Y of X and C."
+    raise statement.refuse(word, "not-in-subset", text, hint)
+
+
+def _refuse_axes(statement: Statement, key: Word, what: str) -> None:
+    for axis in statement.axes:
+        word = statement.words[axis]
+        text = f"{word.text}: {key.name} {what} on a lathe."
+        raise statement.refuse(word, "offset-form", text, f"Write {key.name} RPL=…")
 
 
 def _shift(state: State, statement: Statement, name: str) -> float:
     """One axis of TRANS or ATRANS: mm or degrees. X is a radius, whatever DIAMON says."""
-    word = statement.words.get(name)
+    word = _plain(statement, name)
     if word is None:
         return 0.0
-    if word.form is not Form.PLAIN:
-        text = f"{word.text}: an offset is a plain number."
-        raise statement.refuse(word, "offset-form", text, f"Write {word.name} with its number.")
     return state.number(statement, word) if name == "C" else state.length(statement, word)
 
 
+def _factor(state: State, statement: Statement, name: str) -> float:
+    word = _plain(statement, name)
+    value = 1.0 if word is None else state.number(statement, word)
+    if word is not None and not 0.001 <= value <= 1000.0:
+        text = f"{word.text}: a factor lies between 0.001 and 1000."
+        raise statement.refuse(word, "offset-form", text, "Correct it; MIRROR counts the other way.")
+    return value
+
+
+def _plain(statement: Statement, name: str) -> Word | None:
+    word = statement.words.get(name)
+    if word is not None and word.form is not Form.PLAIN:
+        text = f"{word.text}: an offset is a plain number."
+        raise statement.refuse(word, "offset-form", text, f"Write {word.name} with its number.")
+    return word
+
+
 def modes(state: State, statement: Statement) -> None:
-    """Take up the codes of a block that stay in force."""
+    """Take up the functions of a block that stay in force. Raises ProgramError."""
     modal = state.modal
-    motion, plane = statement.code("motion"), statement.code("plane")
-    state.motion = state.motion if motion is None else motion
-    state.plane = plane or state.plane
-    metric, absolute = statement.code("unit of length"), statement.code("absolute or incremental")
-    if "DIAMON" in statement.keys or "DIAMOF" in statement.keys:
-        modal = modal._replace(diameter="DIAMON" in statement.keys)
+    _motion_and_plane(state, statement)
+    metric, absolute = statement.code(table.UNIT), statement.code(table.ABSOLUTE)
+    if transverse := statement.key(table.TRANSVERSE):
+        modal = modal._replace(diameter=transverse != "DIAMOF")
+        state.distance_is_radius = transverse == "DIAM90"
     if metric is not None:
-        modal = modal._replace(metric=metric == 71)
+        modal = modal._replace(metric=metric in {71, 710})
+        state.feed_in_inches = metric == 700
     if absolute is not None:
         modal = modal._replace(absolute=absolute == 90)
-    if modal.rapid != (state.motion == 0):
-        modal = modal._replace(rapid=state.motion == 0)
+    if modal.rapid != (state.motion is Motion.RAPID):
+        modal = modal._replace(rapid=state.motion is Motion.RAPID)
     state.adopt(modal)
+    _path_modes(state, statement)
     settable_offset(state, statement)
+
+
+def _motion_and_plane(state: State, statement: Statement) -> None:
+    motion, plane = statement.code(table.MOTION), statement.code(table.PLANE)
+    if motion is not None:
+        state.motion = Motion(motion)
+    elif name := statement.key(table.MOTION):
+        state.motion = _NAMED_MOTION[name]
+    if plane is not None and plane != state.plane and state.modal.nose_comp != 40:
+        text = f"G{plane} changes the plane while G{state.modal.nose_comp} is on."
+        raise statement.refuse(statement.g[table.PLANE], "comp-plane", text, "Write G40 before it.")
+    state.plane = plane or state.plane
+
+
+def _path_modes(state: State, statement: Statement) -> None:
+    """Exact stops, outside corners, approach, and the working area."""
+    exact, corner = statement.code(table.EXACT), statement.code(table.CORNER)
+    if exact is not None:
+        state.exact = exact == 60
+    if corner is not None:
+        state.rounded = corner == 450
+    if approach := statement.key(table.APPROACH):
+        state.round_ends = approach == "KONT"
+    if (code := statement.code(table.COMPENSATION)) is not None:
+        plane = 18 if state.transformation is None else state.transformation.plane
+        if code != 40 and state.plane != plane:
+            of = "X and Z" if state.transformation is None else state.transformation.name
+            word, text = statement.g[table.COMPENSATION], f"radius compensation of {of} needs G{plane}."
+            raise statement.refuse(word, "comp-plane", text, f"Write G{plane} before it.")
+        state.adopt(state.modal._replace(nose_comp=code))
+    if area := statement.key(table.AREA):
+        state.area_on = area == "WALIMON"
+
+
+def tell_idle_words(state: State, statement: Statement) -> None:
+    """Say once what makes no difference here."""
+    for word in statement.g.values():
+        name = word.name if word.value is None else f"G{int(word.value)}"
+        tell_idle(state, statement, word, name, table.FUNCTIONS[name].idle)
+    for name, word in statement.words.items():
+        if name in table.WORDS:
+            tell_idle(state, statement, word, name, table.WORDS[name].idle)
+
+
+def tell_idle(state: State, statement: Statement, word: Word, name: str, why: str) -> None:
+    """Say once that a function is taken and changes nothing."""
+    if why and name not in state.told:
+        state.told.add(name)
+        found = statement.warning(word, "no-effect", f"{name} has no effect here: {why}.", "")
+        state.log.add(replace(found, severity=Severity.NOTE))
+
+
+def frame_block(state: State, statement: Statement) -> bool:
+    """G110 to G112, G25 and G26: whether the block was one of them. Raises ProgramError."""
+    word = statement.g.get(table.BLOCKWISE)
+    code = statement.code(table.BLOCKWISE)
+    if word is None or code not in {110, 111, 112, 25, 26}:
+        return False
+    if "C" in statement.words:
+        text = f"{word.text} takes X and Z."
+        raise statement.refuse(statement.words["C"], "own-block", text, "Take C out.")
+    if code in {25, 26}:
+        _limits(state, statement, upper=code == 26)
+    else:
+        _pole(state, statement, code)
+    return True
+
+
+def _pole(state: State, statement: Statement, code: int) -> None:
+    base = (0.0, 0.0)
+    if code == 112:
+        base = state.pole
+    elif code == 110:
+        x, z = state.x - state.modal.offset_x, state.z - state.modal.offset_z
+        base = state.programmed.unturned(x, z)
+    state.pole = base[0] + _place(state, statement, "X"), base[1] + _place(state, statement, "Z")
+
+
+def _place(state: State, statement: Statement, name: str) -> float:
+    word = _plain(statement, name)
+    if word is None:
+        return 0.0
+    return state.length(statement, word) / (2.0 if name == "X" and state.modal.diameter else 1.0)
+
+
+def _limits(state: State, statement: Statement, *, upper: bool) -> None:
+    """The working area; the spindle's speeds are the spindle's."""
+    for name in ("X", "Z"):
+        if name in statement.words:
+            state.area[name, upper] = _place(state, statement, name)
+
+
+def check_area(state: State, statement: Statement, x: float, z: float) -> None:
+    """Raises ProgramError where the tip would leave the working area of G25 and G26; machine mm."""
+    if not state.area_on or not state.area:
+        return
+    modal = state.modal
+    edge = (0.0, 0.0) if modal.edge == 0 else (modal.tool_x, modal.tool_z)
+    for name, value in (("X", x - edge[0]), ("Z", z - edge[1])):
+        for upper in (False, True):
+            limit = state.area.get((name, upper))
+            if limit is not None and (value > limit + 1e-6 if upper else value < limit - 1e-6):
+                text = f"{name} leaves the working area of G{26 if upper else 25} at {limit:g} mm."
+                hint = "Correct the move, or write WALIMOF."
+                raise statement.refuse(statement.words.get(name), "working-area", text, hint)

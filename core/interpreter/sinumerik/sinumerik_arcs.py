@@ -1,4 +1,4 @@
-"""G2 and G3 in the plane of X and Z: end and centre, end and radius, or an opening angle."""
+"""G2, G3, CIP and CT in the plane of X and Z: by centre, radius, angle, a point on the way, or a tangent."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ from math import atan2, cos, dist, hypot, radians, sin, tan
 
 from core.geometry.lines_and_arcs import Point, centre_from_radius
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.sinumerik.linear_moves import NO_WAY, AxisTravel, block_of, check_feed, travel_of
-from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.linear_moves import NO_WAY, AxisTravel, block_of, keep_direction, travel_of
+from core.interpreter.sinumerik.sinumerik_feeds import check_feed
+from core.interpreter.sinumerik.sinumerik_state import Motion, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
-from core.language.sinumerik.sinumerik_words import Form, Word
+from core.language.sinumerik.sinumerik_words import ARC, Form, Word
 
+WRONG_END = 14040
 _TOLERANCE = 0.01  # mm by which the radii at both ends may differ
 
 
@@ -22,16 +24,98 @@ def arc(state: State, statement: Statement) -> Block:
         raise statement.refuse(
             statement.g.get("motion"), "arc-plane", "arcs of X and Z need G18.", "Write G18 before it."
         )
+    _check_words(state, statement)
     travel = travel_of(state, statement)
-    # G2 is clockwise as seen with X up and Z to the right: with X down, as blocks count, it is the other way.
-    clockwise = state.motion == 3
-    centre, travel = _centre(state, statement, travel, clockwise)
+    if not travel.frame.uniform:
+        text = "SCALE has made X and Z of different sizes, in which an arc is none."
+        raise statement.refuse(statement.g.get("motion"), "arc-scaled", text, "Give both one factor.")
+    clockwise, (centre, travel) = _found(state, statement, travel)
     offset = travel.offset_x
     feed = check_feed(state, statement, travel.x0 - offset, travel.x - offset)
     made_block = block_of(state, statement, travel, Kind.ARC, feed)
-    return replace(
+    made_block = replace(
         made_block, cx=centre[0] - travel.offset_x, cz=centre[1] - travel.offset_z, clockwise=clockwise
     )
+    return keep_direction(state, made_block)
+
+
+_OF_CIP = frozenset({"I1", "K1"})
+
+
+def _check_words(state: State, statement: Statement) -> None:
+    """Words of another kind of arc."""
+    own = {Motion.THROUGH: _OF_CIP, Motion.TANGENT: frozenset[str]()}.get(state.motion, ARC - _OF_CIP)
+    for name in sorted((ARC - own) & statement.words.keys()):
+        word = statement.words[name]
+        kind = {Motion.THROUGH: "CIP", Motion.TANGENT: "CT"}.get(state.motion, f"G{state.motion:d}")
+        raise statement.refuse(
+            word, "word-unused", f"{word.text} does not belong to {kind}.", "Take it out, or write its arc."
+        )
+
+
+def _found(state: State, statement: Statement, travel: AxisTravel) -> tuple[bool, tuple[Point, AxisTravel]]:
+    """Sense, centre and end of the arc."""
+    if state.motion is Motion.THROUGH:
+        return _through(state, statement, travel)
+    if state.motion is Motion.TANGENT:
+        return _tangent(state, statement, travel)
+    # G2 is clockwise as seen with X up and Z to the right: with X down, as blocks count, it is the other way.
+    clockwise = (state.motion is Motion.COUNTER) is not travel.frame.mirrored
+    return clockwise, _centre(state, statement, travel, clockwise)
+
+
+def _through(state: State, statement: Statement, travel: AxisTravel) -> tuple[bool, tuple[Point, AxisTravel]]:
+    """CIP: the circle through start, the point of I1 and K1, and end."""
+    begun, words = travel.begun, statement.words
+    if not _OF_CIP & words.keys():
+        text = "CIP needs I1 and K1, a point on its way."
+        raise statement.refuse(statement.g.get("motion"), "arc-centre-missing", text, "Add them.")
+    relative = state.modal.absolute is False
+    x, z = begun
+    if "I1" in words:
+        value = state.length(statement, words["I1"])
+        halved = state.modal.diameter and not (relative and state.distance_is_radius)
+        x = value / (2.0 if halved else 1.0) + (begun[0] if relative else 0.0)
+    if "K1" in words:
+        z = state.length(statement, words["K1"]) + (begun[1] if relative else 0.0)
+    a, b, c = (travel.x0, travel.z0), travel.placed(x, z), (travel.x, travel.z)
+    across = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    if abs(across) < NO_WAY * max(dist(a, b), dist(a, c), NO_WAY):
+        text = "start, end and the point of I1 and K1 lie on one line, or two of them in one place."
+        word = words.get("I1") or words.get("K1")
+        raise statement.refuse(word, "arc-radius", text, "Correct the point, or write G1.")
+    return _clockwise(across), (_circumcentre(a, b, c), travel)
+
+
+def _clockwise(across: float) -> bool:
+    """The sense of a turn, seen with X down, by the sign of x times z."""
+    return across < 0.0
+
+
+def _circumcentre(a: Point, b: Point, c: Point) -> Point:
+    """The point as far from each of three; told from the first to keep its figures."""
+    bx, bz, cx, cz = b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]
+    twice = 2.0 * (bx * cz - bz * cx)
+    b2, c2 = bx * bx + bz * bz, cx * cx + cz * cz
+    return a[0] + (cz * b2 - bz * c2) / twice, a[1] + (bx * c2 - cx * b2) / twice
+
+
+def _tangent(state: State, statement: Statement, travel: AxisTravel) -> tuple[bool, tuple[Point, AxisTravel]]:
+    """CT: the arc that begins in the direction in which the path before it has ended."""
+    word = statement.g.get("motion")
+    if state.direction is None:
+        text = "CT goes on from a path, and nothing has moved before it."
+        raise statement.refuse(word, "arc-centre-missing", text, "Write a move before it.")
+    _demand_ends(statement, word, travel.length)
+    ux, uz = state.direction
+    dx, dz = travel.x - travel.x0, travel.z - travel.z0
+    aside = ux * dz - uz * dx  # how far the end lies beside the direction, with its side
+    if abs(aside) < NO_WAY:
+        text = "the end of CT lies on the line of the path before it, which makes no arc."
+        raise statement.refuse(word, "arc-radius", text, "Write G1, or another end.")
+    far = (dx * dx + dz * dz) / (2.0 * aside)
+    centre = travel.x0 - uz * far, travel.z0 + ux * far
+    return _clockwise(aside), (centre, travel)
 
 
 def _centre(
@@ -45,7 +129,7 @@ def _centre(
     if "CR" in words:
         return _by_radius(state, statement, travel, clockwise), travel
     if "AR" in words:
-        if {"X", "Z"} & words.keys():
+        if {"X", "Z", "RP", "AP"} & words.keys():
             return _by_angle(state, statement, travel, clockwise), travel
         return _turned(state, statement, travel, clockwise)
     if not by_centre:
@@ -58,24 +142,26 @@ def _centre(
 
 def _by_words(state: State, statement: Statement, travel: AxisTravel) -> Point:
     """I and K: distances from the start, or coordinates with AC( )."""
-    x = travel.x0 + _component(state, statement, "I", travel.x0, travel.offset_x)
-    return x, travel.z0 + _component(state, statement, "K", travel.z0, travel.offset_z)
+    begun = travel.begun
+    i, k = _component(state, statement, "I", begun[0]), _component(state, statement, "K", begun[1])
+    x, z = travel.frame.turned(i, k)
+    return travel.x0 + x, travel.z0 + z
 
 
-def _component(state: State, statement: Statement, name: str, start: float, offset: float) -> float:
+def _component(state: State, statement: Statement, name: str, start: float) -> float:
     word = statement.words.get(name)
     if word is None:
         return 0.0
     value = state.length(statement, word)
     if word.form is not Form.AC:
         return value  # a radius, whatever DIAMON says
-    return value / (2.0 if name == "I" and state.modal.diameter else 1.0) + offset - start
+    return value / (2.0 if name == "I" and state.modal.diameter else 1.0) - start
 
 
 def _by_radius(state: State, statement: Statement, travel: AxisTravel, clockwise: bool) -> Point:
     """CR: over 0 for arcs of up to half a turn, under 0 for larger ones."""
     word = statement.words["CR"]
-    radius, chord = state.length(statement, word), travel.length
+    radius, chord = state.length(statement, word) * travel.frame.factor, travel.length
     _demand_ends(statement, word, chord)
     if chord > 2 * abs(radius) + _TOLERANCE:
         text = (
@@ -130,9 +216,10 @@ def _angle(state: State, statement: Statement, word: Word) -> float:
     return angle
 
 
-def _demand_ends(statement: Statement, word: Word, chord: float) -> None:
+def _demand_ends(statement: Statement, word: Word | None, chord: float) -> None:
     if chord < NO_WAY:
-        text = f"the arc by {word.name} ends where it starts."
+        by = f" by {word.name}" if word else ""
+        text = f"the arc{by} ends where it starts."
         raise statement.refuse(word, "arc-no-chord", text, "A full circle takes I and K.")
 
 
@@ -146,5 +233,5 @@ def _check_radii(statement: Statement, travel: AxisTravel, centre: Point) -> Non
     if abs(first - last) > _TOLERANCE:
         text = f"the arc's radius is {first:.4f} mm at its start and {last:.4f} mm at its end."
         hint = "I and K are distances from the start, I a radius; AC( ) makes them coordinates."
-        error: ProgramError = statement.refuse(word, "arc-radius", text, hint)
+        error: ProgramError = statement.refuse(word, WRONG_END, text, hint)
         raise error

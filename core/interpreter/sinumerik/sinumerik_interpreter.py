@@ -6,33 +6,68 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
 
-from core.interpreter.actions import Coolant, ProgramEnd, ProgramStop
+from core.interpreter.actions import Dwell, ProgramEnd, ProgramStop
+from core.interpreter.checkpoint import Begin, Checkpoint
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES, MOST_LINES_WITHOUT_BLOCK, Interpretation
 from core.interpreter.job_setup import Setup
+from core.interpreter.lathe_approach import approach_blocks
 from core.interpreter.modal_state import Modal
-from core.interpreter.sinumerik.chamfers_and_rounds import Corners, corner_of
-from core.interpreter.sinumerik.linear_moves import feed_words, straight
-from core.interpreter.sinumerik.modes_and_offsets import leave_offsets, modes, programmed_offset
+from core.interpreter.sinumerik.block_search import Parts, checkpoint_of, take_up
+from core.interpreter.sinumerik.chamfers_and_rounds import Corner, Corners, corner_of
+from core.interpreter.sinumerik.cycle_calls import cycle_blocks
+from core.interpreter.sinumerik.fixed_points import fixed_point, home
+from core.interpreter.sinumerik.hole_patterns import PATTERNS, no_cycle, places
+from core.interpreter.sinumerik.linear_moves import straight
+from core.interpreter.sinumerik.live_tool import live_tool, live_words
+from core.interpreter.sinumerik.m_functions import check_m, functions_after, functions_before
+from core.interpreter.sinumerik.mda_block import needs_others
+from core.interpreter.sinumerik.modes_and_offsets import (
+    check_y,
+    frame_block,
+    leave_offsets,
+    modes,
+    programmed_frame,
+    tell_idle_words,
+)
+from core.interpreter.sinumerik.radius_compensation import Compensation
 from core.interpreter.sinumerik.sinumerik_arcs import arc
-from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_feeds import feed_words
+from core.interpreter.sinumerik.sinumerik_state import ARCS, TAPS, THREADS, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement, statement_of
-from core.interpreter.sinumerik.spindle_and_dwell import dwell, spindle_words
+from core.interpreter.sinumerik.spindle_and_dwell import dwell, spindle_words, turns_spindle
 from core.interpreter.sinumerik.subprogram_flow import Flow, ends_main
-from core.language.diagnostics import Diagnostic, ProgramError
-from core.language.sinumerik.sinumerik_alarms import fault
-from core.language.sinumerik.sinumerik_words import ARC, SPINDLE, Line
+from core.interpreter.sinumerik.tapping_cycles import tap
+from core.interpreter.sinumerik.thread_moves import thread
+from core.interpreter.sinumerik.tools_and_edges import tool_words
+from core.interpreter.sinumerik.transformations import transform
+from core.interpreter.sinumerik.transformed_plane import Transformation
+from core.interpreter.sinumerik.variables import place_name
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.sinumerik.control_differences import lacking
+from core.language.sinumerik.cycle_names import CYCLES, CYCLES_TAKEN, SWIVELS
+from core.language.sinumerik.sinumerik_alarms import NOT_DEFINED, fault
+from core.language.sinumerik.sinumerik_words import ARC, Line, Word
 from core.language.sinumerik.subprogram_files import HEADER
+from core.language.sinumerik.word_table import (
+    BLOCKWISE,
+    DWELL,
+    EXACT_ONCE,
+    SUPPRESSION,
+    TRANSFORMATION,
+    WORDS,
+)
 from core.language.source import Source
 
 # Codes of findings that follow from where the machine stands and what is in force: behind a bad block nobody
 # knows either.
+_IDLE = frozenset(name for name, entry in WORDS.items() if entry.idle)
 _BY_STATE = frozenset(
     {
-        *("arc-radius", "arc-no-chord", "10720", "corner-too-large", "corner-next"),
+        *("14040", "arc-radius", "arc-no-chord", "10720", "corner-too-large", "corner-next"),
         *("10860", "g95-spindle-stopped", "dwell-spindle-stopped", "speed-missing", "surface-speed-missing"),
-        *("r-unset", "word-unused"),
+        *("r-unset", "word-unused", str(NOT_DEFINED)),
     }
 )
 
@@ -45,8 +80,14 @@ class Interpreter(Interpretation):
         self._source = source
         self._state = State(setup, self._log)
         self._corners = Corners(self._state, self._log)
-        self._flow = Flow(source)
+        self._compensation = Compensation(self._state, self._log)
+        self._flow = Flow(source, self._state)
         self._count = 0
+        self._setup = setup
+        self._taken: Line | None = None  # a block at which block search has stopped
+        self._approach: Iterator[Block] = iter(())
+        if setup.begin is not None:
+            self._go_on_from(setup.begin)
 
     @cached_property
     def source_blocks(self) -> int:
@@ -63,6 +104,7 @@ class Interpreter(Interpretation):
 
     def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
         """The elementary blocks, made as they are asked for. To be called once."""
+        yield from self._approach
         for block in self._pass():
             if not self._stopped:
                 self._count += 1
@@ -71,9 +113,63 @@ class Interpreter(Interpretation):
             elif to_first_error:
                 return
 
+    # --- where a pass goes on: MDI and block search ---------------------------------------------------------
+
+    @property
+    def checkpoint(self) -> Checkpoint:
+        """What the block inherits that would be executed next."""
+        parts = Parts(self._state, self._corners, self._flow, self._taken)
+        return checkpoint_of(parts, (self._setup, self._log, *self._flow.routines), self._count)
+
+    @property
+    def _transformed(self) -> Transformation | None:
+        """TRANSMIT or TRACYL, where one of them is on."""
+        plane = self._state.transformation
+        return plane if isinstance(plane, Transformation) else None
+
+    @property
+    def waits_for(self) -> str:
+        """Why no other pass can go on from here."""
+        if self._transformed is not None:
+            return f"it stands in {self._transformed.name}; begin before it"
+        if self._compensation.holds:
+            return "it stands on a contour of G41 or G42; begin before its approach"
+        return "the block before it waits for its corner" if self._corners.holds else ""
+
+    def _go_on_from(self, begin: Begin) -> None:
+        """Take up what the block of ``begin`` inherits."""
+        kept = begin.checkpoint.kept
+        if kept is not None:
+            parts: Parts = kept.parts(self._setup, self._log)
+            self._state, self._corners = parts.state, parts.corners
+            self._compensation = Compensation(self._state, self._log)
+            if not begin.single:
+                self._flow, self._taken = parts.flow, parts.taken
+        take_up(self._state, begin)
+        self._count = 0 if begin.single else begin.checkpoint.blocks
+        if begin.single:
+            problem = needs_others(self._source, self._setup.limits.third_axis)
+            if problem is not None:
+                self._log.add(problem)
+                self._flow.end()
+        state = self._state
+        self._approach = approach_blocks(begin, state.modal, state.setup.start, state.rpm_at)
+
+    def _next_line(self) -> Line | None:
+        """The line that comes next, which is taken; None at the end."""
+        taken, self._taken = self._taken, None
+        line = taken if taken is not None else self._flow.next()
+        asked = self.stop_before
+        if line is None or not line.executable or asked is None or self._flow.outside:
+            return line
+        if not asked(line.number):
+            return line
+        self._taken, self.stopped_before = line, True
+        return None
+
     def _pass(self) -> Iterator[Block]:
         left, idle, made = MOST_LINES, 0, 0
-        while not self._log.full and (line := self._flow.next()) is not None:
+        while not self._log.full and (line := self._next_line()) is not None:
             left -= 1
             idle, made = (idle + 1, made) if self._count == made else (0, self._count)
             if left < 0 or idle > MOST_LINES_WITHOUT_BLOCK or self._count >= MOST_BLOCKS:
@@ -83,7 +179,8 @@ class Interpreter(Interpretation):
                 continue
             if line.executable:
                 yield from self._line(line)
-        yield from self._ended()
+        if not self.stopped_before:
+            yield from self._ended()
 
     def _line(self, line: Line) -> Iterator[Block]:
         """The blocks of a line; an error is kept, and no block comes after it."""
@@ -92,8 +189,9 @@ class Interpreter(Interpretation):
         if line.errors:
             return
         try:
-            if line.call:
-                self._flow.call(line)
+            self._check_control(line)
+            if line.call or line.modal_call:
+                yield from self._call(line)
                 return
             if line.jump is not None:
                 self._flow.steer(line, line.jump, self._state)
@@ -101,12 +199,68 @@ class Interpreter(Interpretation):
             statement = statement_of(line)
             ends = ends_main(statement, called=self._flow.called)
             yield from self._with_corners(statement)
+            if state_call := self._modal_call(statement):
+                yield from self._call(state_call, modal=True)
         except ProgramError as problem:
             self._refuse(problem.diagnostic)
             ends = False
             if problem.diagnostic.code == "recursion":
                 self._flow.end()
         self._steer(line, ends=ends)
+
+    def _check_control(self, line: Line) -> None:
+        """Raises ProgramError for what the control of the machine file has not."""
+        control = self._setup.limits.control
+        if found := lacking(control, line):
+            name, column = found
+            text = f"{name} is no function of a SINUMERIK {control.upper()}, which this machine has."
+            hint = "Write it otherwise, or correct control under [machine] of the machine file."
+            raise ProgramError(fault(line.number, column, "not-in-control", line.block, text, hint))
+
+    def _call(self, line: Line, *, modal: bool = False) -> Iterator[Block]:
+        """A subprogram, or a cycle; MCALL keeps it for the moves that come. Raises ProgramError."""
+        if line.modal_call and not modal:
+            self._state.modal_call = line if line.call else None
+            return
+        if line.call in CYCLES_TAKEN and not self._flow.knows(line.call):
+            self._taken_cycle(line)
+            return
+        if line.call not in CYCLES or self._flow.knows(line.call):
+            self._flow.call(line, modal=modal)
+            return
+        if line.call in PATTERNS:
+            yield from self._pattern(line)
+            return
+        place = self._flow.shown_line(line.number)
+        for block in cycle_blocks(self._state, line, self._flow):
+            yield from self._through(block if place == line.number else replace(block, line=place), None)
+
+    def _taken_cycle(self, line: Line) -> None:
+        """A cycle that changes nothing here; said once. Raises ProgramError where it asks for more."""
+        if line.call == SWIVELS and any(each.given for each in line.arguments or ()):
+            text = "CYCLE800: this lathe has no head that swivels."
+            raise ProgramError(
+                fault(line.number, line.call_column, "not-in-subset", line.block, text, "Take it out.")
+            )
+        if line.call not in self._state.told:
+            self._state.told.add(line.call)
+            why = f"{line.call} has no effect here: {CYCLES_TAKEN[line.call]}."
+            found = fault(line.number, line.call_column, "no-effect", line.block, why, "")
+            self._log.add(replace(found, severity=Severity.NOTE))
+
+    def _pattern(self, line: Line) -> Iterator[Block]:
+        """HOLES1, HOLES2: the cycle of MCALL at each of its places. Raises ProgramError."""
+        state, called = self._state, self._state.modal_call
+        if called is None or called.call not in CYCLES or self._flow.knows(called.call):
+            raise no_cycle(line)
+        place = self._flow.shown_line(line.number)
+        for over in places(state, line):
+            yield from self._through(replace(over, line=place), None)
+            yield from self._call(called, modal=True)
+
+    def _modal_call(self, statement: Statement) -> Line | None:
+        """The line of MCALL that acts behind this block; None where there is none or nothing moves."""
+        return None if self._flow.by_modal_call or not statement.axes else self._state.modal_call
 
     def _steer(self, line: Line, *, ends: bool) -> None:
         """M2, M17 and M30, behind everything else of their block."""
@@ -119,41 +273,109 @@ class Interpreter(Interpretation):
         """The blocks of a statement, with the corners cut that are known by now."""
         number = statement.line.number
         place = self._flow.shown_line(number)
+        if TRANSFORMATION in statement.g:
+            yield from self._nothing_held()
         for block in self._blocks(statement):
-            corner = corner_of(self._state, statement, block) if block.moves else None
-            yield from self._corners.take(block if place == number else replace(block, line=place), corner)
+            corner, plane = None, self._transformed
+            if block.moves:
+                corner = corner_of(self._state, statement, block) if plane is None else plane.corner(block)
+            yield from self._through(block if place == number else replace(block, line=place), corner)
+
+    def _through(self, block: Block, corner: Corner | None) -> Iterator[Block]:
+        """A block past the corners and the compensation of the plane that is in force."""
+        if self._transformed is not None:
+            yield from self._transformed.take(block, corner)
+            return
+        for cut in self._corners.take(block, corner):
+            yield from self._compensation.take(cut)
+
+    def _nothing_held(self) -> Iterator[Block]:
+        """What waits for a move that would make its corner; none follows."""
+        if self._transformed is not None:
+            yield from self._transformed.settle()
+            return
+        for cut in self._corners.end():
+            yield from self._compensation.take(cut)
 
     def _blocks(self, statement: Statement) -> Iterator[Block]:
-        """What a block does, in the order in which it does it: states, spindle, motion, stops."""
+        """What a block does, in the order in which it does it: states, tool, spindle, motion, stops."""
         state = self._state
         _set_parameters(state, statement)
-        if statement.offset_key is not None:
-            programmed_offset(state, statement)
+        check_y(state, statement)
+        if statement.frame_key is not None:
+            if self._transformed is not None:
+                self._transformed.frame(statement)
+            else:
+                programmed_frame(state, statement)
             return
-        if statement.g or statement.keys:
+        live_words(state, statement)
+        check_m(state, statement, self._lacking)
+        if statement.g:
             modes(state, statement)
-        if statement.g or "F" in statement.words:
-            feed_words(state, statement)
-        if "dwell" in statement.g:
+        if statement.g or not _IDLE.isdisjoint(statement.words):
+            tell_idle_words(state, statement)
+        feed_words(state, statement)
+        if DWELL in statement.g:
             yield dwell(state, statement)
             return
-        if statement.m or not SPINDLE.isdisjoint(statement.words) or "kind of spindle speed" in statement.g:
+        if statement.words:
+            yield from tool_words(state, statement, self._tools)
+        yield from live_tool(state, statement)
+        if turns_spindle(statement):
             yield from spindle_words(state, statement)
-        yield from _coolant(state, statement, {7, 8})
-        if statement.axes or ARC & statement.words.keys():
-            yield arc(state, statement) if state.motion in {2, 3} else straight(state, statement)
-        elif "suppression of offsets" in statement.g:
-            text = "G53 acts in a block that moves an axis."
-            raise statement.refuse(
-                statement.g["suppression of offsets"], "word-unused", text, "Add the axes."
-            )
         if statement.m:
+            yield from functions_before(state, statement)
+        yield from self._motion(statement)
+        if statement.m:
+            yield from functions_after(state, statement)
             yield from self._stops(statement)
 
+    def _motion(self, statement: Statement) -> Iterator[Block]:
+        """The move of a block."""
+        state = self._state
+        if TRANSFORMATION in statement.g:
+            yield from transform(state, self._log, statement)
+        elif self._transformed is not None:
+            yield from self._transformed.moves(statement)
+        else:
+            yield from self._of_slides(statement)
+
+    def _of_slides(self, statement: Statement) -> Iterator[Block]:
+        """The move of a block on the lathe's own axes."""
+        state = self._state
+        if frame_block(state, statement):
+            return
+        if statement.code(BLOCKWISE) == 74:
+            yield home(state, statement)
+        elif statement.code(BLOCKWISE) == 75:
+            yield fixed_point(state, statement)
+        elif word := statement.words.get("FP") or statement.words.get("OFFN"):
+            of = "G75" if word.name == "FP" else "TRANSMIT"
+            raise statement.refuse(word, "word-unused", f"{word.text} belongs to {of}.", "Take it out.")
+        elif statement.moves or (ARC & statement.words.keys()):
+            yield from self._move(statement)
+        elif word := statement.g.get(SUPPRESSION):
+            text = f"{word.text} acts in a block that moves an axis."
+            raise statement.refuse(word, "word-unused", text, "Add the axes.")
+        else:
+            return
+        if state.exact or EXACT_ONCE in statement.g:
+            yield state.action(statement.line.number, "G60" if state.exact else "G9", Dwell(0.0))
+
+    def _move(self, statement: Statement) -> Iterator[Block]:
+        state = self._state
+        if state.motion in THREADS:
+            yield from thread(state, statement)
+            return
+        state.threads = ()
+        if state.motion in TAPS:
+            yield tap(state, statement)
+        else:
+            yield arc(state, statement) if state.motion in ARCS else straight(state, statement)
+
     def _stops(self, statement: Statement) -> Iterator[Block]:
-        """M9, M0, M1, and the end."""
+        """M0, M1, and the end."""
         state, line = self._state, statement.line
-        yield from _coolant(state, statement, {9})
         for code in (0, 1):
             if code in statement.m:
                 yield state.action(line.number, f"M{code}", ProgramStop(optional=code == 1))
@@ -166,17 +388,23 @@ class Interpreter(Interpretation):
     def _ended(self) -> Iterator[Block]:
         """No line comes any more."""
         try:
-            self._corners.end()
+            yield from self._nothing_held()
+            if self._transformed is not None:
+                yield from self._transformed.end()
+            yield from self._compensation.end()
         except ProgramError as problem:
             self._refuse(problem.diagnostic)
-        yield from ()
 
     def _refuse(self, found: Diagnostic) -> None:
         """Keep the error; what may come of it says nothing new."""
-        if not (self._stopped and found.code in _BY_STATE):
+        follows = found.code in _BY_STATE or found.code.startswith("comp-")
+        if not (self._stopped and follows):
             self._log.add(self._flow.located(found))
         self._stopped = True
         self._corners.drop()
+        self._compensation.drop()
+        if self._transformed is not None:
+            self._transformed.drop()
 
     def _never_ends(self, line: Line) -> None:
         text = f"the program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
@@ -187,14 +415,19 @@ class Interpreter(Interpretation):
 def _set_parameters(state: State, statement: Statement) -> None:
     """R parameters and variables that the block sets. Raises ProgramError for a name that no DEF has told."""
     for word in statement.sets:
-        if not state.keep(word.name, state.number(statement, word)):
-            text = f"{word.name} is no word, and no variable of this program."
-            raise statement.refuse(word, "unknown-name", text, f"Write DEF REAL {word.name} before it.")
+        name, value = _place(state, statement, word), state.number(statement, word)
+        if not state.variables.keep(name, value):
+            text = f"the name {name} is not defined: it is no word, and no variable of this program."
+            raise statement.refuse(word, NOT_DEFINED, text, f"Write DEF REAL {word.name} before it.")
 
 
-def _coolant(state: State, statement: Statement, codes: set[int]) -> Iterator[Block]:
-    """M7 and M8 before the motion of their block, M9 behind it."""
-    code = next((code for code in sorted(codes) if code in statement.m), None)
-    if code is not None:
-        state.adopt(state.modal._replace(coolant=code != 9))
-        yield state.action(statement.line.number, f"M{code}", Coolant(code != 9))
+def _place(state: State, statement: Statement, word: Word) -> str:
+    """What the word sets: R7, LENGTH, or an element of an array."""
+    if word.element is None:
+        return word.name
+
+    def refuse(code: int | str, text: str, hint: str) -> ProgramError:
+        return statement.refuse(word, code, text, hint)
+
+    letters = "R" if word.name == "R0" else word.name
+    return place_name(letters, word.element, lambda index: state.worth(index, refuse), refuse)

@@ -2,40 +2,96 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from enum import IntEnum
 
 from core.interpreter.actions import Action, Dwell
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.formula_values import NoValueError, worth
-from core.interpreter.job_setup import Setup, ZeroOffset
+from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset
 from core.interpreter.modal_state import Modal
+from core.interpreter.sinumerik.plane_in_force import PlaneInForce
+from core.interpreter.sinumerik.programmed_frame import ProgrammedFrame
 from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.interpreter.sinumerik.system_variables import system_value
+from core.interpreter.sinumerik.variables import Refuse, Variables
 from core.interpreter.units import MM_PER_INCH
-from core.language.diagnostics import ProgramError
 from core.language.formulas import Formula, Parameter
-from core.language.sinumerik.sinumerik_words import Word
+from core.language.sinumerik.sinumerik_words import Line, Word
 
 NO_OFFSET = ZeroOffset()
+NO_FRAME = ProgrammedFrame()
+
+
+class Motion(IntEnum):
+    """How an axis word moves: the G code of group 1, and two that have a name."""
+
+    RAPID = 0
+    LINE = 1
+    CLOCKWISE = 2
+    COUNTER = 3
+    THREAD = 33
+    GROWING = 34
+    SHRINKING = 35
+    TAP = 331
+    TAP_OUT = 332
+    THROUGH = 1000  # CIP
+    TANGENT = 1001  # CT
+
+
+def motion_name(motion: int) -> str:
+    """What a program writes for it."""
+    return {Motion.THROUGH: "CIP", Motion.TANGENT: "CT"}.get(Motion(motion), f"G{int(motion)}")
+
+
+ARCS = frozenset({Motion.CLOCKWISE, Motion.COUNTER, Motion.THROUGH, Motion.TANGENT})
+
+THREADS = frozenset({Motion.THREAD, Motion.GROWING, Motion.SHRINKING})
+TAPS = frozenset({Motion.TAP, Motion.TAP_OUT})
 
 
 class State:
     """Position in machine coordinates: mm, X a radius, C in degrees counting on over its turns.
 
-    ``modal`` is what blocks carry; ``motion`` the G code of group 1 and ``plane`` that of the plane;
-    ``programmed`` what TRANS and ATRANS have summed up.
+    ``modal`` is what blocks carry; ``motion`` is that of group 1 and ``plane`` the G code of the plane;
+    ``programmed`` is the frame of TRANS, ROT, SCALE and MIRROR, ``edge`` the row of T and D.
     """
 
     def __init__(self, setup: Setup, log: Log) -> None:
         self.setup = setup
         self.log = log
         self.x, self.z, self.c = setup.start
-        self.motion = 1
+        self.motion = Motion.LINE
         self.plane = 18
         self.settable = NO_OFFSET
-        self.programmed = NO_OFFSET
-        self.r: dict[int, float] = {}
-        self.variables: dict[str, float] = {}  # of DEF
+        self.programmed = NO_FRAME
+        self.edge = ToolOffset()
+        self.moved_by_tool: set[str] = set()  # slides whose place has changed with T or D since they moved
+        self.distance_is_radius = False  # DIAM90
+        self.feed_in_inches = False  # G700
+        self.override = 1.0  # OVR
+        self.exact = False  # G60
+        self.rounding = 0.0  # RNDM, mm
+        self.corner_feed: float | None = None  # FRCM, as modal.feed
+        self.pole = (0.0, 0.0)  # X, Z of G110 to G112, in the program's frame
+        self.polar: tuple[float, float] | None = None  # RP in mm and AP in degrees, as programmed last
+        self.direction: tuple[float, float] | None = None  # of the path at its end, X and Z
+        self.lowest, self.highest = 0.0, setup.limits.max_rpm  # G25 and G26 beside the spindle's own
+        self.area: dict[tuple[str, bool], float] = {}  # G25 (False) and G26 (True), by axis: mm
+        self.area_on = True  # WALIMON
+        self.rounded = True  # G450; G451 goes by the intersection
+        self.round_ends = False  # KONT; NORM goes straight
+        self.threads: tuple[Block, ...] = ()  # of the chain of thread blocks under way
+        self.tap_lead = 0.0  # K of G331, mm
+        self.lead_change, self.end_lead, self.start_turns = 0.0, 0.0, 0.0  # of G34, G35 and SF
+        self.names: list[str] = []  # of tools that the table does not have, by their order
+        self.told: set[str] = set()  # functions without effect that have been told
+        self.variables = Variables()
+        self.modal_call: Line | None = None  # of MCALL
+        self.transformation: PlaneInForce | None = None  # TRANSMIT or TRACYL
+        self.master = 1  # SETMS: 2 is the live tool, whose S, M3 and G95 are meant then
+        self.live_speed = 0.0  # S of the live tool, rpm
+        self.live_rpm = 0.0  # by which it turns, signed
         wraps = setup.limits.c_enabled and setup.limits.c_modulo
         self.modal = Modal(absolute=True, metric=True, diameter=True, rapid_rate=0.0, wraps_c=wraps)
 
@@ -45,10 +101,14 @@ class State:
             self.modal = modal
 
     def derive_offsets(self) -> None:
-        """The offsets in force: settable and programmed ones summed."""
-        one, other = self.settable, self.programmed
-        frame = self.modal._replace(tool_x=one.x, tool_z=one.z, zero_x=other.x, zero_z=other.z)
-        self.adopt(frame._replace(offset_c=one.c + other.c))
+        """The offsets in force: of the edge, settable and programmed ones."""
+        one, other, edge = self.settable, self.programmed, self.edge
+        self.adopt(
+            self.modal._replace(
+                tool_x=edge.x, tool_z=edge.z, settable_x=one.x, settable_z=one.z,
+                zero_x=other.x, zero_z=other.z, offset_c=one.c + other.c,
+            )
+        )  # fmt: skip
 
     def length(self, statement: Statement, word: Word) -> float:
         """A length in mm: as written under G71, inches under G70."""
@@ -61,44 +121,31 @@ class State:
         assert word.formula is not None
         return self.worth(word.formula, lambda code, text, hint: statement.refuse(word, code, text, hint))
 
-    def worth(self, formula: Formula, refuse: Callable[[str, str, str], ProgramError]) -> float:
+    def worth(self, formula: Formula, refuse: Refuse) -> float:
         """What a formula comes to. ``refuse`` makes the error to raise of its code, text and hint."""
 
         def parameter(asked: Parameter) -> float:
-            name = f"{asked.letters}{'' if asked.number is None else asked.number}"
-            value = self.r.get(asked.number) if isinstance(asked.number, int) else self.variables.get(name)
-            if value is None:
-                what = "the program has not set it" if asked.number is not None else "no DEF has named it"
-                before = f"{name}=…" if asked.number is not None else f"DEF REAL {name}"
-                raise refuse("r-unset", f"{name} has no value: {what}.", f"Write {before} before it.")
-            return value
+            if asked.letters.startswith("$"):
+                read = system_value(asked.letters, self.modal, self.edge)
+                if read is not None:
+                    return read
+            return self.variables.value(asked, lambda index: worth(index, parameter), refuse)
 
         try:
             return worth(formula, parameter)
         except NoValueError as problem:
             raise refuse("arithmetic", f"{problem}.", "Correct the formula.") from None
 
-    def keep(self, name: str, value: float) -> bool:
-        """An R parameter or a variable holds this from now on; False where no DEF has named the variable."""
-        if name[0] == "R" and name[1:].isdigit():
-            self.r[int(name[1:])] = value
-        elif name in self.variables:
-            self.variables[name] = value
-        else:
-            return False
-        return True
-
     def rpm_at(self, x: float) -> float:
         """Commanded speed with the tip at radius ``x`` of the program; signed, 0 with the spindle stopped."""
         modal = self.modal
         if not modal.spindle:
             return 0.0
-        highest = self.setup.limits.max_rpm
+        highest = self.highest
         if modal.css:
             return modal.surface_rpm_at(x, highest)
-        return modal.spindle * min(
-            modal.rpm, highest if modal.css_max is None else min(highest, modal.css_max)
-        )
+        most = highest if modal.css_max is None else min(highest, modal.css_max)
+        return modal.spindle * max(min(modal.rpm, most), self.lowest if modal.rpm else 0.0)
 
     @property
     def rpm(self) -> float:

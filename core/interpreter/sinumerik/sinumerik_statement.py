@@ -6,7 +6,8 @@ from dataclasses import dataclass, field, replace
 
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.sinumerik import sinumerik_words as known
-from core.language.sinumerik.sinumerik_alarms import ONE_GROUP, TWICE, fault
+from core.language.sinumerik import word_table as table
+from core.language.sinumerik.sinumerik_alarms import ONE_GROUP, TWICE, UNKNOWN_G, fault
 from core.language.sinumerik.sinumerik_lexer import variable
 from core.language.sinumerik.sinumerik_words import Line, Word
 
@@ -16,7 +17,10 @@ _ENDS = frozenset({2, 17, 30})
 
 @dataclass(slots=True)
 class Statement:
-    """One block. ``g`` are its G codes by group, ``words`` the others by name, ``sets`` its R parameters."""
+    """One block. ``g`` are its G functions by group, ``words`` the others by name, ``sets`` its R parameters.
+
+    ``keys`` are those that a name says, by their name.
+    """
 
     line: Line
     g: dict[str, Word] = field(default_factory=dict)
@@ -24,11 +28,17 @@ class Statement:
     words: dict[str, Word] = field(default_factory=dict)
     sets: list[Word] = field(default_factory=list)
     keys: dict[str, Word] = field(default_factory=dict)
+    live: list[Word] = field(default_factory=list)  # of spindle 2, the live tool
 
     def code(self, group: str) -> int | None:
-        """The G code of this group that the block holds; None without one."""
+        """The G code of this group that the block holds; None without one, or where a name says it."""
         word = self.g.get(group)
-        return None if word is None else int(word.value or 0)
+        return None if word is None or word.value is None else int(word.value)
+
+    def key(self, group: str) -> str:
+        """The name that says this group; empty without one."""
+        word = self.g.get(group)
+        return "" if word is None or word.value is not None else word.name
 
     @property
     def axes(self) -> list[str]:
@@ -36,9 +46,14 @@ class Statement:
         return [name for name in known.AXES if name in self.words]
 
     @property
-    def offset_key(self) -> Word | None:
-        """The word TRANS or ATRANS of the block; None without one."""
-        return self.keys.get("TRANS") or self.keys.get("ATRANS")
+    def frame_key(self) -> Word | None:
+        """The word TRANS, ROT, SCALE, MIRROR of the block, or what adds to them; None without one."""
+        return next((word for name, word in self.keys.items() if name in known.FRAMES), None)
+
+    @property
+    def moves(self) -> bool:
+        """Whether the block names a place."""
+        return bool(known.PLACES & self.words.keys())
 
     @property
     def corner(self) -> Word | None:
@@ -53,12 +68,17 @@ class Statement:
     def refuse(self, word: Word | None, code: int | str, text: str, hint: str) -> ProgramError:
         """An error at this word, to be raised: an alarm of the control by its number, or one of ours."""
         line, column = self.line, word.column if word else 1
-        axis = word.name if word and word.name in known.AXES else ""
+        axis = _axis(word) if word and word.name in known.AXES else ""
         return ProgramError(fault(line.number, column, code, line.block, text, hint, axis=axis))
 
     def warning(self, word: Word | None, code: str, text: str, hint: str) -> Diagnostic:
         """The same that is no error."""
         return replace(self.refuse(word, code, text, hint).diagnostic, severity=Severity.WARNING)
+
+
+def _axis(word: Word) -> str:
+    """The axis of a word as it is written: Q1 of Q1=30."""
+    return word.text.partition("=")[0] if "=" in word.text else word.text[:1]
 
 
 def statement_of(line: Line) -> Statement:
@@ -68,24 +88,29 @@ def statement_of(line: Line) -> Statement:
         _sort(statement, word)
     if statement.m or statement.keys:
         _check_m(statement)
-    if statement.keys or "dwell" in statement.g:
+    if statement.keys or table.DWELL in statement.g:
         _check_alone(statement)
     _check_corner(statement)
     return statement
 
 
 def _sort(statement: Statement, word: Word) -> None:
+    if word.spindle == 2 and (word.name in {"S", "SETMS"} or (word.name == "M" and word.value in {3, 4, 5})):
+        statement.live.append(word)
+        return
+    if word.spindle > 1:
+        text = f"{word.text}: this machine has one spindle that is positioned; 2 is its live tool."
+        raise statement.refuse(word, "one-spindle", text, "Write it for spindle 1, or take it out.")
     if word.name == "G":
-        _sort_g(statement, word)
+        _sort_g(statement, word, known.G_GROUPS.get(int(word.value or 0)))
     elif word.name == "M":
-        number = int(word.value or 0)
-        if number not in known.M_CODES:
-            raise statement.refuse(
-                word, "m-unknown", f"{word.text} is no code of this control.", "Take it out."
-            )
-        statement.m[number] = word
+        if word.value is None:
+            text = f"{word.text}: which M function it is has to be there as a number."
+            raise statement.refuse(word, "m-unknown", text, "Write M with its number.")
+        statement.m[int(word.value)] = word
     elif word.name in known.KEYS:
         statement.keys[word.name] = word
+        _sort_g(statement, word, known.NAMED_GROUPS[word.name])
     elif variable(word.name):
         statement.sets.append(word)
     elif word.name in statement.words:
@@ -96,10 +121,14 @@ def _sort(statement: Statement, word: Word) -> None:
         statement.words[word.name] = word
 
 
-def _sort_g(statement: Statement, word: Word) -> None:
-    group = known.G_GROUPS.get(int(word.value or 0))
+def _sort_g(statement: Statement, word: Word, group: str | None) -> None:
     if group is None:
-        raise statement.refuse(word, "g-unknown", f"{word.text} is no code of this control.", "Take it out.")
+        why = known.WHY_OUTSIDE.get(f"G{int(word.value or 0)}")
+        if why is not None:
+            raise statement.refuse(word, "not-in-subset", f"{word.text}: {why}.", "Take it out.")
+        raise statement.refuse(
+            word, UNKNOWN_G, f"{word.text} is no G function of this control.", "Take it out."
+        )
     before = statement.g.get(group)
     if before is not None:
         text = f"{before.text} and {word.text} are of one group ({group})."
@@ -113,37 +142,29 @@ def _check_m(statement: Statement) -> None:
         raise statement.refuse(
             list(statement.m.values())[-1], "m-too-many", text, f"{known.MOST_M} are the most."
         )
-    for group in ({3, 4, 5}, {0, 1, 2, 17, 30}, {7, 8, 9}):
+    for group in ({3, 4, 5, 19, 70}, {0, 1, 2, 17, 30}, {7, 9}, {8, 9}, {40, 41, 42, 43, 44, 45}):
         found = sorted(group & statement.m.keys())
         if len(found) > 1:
             text = f"M{found[0]} and M{found[1]} exclude each other."
             raise statement.refuse(statement.m[found[1]], "m-conflict", text, "Keep one of them.")
-    if "DIAMON" in statement.keys and "DIAMOF" in statement.keys:
-        text = "DIAMON and DIAMOF are of one group."
-        raise statement.refuse(statement.keys["DIAMOF"], ONE_GROUP, text, "Keep one of them.")
 
 
 def _check_alone(statement: Statement) -> None:
     """G4, TRANS and ATRANS have a block of their own."""
-    dwell, key = statement.g.get("dwell"), statement.offset_key
+    dwell, key = statement.g.get(table.DWELL), statement.frame_key
     if dwell is not None:
         others = (
-            statement.words.keys() - _DWELL_WORDS
-            or statement.m
-            or statement.keys
-            or statement.sets
-            or len(statement.g) > 1
+            statement.words.keys() - _DWELL_WORDS or statement.m or statement.sets or len(statement.g) > 1
         )
         if others or len(statement.words) != 1:
             text = "G4 needs a block of its own, with F (seconds) or S (revolutions)."
             raise statement.refuse(dwell, "own-block", text, "Split the block.")
     if key is not None:
         others = (
-            statement.words.keys() - set(known.AXES)
+            statement.words.keys() - {*known.AXES, "RPL"}
             or statement.m
-            or statement.g
             or statement.sets
-            or len(statement.keys) > 1
+            or len(statement.g) > 1
         )
         if others:
             text = f"{key.name} needs a block of its own, with axes and nothing else."
@@ -157,7 +178,7 @@ def _check_corner(statement: Statement) -> None:
     if len(corners) > 1:
         text = f"{corners[0]} and {corners[1]} stand in one block."
         raise statement.refuse(statement.words[corners[1]], "corner-both", text, "Keep one of them.")
-    if corners and not {"X", "Z"} & statement.words.keys():
+    if corners and not (known.PLACES - {"C"}) & statement.words.keys():
         text = f"{corners[0]} stands in a block without X or Z."
         raise statement.refuse(
             statement.words[corners[0]], "corner-without-move", text, "Put it behind a move."

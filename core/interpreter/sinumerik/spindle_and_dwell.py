@@ -1,18 +1,33 @@
-"""S, LIMS, G96, G97, M3, M4, M5, and dwells by time or by revolutions."""
+"""S, LIMS, G25, G26, the speeds of G96 and G97, M3, M4, M5, M19, M70, SPOS, SETMS, and dwells."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from math import copysign
 
-from core.interpreter.actions import Dwell, SpindleRun, SpindleStop
-from core.interpreter.elementary_blocks import Block
+from core.interpreter.actions import Dwell, SpindleLock, SpindleRun, SpindleStop
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.sinumerik.linear_moves import AxisTravel, block_of, turn_of_c
 from core.interpreter.sinumerik.sinumerik_state import State, positive
 from core.interpreter.sinumerik.sinumerik_statement import Statement
-from core.interpreter.units import METRES_PER_MINUTE
-from core.language.sinumerik.sinumerik_words import Word
+from core.interpreter.sinumerik.third_axis import modulo_travel
+from core.interpreter.units import METRES_PER_MINUTE, MM_PER_INCH
+from core.language.diagnostics import ProgramError
+from core.language.sinumerik.sinumerik_words import Form, Word
+from core.language.sinumerik.word_table import BLOCKWISE, FEED_AND_SPEED
 
 _FASTEST_SURFACE = 100_000.0  # mm/s; ten times what any tool stands
 _LONGEST_DWELL = 3600.0  # s
+_SURFACE = frozenset({96, 961, 962})
+_FEET = 12.0 * MM_PER_INCH / 60.0  # mm/s of a foot a minute
+
+
+def turns_spindle(statement: Statement) -> bool:
+    """Whether a block holds anything for the spindle."""
+    return bool(statement.m or _WORDS & statement.words.keys() or FEED_AND_SPEED in statement.g)
+
+
+_WORDS = frozenset({"S", "LIMS", "SPOS", "SPOSA", "SETMS"})
 
 
 def spindle_words(state: State, statement: Statement) -> Iterator[Block]:
@@ -20,44 +35,104 @@ def spindle_words(state: State, statement: Statement) -> Iterator[Block]:
     before = (state.modal.spindle, state.rpm, state.css)
     _modes(state, statement)
     _limit(state, statement)
-    _speed(state, statement)
+    if statement.code(BLOCKWISE) not in {25, 26}:
+        _speed(state, statement)
     if 5 in statement.m:
-        state.adopt(state.modal._replace(spindle=0))
+        state.adopt(state.modal._replace(spindle=0, c_locked=False))
         yield state.action(statement.line.number, "M5", SpindleStop())
-        return
+    elif word := _positions(statement):
+        yield from _position(state, statement, word)
+    else:
+        yield from _run(state, statement, before)
+
+
+def _run(state: State, statement: Statement, before: tuple[int, float, float | None]) -> Iterator[Block]:
     direction = next((m for m in (3, 4) if m in statement.m), 0)
     if direction:
         _check_start(state, statement, statement.m[direction])
-        state.adopt(state.modal._replace(spindle=1 if direction == 3 else -1))
+        state.adopt(state.modal._replace(spindle=1 if direction == 3 else -1, c_locked=False))
     if direction or (state.modal.spindle and before != (state.modal.spindle, state.rpm, state.css)):
         yield state.action(statement.line.number, _text(statement), SpindleRun(state.rpm, state.css))
 
 
 def _text(statement: Statement) -> str:
-    words = [statement.g.get("kind of spindle speed"), statement.words.get("S"), statement.words.get("LIMS")]
+    words = [statement.g.get(FEED_AND_SPEED), statement.words.get("S"), statement.words.get("LIMS")]
     return " ".join(
         word.text for word in (*words, statement.m.get(3), statement.m.get(4)) if word is not None
     )
 
 
+# --- the spindle as an axis: M19, M70, SPOS
+
+
+def _positions(statement: Statement) -> Word | None:
+    found = [statement.m[code] for code in (19, 70) if code in statement.m]
+    found += [statement.words[name] for name in ("SPOS", "SPOSA") if name in statement.words]
+    return found[0] if found else None
+
+
+def _position(state: State, statement: Statement, word: Word) -> Iterator[Block]:
+    """The spindle stops, is held as C, and turns to its angle. Raises ProgramError."""
+    limits = state.setup.limits
+    demand_position(
+        state, lambda text, hint: statement.refuse(word, "spindle-position", f"{word.text}: {text}", hint)
+    )
+    state.adopt(state.modal._replace(spindle=0, c_locked=True))
+    yield state.action(statement.line.number, word.text, SpindleLock(orient=False))
+    if word.name == "M" and word.value == 70:
+        return
+    turn = _spindle_turn(state, statement, word)
+    if turn:
+        x, z, c, modal = state.x, state.z, state.c, state.modal
+        travel = AxisTravel(x, z, c, x, z, c + turn, modal, modal.offset_x, modal.offset_z)
+        made = block_of(state, statement, travel, Kind.ROTATE, limits.speeds[2])
+        made.per_rev, made.rpm, made.text = False, copysign(limits.speeds[2] / 6.0, turn), word.text
+        yield made
+
+
+def demand_position(state: State, refuse: Callable[[str, str], ProgramError]) -> None:
+    """Raises what ``refuse`` makes of text and hint where the spindle cannot be positioned."""
+    limits = state.setup.limits
+    if limits.c_enabled and limits.spindle_is_c:
+        return
+    why = "C is a drive of its own" if limits.c_enabled else "it has no C"
+    text = f"the spindle of this machine cannot be positioned: {why}."
+    raise refuse(text, "Write M5, and index the part by C; on the machine sinumerik-live the spindle is C.")
+
+
+def shortest_turn(state: State, angle: float) -> float:
+    """Signed travel of C to an angle of the program, the short way: degrees."""
+    at = state.c - state.modal.offset_c
+    if not state.setup.limits.c_modulo:
+        return angle - at
+    return modulo_travel(Form.DC, angle, at)
+
+
+def _spindle_turn(state: State, statement: Statement, word: Word) -> float:
+    """Signed travel; without a form a spindle goes the short way."""
+    if word.name == "M":
+        word = word._replace(value=0.0, formula=None)
+    at = state.c - state.modal.offset_c
+    modulo = state.setup.limits.c_modulo
+    form = word.form if word.form is not Form.PLAIN else Form.DC if modulo else Form.AC
+    return turn_of_c(state, statement, word, form, at)
+
+
+# --- G96, G97 and their kin, LIMS, G25, G26
+
+
 def _modes(state: State, statement: Statement) -> None:
-    code = statement.code("kind of spindle speed")
-    if code == 96 and not state.modal.css:
-        _demand_controlled(state, statement, statement.g["kind of spindle speed"])
+    word, code = statement.g.get(FEED_AND_SPEED), statement.code(FEED_AND_SPEED)
+    if code in _SURFACE:
+        _demand_controlled(state, statement, word)
         state.adopt(state.modal._replace(css=True))
-        if not state.modal.per_rev:
-            _warn_of_minutes(state, statement)
-    elif code == 97 and state.modal.css:
-        # The spindle goes on at the speed it has; going back to an old S would be a surprise.
+    elif code is not None and state.modal.css:
+        # G97 keeps the speed that there is; G94 and G95 go back to the S of before.
         rpm = abs(state.rpm) if state.modal.spindle else state.modal.rpm
+        rpm = state.modal.rpm or rpm if code in {94, 95} else rpm
         state.adopt(state.modal._replace(css=False, rpm=rpm))
-
-
-def _warn_of_minutes(state: State, statement: Statement) -> None:
-    """Some controls read F as mm a revolution from G96 on; this one goes by G94 and G95 alone."""
-    text = "G96 is in force and F counts in mm/min (G94)."
-    hint = "Write G95 where F is meant as mm a revolution."
-    state.log.add(statement.warning(statement.g["kind of spindle speed"], "g96-by-minute", text, hint))
+    if code == 973:
+        state.adopt(state.modal._replace(css_max=None))
 
 
 def _limit(state: State, statement: Statement) -> None:
@@ -66,6 +141,21 @@ def _limit(state: State, statement: Statement) -> None:
         _demand_controlled(state, statement, word)
         highest = positive(statement, word, state.number(statement, word), "the limit of the speed")
         state.adopt(state.modal._replace(css_max=highest))
+    word = statement.words.get("S")
+    code = statement.code(BLOCKWISE)
+    if word is None or code not in {25, 26}:
+        return
+    _demand_controlled(state, statement, word)
+    value = state.number(statement, word)
+    if value < 0 or (code == 26 and not value):
+        raise statement.refuse(word, "not-positive", f"{word.text} is no limit of a speed.", "Correct it.")
+    lowest, highest = (value, state.highest) if code == 25 else (state.lowest, value)
+    highest = min(highest, state.setup.limits.max_rpm)
+    if lowest > highest:
+        text = f"{word.text}: the lowest speed {lowest:g} is over the highest {highest:g}."
+        raise statement.refuse(word, "speed-limits", text, "Correct G25 or G26.")
+    state.lowest, state.highest = lowest, highest
+    state.adopt(state.modal._replace(css_min=lowest))
 
 
 def _speed(state: State, statement: Statement) -> None:
@@ -79,10 +169,11 @@ def _speed(state: State, statement: Statement) -> None:
         text = f"{word.text}: the speed has no sign; M3 and M4 say the direction."
         raise statement.refuse(word, "speed-sign", text, "Take the sign out.")
     if state.modal.css:
-        if value * METRES_PER_MINUTE > _FASTEST_SURFACE:
+        speed = value * (METRES_PER_MINUTE if state.modal.metric else _FEET)
+        if speed > _FASTEST_SURFACE:
             text = f"{word.text} m/min is no surface speed that a tool can stand."
             raise statement.refuse(word, "speed-range", text, "G97 makes S rpm.")
-        state.adopt(state.modal._replace(surface_speed=value * METRES_PER_MINUTE))
+        state.adopt(state.modal._replace(surface_speed=speed))
         return
     highest = state.setup.limits.max_rpm
     state.adopt(state.modal._replace(rpm=min(value, highest)))
@@ -92,8 +183,8 @@ def _speed(state: State, statement: Statement) -> None:
         )
 
 
-def _demand_controlled(state: State, statement: Statement, word: Word) -> None:
-    if not state.setup.limits.spindle_controlled:
+def _demand_controlled(state: State, statement: Statement, word: Word | None) -> None:
+    if word is not None and not state.setup.limits.spindle_controlled:
         text = f"{word.text} needs a controlled spindle, which this machine does not have."
         raise statement.refuse(word, "no-controlled-spindle", text, "Take it out.")
 
@@ -103,7 +194,7 @@ def _check_start(state: State, statement: Statement, word: Word) -> None:
     if not limits.spindle_controlled:
         state.adopt(state.modal._replace(rpm=limits.max_rpm))  # it has one speed
     if not (state.modal.surface_speed if state.modal.css else state.modal.rpm):
-        text = f"{word.text} starts the spindle and no S has said how fast."
+        text = f"{word.text} starts the spindle, and its speed S is 0: none was written, or S0."
         raise statement.refuse(word, "speed-missing", text, "Write S in the block.")
     if not state.modal.collet_closed and not limits.start_with_collet_open:
         raise statement.refuse(

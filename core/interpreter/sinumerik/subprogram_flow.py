@@ -1,19 +1,23 @@
-"""Where a program goes next: into subprograms by name, back at M17, and its end."""
+"""Where a program goes next: into subprograms with their parameters, back at M17, REPEAT, and its end."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
 from core.interpreter.interpretation import DEEPEST_CALL
-from core.interpreter.sinumerik.control_structures import belonging, follow
+from core.interpreter.sinumerik.control_structures import belonging, find_label, follow
+from core.interpreter.sinumerik.parameter_passing import Saved, handed_over
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.interpreter.sinumerik.variables import Scope
 from core.language.diagnostics import Diagnostic, ProgramError
+from core.language.sinumerik.cycle_names import CYCLES_OUTSIDE
 from core.language.sinumerik.program_jumps import Jump, Steering
-from core.language.sinumerik.sinumerik_alarms import fault
+from core.language.sinumerik.sinumerik_alarms import NESTING, NO_TARGET, fault
 from core.language.sinumerik.sinumerik_lexer import lex_line
 from core.language.sinumerik.sinumerik_words import Line
 from core.language.sinumerik.subprogram_files import Section, program_name, sections
+from core.language.sinumerik.third_axis_name import OWN
 from core.language.source import Source
 
 
@@ -24,8 +28,10 @@ class Routine:
     source: Source
     lines: range
     shown: str = ""
-    lines_read: dict[int, Line] = field(default_factory=dict)  # of what may run many times
-    repeats: bool = False  # lines of it have been run again
+    third_axis: str = OWN  # its name at this machine
+    repeats: bool = False  # lines of it may run many times, and are kept once they are read
+    _read: dict[int, Line] = field(default_factory=dict)
+    _labelled: dict[str, tuple[int, ...]] = field(default_factory=dict)
     _partners: dict[int, tuple[int, ...]] | None = None
 
     def partners(self) -> dict[int, tuple[int, ...]]:
@@ -39,9 +45,46 @@ class Routine:
 
     def line(self, at: int) -> Line:
         """The line with this index."""
-        if at in self.lines_read:
-            return self.lines_read[at]
-        return lex_line(at + 1, self.source.lines[at])
+        line = self._read.get(at)
+        if line is None:
+            line = lex_line(at + 1, self.source.lines[at], self.third_axis)
+            if self.repeats:
+                self._read[at] = line
+        return line
+
+    def labelled(self, label: str) -> tuple[int, ...]:
+        """Indices, rising, of the lines with this label or block number; looked for once."""
+        if label not in self._labelled:
+            self._labelled[label] = tuple(at for at in self.lines if self._bears(at, label))
+        return self._labelled[label]
+
+    def _bears(self, at: int, label: str) -> bool:
+        """Only a line that holds the letters of the label is worth being read for it."""
+        if label not in self.source.lines[at].upper():
+            return False
+        line = self.line(at)
+        return label in {line.label, line.block}
+
+    def heading(self) -> Jump | None:
+        """Its PROC, which stands before everything else; None without one."""
+        first = self.first()
+        jump = None if first is None else first.jump
+        return jump if jump is not None and jump.steering is Steering.PROCEDURE else None
+
+    def first(self) -> Line | None:
+        """Its first line that holds more than a comment."""
+        lines = (self.line(at) for at in self.lines)
+        return next((line for line in lines if line.executable), None)
+
+
+@dataclass(slots=True)
+class _Repeat:
+    """Lines that REPEAT runs again: ``start`` to before ``end``, ``left`` times more; then on at ``back``."""
+
+    start: int
+    end: int
+    left: int
+    back: int
 
 
 @dataclass(slots=True)
@@ -50,24 +93,47 @@ class _Call:
     at: int  # index of the line to go on with
     passes: int
     place: int  # line of the main file from which it was called, for what is shown
+    modal: bool = False  # MCALL has called it, or a program that has
+    scope: Scope = field(default_factory=Scope)
+    references: list[tuple[str, str]] = field(default_factory=list)  # VAR: its name here, and the caller's
+    saved: Saved | None = None  # what SAVE brings back
+    repeats: list[_Repeat] = field(default_factory=list)
 
 
 class Flow:
     """The place in a program and its subprograms."""
 
-    def __init__(self, source: Source) -> None:
-        found = sections(source)
-        self._known = {name: Routine(source, lines) for name, lines in found[1:] if name}
+    def __init__(self, source: Source, state: State) -> None:
+        found, axis = sections(source), state.setup.limits.third_axis
+        self._state = state
+        self._known = {name: Routine(source, lines, third_axis=axis) for name, lines in found[1:] if name}
         for each in source.subprograms:
             first: Section = sections(each)[0]
-            routine = Routine(each, first.lines, each.name)
+            routine = Routine(each, first.lines, each.name, axis)
             self._known.setdefault(program_name(each), routine)
-        self._calls = [_Call(Routine(source, found[0].lines), found[0].lines.start, 1, 0)]
+        self._main = Routine(source, found[0].lines, third_axis=axis)
+        start = found[0].lines.start
+        self._calls = [_Call(self._main, start, 1, 0, scope=state.variables.scope)]
 
     @property
     def called(self) -> bool:
         """Whether the place is in a subprogram."""
         return len(self._calls) > 1
+
+    @property
+    def outside(self) -> bool:
+        """Whether the place is in a subprogram of another file."""
+        return bool(self._calls and self._calls[-1].routine.shown)
+
+    @property
+    def routines(self) -> tuple[Routine, ...]:
+        """All programs that are known, the main one first."""
+        return self._main, *self._known.values()
+
+    @property
+    def by_modal_call(self) -> bool:
+        """Whether the place is in what MCALL has called, which calls nothing by itself."""
+        return bool(self._calls) and self._calls[-1].modal
 
     @property
     def running(self) -> Routine:
@@ -78,49 +144,119 @@ class Flow:
         """The next line; None where the whole program is at its end."""
         while self._calls:
             call = self._calls[-1]
-            if call.at < call.routine.lines.stop:
+            if call.repeats and call.at == call.repeats[-1].end:
+                self._repeat(call)
+            elif call.at < call.routine.lines.stop:
                 at, call.at = call.at, call.at + 1
-                line = call.routine.line(at)
-                if self.called or call.routine.repeats:
-                    call.routine.lines_read[at] = line
-                return line
-            self.back()
+                return call.routine.line(at)
+            else:
+                self.back()
         return None
 
+    def _repeat(self, call: _Call) -> None:
+        """The end of what REPEAT runs: again, or on behind it."""
+        part = call.repeats[-1]
+        part.left -= 1
+        if part.left > 0:
+            call.at = part.start
+        else:
+            call.repeats.pop()
+            call.at = part.back
+
     def back(self) -> None:
-        """M17, or the last line of a subprogram: again, or on behind the call."""
+        """M17, RET, or the last line of a subprogram: again, or on behind the call."""
         call = self._calls[-1]
         call.passes -= 1
+        call.repeats.clear()
         if call.passes > 0:
             call.at = call.routine.lines.start
-        else:
-            self._calls.pop()
+            return
+        self._calls.pop()
+        if self._calls:
+            self._return_to(self._calls[-1], call)
+
+    def _return_to(self, caller: _Call, call: _Call) -> None:
+        variables = self._state.variables
+        variables.scope = caller.scope
+        for name, outer in call.references:
+            variables.keep(outer, call.scope.numbers[name])
+        if call.saved is not None:
+            call.saved.bring_back(self._state)
 
     def end(self) -> None:
         """M2 or M30: nothing comes any more."""
         self._calls.clear()
 
-    def call(self, line: Line) -> None:
+    def knows(self, name: str) -> bool:
+        """Whether there is a program of this name."""
+        return name in self._known
+
+    def routine(self, name: str) -> Routine | None:
+        """The program of this name; None where there is none."""
+        return self._known.get(name)
+
+    def call(self, line: Line, *, modal: bool = False) -> None:
         """Go to the subprogram that the line names. Raises ProgramError where there is none, or too deep."""
         routine = self._known.get(line.call)
         if routine is None:
-            text = f"the subprogram {line.call} does not exist."
-            hint = f"Put {line.call}.spf beside the main program, or %_N_{line.call}_SPF into its file."
-            raise _refused(line, "subprogram-missing", text, hint)
+            raise _missing(line)
         if len(self._calls) > DEEPEST_CALL:
             text = f"subprograms call each other more than {DEEPEST_CALL} deep."
             raise _refused(line, "recursion", text, "A subprogram must not call itself.")
-        self._calls.append(_Call(routine, routine.lines.start, line.passes, self.shown_line(line.number)))
+        heading = routine.heading()
+        first = routine.first()
+        if first is not None and first.errors:  # told when it is run; nobody knows what it takes
+            line = line._replace(arguments=None)
+        routine.repeats = True
+        scope, references = handed_over(self._state, line, heading)
+        saved = Saved.of(self._state) if heading is not None and heading.saves else None
+        place = self.shown_line(line.number)
+        modal = modal or self.by_modal_call
+        self._calls.append(
+            _Call(routine, routine.lines.start, line.passes, place, modal, scope, references, saved)
+        )
+        self._state.variables.scope = scope
 
     def steer(self, line: Line, jump: Jump, state: State) -> None:
-        """A line of GOTO, IF, WHILE, FOR, LOOP, REPEAT, DEF or MSG. Raises ProgramError."""
+        """A line of GOTO, IF, CASE, WHILE, FOR, LOOP, REPEAT, DEF or MSG. Raises ProgramError."""
         call = self._calls[-1]
+        if jump.steering in _AGAIN and jump.target:
+            self._begin_repeat(call, line, jump, state)
+            return
         at = follow(line, jump, state, call.routine, call.at - 1)
         if jump.steering is Steering.RETURN:
             self.back()
         elif at is not None:
             call.routine.repeats = call.routine.repeats or at <= call.at
             call.at = at
+
+    def _begin_repeat(self, call: _Call, line: Line, jump: Jump, state: State) -> None:
+        """REPEAT and REPEATB: the lines from one label to another, or to here; or the block of the label."""
+        here = call.at - 1
+        start = find_label(Steering.GOTO, jump.target, call.routine, here)
+        until = find_label(Steering.GOTO, jump.until, call.routine, here) if jump.until else here
+        missing = jump.target if start is None else jump.until if until is None else ""
+        if start is None or until is None:
+            text = f"the label {missing} of {jump.steering} is not in this program."
+            raise _steering_fault(line, jump, NO_TARGET, text, "Correct the label.")
+        if jump.steering is Steering.REPEAT_BLOCK:
+            end = start + 1
+        elif jump.until:
+            end = until + 1
+        else:
+            end = _end_label(call.routine, start, here)
+        if end <= start or (start <= here < end):
+            text = f"{jump.steering} would repeat a part that has no end before it, or itself."
+            raise _steering_fault(line, jump, NESTING, text, "The part to repeat stands before or behind it.")
+        passes = 1
+        if jump.passes is not None:
+            passes = int(state.worth(jump.passes, lambda c, t, h: _steering_fault(line, jump, c, t, h)))
+        if not 1 <= passes <= _MOST_PASSES or len(call.repeats) >= DEEPEST_CALL:
+            text = f"P{passes} is no number of passes."
+            raise _steering_fault(line, jump, "passes", text, f"Write P1 to P{_MOST_PASSES}.")
+        call.routine.repeats = True
+        call.repeats.append(_Repeat(start, end, passes, call.at))
+        call.at = start
 
     def shown_line(self, number: int) -> int:
         """The line of the main file that stands for line ``number`` of the running program."""
@@ -137,6 +273,20 @@ class Flow:
         return Diagnostic(place, 0, found.severity, found.code, message, found.hint)
 
 
+_AGAIN = frozenset({Steering.REPEAT, Steering.REPEAT_BLOCK})
+_MOST_PASSES = 9999
+
+
+def _end_label(routine: Routine, start: int, here: int) -> int:
+    """Where the part of REPEAT with one label ends: at ENDLABEL, at the REPEAT itself, with the program."""
+    for at in range(start, routine.lines.stop):
+        if at == here:
+            return here
+        if routine.line(at).label == "ENDLABEL":
+            return at + 1
+    return routine.lines.stop
+
+
 def ends_main(statement: Statement, *, called: bool) -> bool:
     """Whether the block ends the whole program; M17 ends a subprogram. Raises ProgramError."""
     for code in (2, 30):
@@ -146,5 +296,17 @@ def ends_main(statement: Statement, *, called: bool) -> bool:
     return statement.ends and not called
 
 
+def _missing(line: Line) -> ProgramError:
+    if reason := CYCLES_OUTSIDE.get(line.call):
+        return _refused(line, "not-in-subset", f"{line.call}: {reason}.", "Take it out.")
+    text = f"the subprogram {line.call} does not exist."
+    hint = f"Put {line.call}.spf beside the main program, or %_N_{line.call}_SPF into its file."
+    return _refused(line, "subprogram-missing", text, hint)
+
+
 def _refused(line: Line, code: str, text: str, hint: str) -> ProgramError:
     return ProgramError(fault(line.number, line.call_column, code, line.block, text, hint))
+
+
+def _steering_fault(line: Line, jump: Jump, code: int | str, text: str, hint: str) -> ProgramError:
+    return ProgramError(fault(line.number, jump.column, code, line.block, text, hint))

@@ -1,4 +1,4 @@
-"""Lines that steer the program: GOTOF, GOTOB, IF, WHILE, FOR, LOOP, REPEAT, DEF, MSG, STOPRE."""
+"""Lines that steer the program: GOTOF, GOTOB, IF, CASE, WHILE, FOR, LOOP, REPEAT, PROC, DEF, MSG, STOPRE."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from core.language.formulas import Formula, FormulaError, FormulaReader
+from core.language.sinumerik.call_arguments import Parameter, read_parameters
 from core.language.sinumerik.sinumerik_formulas import GRAMMAR
 
 
@@ -15,10 +16,12 @@ class Steering(StrEnum):
 
     GOTO_FORWARD = "GOTOF"
     GOTO_BACK = "GOTOB"
+    GOTO_START = "GOTOS"
     GOTO = "GOTO"
     IF = "IF"
     ELSE = "ELSE"
     END_IF = "ENDIF"
+    CASE = "CASE"
     WHILE = "WHILE"
     END_WHILE = "ENDWHILE"
     FOR = "FOR"
@@ -26,24 +29,47 @@ class Steering(StrEnum):
     LOOP = "LOOP"
     END_LOOP = "ENDLOOP"
     REPEAT = "REPEAT"
+    REPEAT_BLOCK = "REPEATB"
     UNTIL = "UNTIL"
     DEFINE = "DEF"
+    PROCEDURE = "PROC"
+    EXTERN = "EXTERN"
     MESSAGE = "MSG"
+    ALARM = "SETAL"
     STOP_READING = "STOPRE"
+    DISPLAY_OFF = "DISPLOF"
+    DISPLAY_ON = "DISPLON"
+    SINGLE_BLOCK_OFF = "SBLOF"
+    SINGLE_BLOCK_ON = "SBLON"
+    GROUP_BEGIN = "GROUP_BEGIN"
+    GROUP_END = "GROUP_END"
     RETURN = "RET"
 
 
 class Defined(NamedTuple):
-    """A variable of DEF, and the formula of its first value; None is 0."""
+    """A variable of DEF with the formula of its first value; None is 0. ``size`` is that of an array."""
 
     name: str
     formula: Formula | None
+    kind: str = "REAL"
+    size: Formula | None = None
+    text: str = ""
+
+
+class Choice(NamedTuple):
+    """One branch of CASE; without ``formula`` that of DEFAULT."""
+
+    formula: Formula | None
+    steering: Steering
+    target: str
 
 
 class Jump(NamedTuple):
-    """One steering line. ``condition`` of IF, WHILE, UNTIL; ``target`` of a jump, a label or N with a number.
+    """One steering line. ``condition`` of IF, CASE, WHILE, UNTIL; ``target`` of a jump: a label, or N123.
 
-    ``name first last`` are variable, start and end of FOR; ``text`` is that of MSG; ``column`` from 1.
+    ``name first last`` are variable, start and end of FOR; ``name parameters saves`` of PROC; ``pieces`` are
+    texts and formulas of MSG. REPEAT goes from ``target`` to ``until``, ``passes`` times. ``other`` is one
+    more IF … GOTO of the block. ``column`` from 1.
     """
 
     steering: Steering
@@ -53,18 +79,36 @@ class Jump(NamedTuple):
     name: str = ""
     first: Formula | None = None
     last: Formula | None = None
-    text: str = ""
+    pieces: tuple[str | Formula, ...] = ()
     defined: tuple[Defined, ...] = ()
+    choices: tuple[Choice, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+    saves: bool = False
+    until: str = ""
+    passes: Formula | None = None
+    other: Jump | None = None
 
 
 _WORDS = re.compile("(" + "|".join(sorted(Steering, key=len, reverse=True)) + r")(?![A-Z0-9_=])")
-_GOTO = re.compile(r"\s*(GOTO[FB]?)(?![A-Z0-9_])\s*")
+_GOTO = re.compile(r"\s*(GOTO[FBS]?)(?![A-Z0-9_])\s*")
 _TARGET = re.compile(r"(?:N[0-9]+|[A-Z_][A-Z_][A-Z0-9_]*)\s*")
 _NAME = re.compile(r"\s*(R[0-9]+|[A-Z_][A-Z_][A-Z0-9_]*)\s*=")
 _TO = re.compile(r"\s*TO(?![A-Z])")
-_TYPE = re.compile(r"\s*(REAL|INT|BOOL)(?![A-Z])")
-_VARIABLE = re.compile(r"\s*([A-Z_][A-Z_][A-Z0-9_]*)\s*(=|,|$)")
-_MESSAGE = re.compile(r'\s*\(\s*(?:"([^"]*)"\s*)?\)\s*$')
+_OF = re.compile(r"\s*OF(?![A-Z0-9_])")
+_DEFAULT = re.compile(r"\s*DEFAULT(?![A-Z0-9_])")
+_NEXT_IF = re.compile(r"\s*IF(?![A-Z0-9_])")
+_REPEATED = re.compile(r"\s*([A-Z_][A-Z_][A-Z0-9_]*|N[0-9]+)(?![A-Z0-9_])(?!\s*=)")
+_PASSES = re.compile(r"\s*P(?:\s*=\s*|(?=[0-9]))")
+_TYPE = re.compile(
+    r"\s*(?:NCK\s|CHAN\s)?\s*(REAL|INT|BOOL|CHAR|STRING|AXIS|FRAME)(?![A-Z])(?:\s*\[[^\]]*\])?"
+)
+_VARIABLE = re.compile(r"\s*([A-Z_][A-Z_][A-Z0-9_]*)\s*(\[|=|,|$)")
+_PROCEDURE = re.compile(r"\s*([A-Z_][A-Z_][A-Z0-9_]*|L[0-9]+)\s*")
+_ATTRIBUTE = re.compile(r"\s*(SAVE|DISPLOF|DISPLON|SBLOF|SBLON|ACTBLOCNO|PREPRO)(?![A-Z0-9_])")
+_JOINED = re.compile(r'\s*(?:"([^"]*)"|<<)')
+_ANY_BRACKET = re.compile(r"\s*\([^()]*\)\s*$")
+_NUMBERS = frozenset({"REAL", "INT", "BOOL", "CHAR"})
+_TOLERATED_BRACKET = frozenset({Steering.GROUP_BEGIN, Steering.GROUP_END, Steering.RETURN})
 
 
 def steering_word(text: str, at: int) -> Steering | None:
@@ -91,11 +135,18 @@ class _Reader:
         read = {
             **dict.fromkeys((Steering.GOTO, Steering.GOTO_FORWARD, Steering.GOTO_BACK), self._goto),
             **dict.fromkeys((Steering.WHILE, Steering.UNTIL), self._conditional),
+            **dict.fromkeys((Steering.REPEAT, Steering.REPEAT_BLOCK), self._repeat),
             Steering.IF: self._if,
+            Steering.CASE: self._case,
             Steering.FOR: self._for,
             Steering.DEFINE: self._define,
+            Steering.PROCEDURE: self._procedure,
+            Steering.EXTERN: self._extern,
             Steering.MESSAGE: self._message,
+            Steering.ALARM: self._alarm,
         }.get(self._steering)
+        if self._steering in _TOLERATED_BRACKET and _ANY_BRACKET.match(self._text, self._at):
+            self._at = len(self._text)
         return Jump(self._steering, self._column) if read is None else read()
 
     def _goto(self) -> Jump:
@@ -120,7 +171,34 @@ class _Reader:
         if match is None:
             return Jump(Steering.IF, self._column, condition)
         self._at = match.end()
-        return Jump(Steering(match.group(1)), self._column, condition, self._target())
+        steering = Steering(match.group(1))
+        target = "" if steering is Steering.GOTO_START else self._target()
+        jump = Jump(steering, self._column, condition, target)
+        if another := _NEXT_IF.match(self._text, self._at):
+            self._at, self._column = another.end(), another.end() - 1
+            jump = jump._replace(other=self._if())
+        return jump
+
+    def _case(self) -> Jump:
+        """CASE R1 OF 1 GOTOF A 2 GOTOF B DEFAULT GOTOF C."""
+        condition, choices = self._formula(), list[Choice]()
+        match = _OF.match(self._text, self._at)
+        if match is None:
+            raise FormulaError(self._at, "CASE needs OF", "Write CASE R1 OF 1 GOTOF A DEFAULT GOTOF B.")
+        self._at = match.end()
+        while self._text[self._at :].strip():
+            default = _DEFAULT.match(self._text, self._at)
+            if default:
+                self._at = default.end()
+            formula = None if default else self._formula()
+            jump = _GOTO.match(self._text, self._at)
+            if jump is None:
+                raise FormulaError(self._at, "A branch of CASE needs its jump", "Write 1 GOTOF LABEL.")
+            self._at = jump.end()
+            choices.append(Choice(formula, Steering(jump.group(1)), self._target()))
+        if not choices:
+            raise FormulaError(self._at, "CASE has no branch", "Write CASE R1 OF 1 GOTOF A.")
+        return Jump(Steering.CASE, self._column, condition, choices=tuple(choices))
 
     def _for(self) -> Jump:
         match = _NAME.match(self._text, self._at)
@@ -135,32 +213,116 @@ class _Reader:
         last = self._formula()
         return Jump(Steering.FOR, self._column, name=match.group(1), first=first, last=last)
 
+    def _repeat(self) -> Jump:
+        """REPEAT alone begins REPEAT … UNTIL; with a label or two it runs a part of the program again."""
+        labels = list[str]()
+        while len(labels) < 2 and (match := _REPEATED.match(self._text, self._at)):
+            labels.append(match.group(1))
+            self._at = match.end()
+        if not labels:
+            return Jump(self._steering, self._column)
+        passes = None
+        if match := _PASSES.match(self._text, self._at):
+            self._at = match.end()
+            passes = self._formula()
+        return Jump(self._steering, self._column, target=labels[0], until=labels[-1] if labels[1:] else "",
+                    passes=passes)  # fmt: skip
+
     def _definitions(self) -> list[Defined]:
         match = _TYPE.match(self._text, self._at)
         if match is None:
-            raise FormulaError(self._at, "DEF needs REAL, INT or BOOL", "Other types are not read here.")
+            raise FormulaError(self._at, "DEF needs REAL, INT, BOOL or STRING", "Write DEF REAL NAME = 0.")
+        if match[1] not in _NUMBERS | {"STRING"}:
+            raise FormulaError(self._at, f"Variables of the type {match[1]} are not read here",
+                               "Use REAL, INT, BOOL or STRING.")  # fmt: skip
         self._at = match.end()
         found: list[Defined] = []
         while True:
-            variable = _VARIABLE.match(self._text, self._at)
-            if variable is None:
-                raise FormulaError(self._at, "DEF needs the name of a variable", "Write DEF REAL NAME = 0.")
-            self._at = variable.end()
-            formula = None
-            if variable.group(2) == "=":
-                formula = self._formula()
-                rest = self._text[self._at :].lstrip()
-                self._at = len(self._text) - len(rest) + rest.startswith(",")
-            found.append(Defined(variable.group(1), formula))
+            found.append(self._defined(match[1]))
             if not self._text[self._at :].strip():
                 return found
 
-    def _message(self) -> Jump:
-        match = _MESSAGE.match(self._written, self._at)
+    def _defined(self, kind: str) -> Defined:
+        variable = _VARIABLE.match(self._text, self._at)
+        if variable is None:
+            raise FormulaError(self._at, "DEF needs the name of a variable", "Write DEF REAL NAME = 0.")
+        self._at = variable.end()
+        after, formula, size, text = variable.group(2), None, None, ""
+        if after == "[":
+            size = self._size()
+            after = self._sign()
+        if after == "=":
+            quoted = _JOINED.match(self._written, self._at)
+            if kind == "STRING" and quoted and quoted[1] is not None:
+                self._at, text = quoted.end(), quoted[1]
+            else:
+                formula = self._formula()
+            self._sign()
+        return Defined(variable.group(1), formula, kind, size, text)
+
+    def _size(self) -> Formula:
+        size = self._formula()
+        if not self._text.startswith("]", self._at):
+            raise FormulaError(self._at, "An array has one size, in square brackets", "Write DEF REAL A[5].")
+        self._at += 1
+        return size
+
+    def _sign(self) -> str:
+        """A comma or = that stands here."""
+        rest = self._text[self._at :].lstrip()
+        sign = rest[:1] if rest[:1] in {",", "="} else ""
+        self._at = len(self._text) - len(rest) + len(sign)
+        return sign
+
+    def _procedure(self) -> Jump:
+        name, parameters = self._heading()
+        saves = False
+        while match := _ATTRIBUTE.match(self._text, self._at):
+            saves = saves or match[1] == "SAVE"
+            self._at = match.end()
+        return Jump(self._steering, self._column, name=name, parameters=parameters, saves=saves)
+
+    def _extern(self) -> Jump:
+        name, parameters = self._heading()
+        return Jump(self._steering, self._column, name=name, parameters=parameters)
+
+    def _heading(self) -> tuple[str, tuple[Parameter, ...]]:
+        match = _PROCEDURE.match(self._text, self._at)
         if match is None:
-            raise FormulaError(self._at, "MSG needs its text in brackets and quotes", 'Write MSG("TEXT").')
+            raise FormulaError(self._at, f"{self._steering} needs a name", "Write PROC NAME(REAL LENGTH).")
+        self._at = match.end()
+        parameters = tuple[Parameter, ...]()
+        if self._text.startswith("(", self._at):
+            parameters, self._at = read_parameters(self._text, self._written, self._at)
+        return match[1], parameters
+
+    def _message(self) -> Jump:
+        """MSG("TEXT"<<R1): texts and formulas, joined by <<."""
+        rest = self._text[self._at :].lstrip()
+        closing = self._text.rstrip()
+        if not rest.startswith("(") or not closing.endswith(")"):
+            raise FormulaError(self._at, "MSG needs its text in brackets", 'Write MSG("TEXT").')
+        self._at, end = len(self._text) - len(rest) + 1, len(closing) - 1
+        pieces: list[str | Formula] = []
+        while self._text[self._at : end].strip():
+            if match := _JOINED.match(self._written, self._at, end):
+                self._at = match.end()
+                pieces += [] if match[1] is None else [match[1]]
+            elif self._text[self._at : end].lstrip().startswith(","):
+                break  # what stands behind the text says only how it is shown
+            else:
+                pieces.append(self._formula())
         self._at = len(self._text)
-        return Jump(self._steering, self._column, text=match.group(1) or "")
+        return Jump(self._steering, self._column, pieces=tuple(pieces))
+
+    def _alarm(self) -> Jump:
+        rest = self._text[self._at :]
+        if not rest.lstrip().startswith("("):
+            raise FormulaError(self._at, "SETAL needs a number in brackets", "Write SETAL(65000).")
+        self._at += len(rest) - len(rest.lstrip()) + 1
+        number = self._formula()
+        self._at = len(self._text)
+        return Jump(self._steering, self._column, number)
 
     def _target(self) -> str:
         while self._text[self._at : self._at + 1].isspace():

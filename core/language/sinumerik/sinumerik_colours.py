@@ -10,7 +10,15 @@ from core.language.sinumerik.subprogram_files import HEADER
 from core.language.syntax_colours import Ink, Span
 
 _WORD = re.compile(r"[A-Za-z]+")
-_OF_NAME = {"G": Ink.CODE, "M": Ink.CODE, "F": Ink.RUN, "S": Ink.RUN, "LIMS": Ink.RUN}
+_OF_NAME = {
+    "G": Ink.CODE,
+    "M": Ink.CODE,
+    "F": Ink.RUN,
+    "S": Ink.RUN,
+    "LIMS": Ink.RUN,
+    "T": Ink.CALL,
+    "D": Ink.CALL,
+}
 
 
 def spans(text: str) -> list[Span]:

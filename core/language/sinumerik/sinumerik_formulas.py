@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 
-from core.language.formulas import Grammar
+from core.language.formulas import TRIGONOMETRY, Grammar
 
 GRAMMAR = Grammar(
     number=re.compile(r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:EX[+-]?[0-9]{1,3})?"),
-    parameter=re.compile(r"(R(?=[0-9])|[A-Z_][A-Z_][A-Z0-9_]*)([0-9]*)"),
+    # $P_… and the like are system variables, their indices are part of the name.
+    parameter=re.compile(r"(R(?=[0-9\[])|\$[A-Z][A-Z0-9_]*(?:\[[^\]]*\])?|[A-Z_][A-Z_][A-Z0-9_]*)([0-9]*)"),
     operators={
         "*": (80, "times"),
         "/": (80, "over"),
@@ -27,11 +28,7 @@ GRAMMAR = Grammar(
         "<": (10, "less"),
     },
     functions={
-        "SIN": "sine",
-        "COS": "cosine",
-        "TAN": "tangent",
-        "ASIN": "arc sine",
-        "ACOS": "arc cosine",
+        **TRIGONOMETRY,
         "ATAN2": "direction",
         "SQRT": "square root",
         "POT": "square",
@@ -47,5 +44,6 @@ GRAMMAR = Grammar(
     constants={"TRUE": 1.0, "FALSE": 0.0, "$PI": 3.141592653589793},
     separator=",",
     negation=90,
+    indexed=True,
 )
 """Formulas behind ``=``, in brackets of a target, and of conditions. Comparisons bind weakest of all."""

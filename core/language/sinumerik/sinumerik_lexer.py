@@ -8,10 +8,13 @@ from typing import NamedTuple
 from core.language.diagnostics import Diagnostic
 from core.language.formulas import Formula, FormulaError, FormulaReader, Number, Operation, Parameter
 from core.language.sinumerik import sinumerik_words as known
+from core.language.sinumerik.call_arguments import Argument, read_arguments
+from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE, CYCLES_TAKEN
 from core.language.sinumerik.program_jumps import Jump, Steering, read_jump, steering_word
 from core.language.sinumerik.sinumerik_alarms import SYNTAX, fault
 from core.language.sinumerik.sinumerik_formulas import GRAMMAR
 from core.language.sinumerik.sinumerik_words import LONGEST_LINE, Form, Line, Word
+from core.language.sinumerik.third_axis_name import OWN, words_as_c
 from core.language.typography import ascii_upper, typed
 
 # --- values: a number, or an R parameter that gives it
@@ -64,10 +67,12 @@ def beyond(word: Word) -> tuple[str, str] | None:
     if word.value is None:
         return None
     if word.name in {"G", "M"}:
-        digits = word.text[1:]
+        digits = word.text.rpartition("=")[2] if "=" in word.text else word.text[1:]
         if digits.isdigit() and len(digits) <= _LONGEST_CODE:
             return None
         return f"{word.text} is no code", "Codes are whole numbers of up to four digits."
+    if word.name in {"T", "D"} and not word.value.is_integer():
+        return f"{word.text} is no number of a tool or an edge", "Write a whole number."
     low, high = known.REACH["R" if variable(word.name) else word.name]
     if low <= word.value <= high:
         return None
@@ -76,35 +81,57 @@ def beyond(word: Word) -> tuple[str, str] | None:
 
 _HEAD = re.compile(r"\s*(?:/([0-9]?))?\s*(?:([N:])([0-9]+))?\s*(?:([A-Z_][A-Z_][A-Z0-9_]*)\s*:)?\s*")
 # Nearly all words are these; they need no look at each sign.
-_PLAIN = re.compile(rf"\s*([GMXZCIKFS])({NUMBER.pattern})(?=[\sA-Z]|$)")
+_PLAIN = re.compile(rf"\s*([GMXYZCIJKFSTD])({NUMBER.pattern})(?=[\sA-Z]|$)")
 _NAME = re.compile(r"[A-Z_][A-Z_][A-Z0-9_]*|L[0-9]+(?![0-9.])")
-_ASSIGNED = re.compile(r"(R[0-9]+|[A-Z_]+[0-9]*)\s*=\s*")
+_ASSIGNED = re.compile(r"(R[0-9]+|[A-Z_]+[0-9]*)\s*=(?!=)\s*")
+_OF_SPINDLE = re.compile(r"([MSTD])([0-9]+)")
+_INDEXED = re.compile(r"(SPOSA?|LIMS)\s*\[\s*([A-Z0-9]+)\s*\]\s*=(?!=)\s*")
+_QUOTED = re.compile(r'"([^"]*)"')
+_BLANK = re.compile(r"\s*\([^()]*\)")
+_MASTER = re.compile(r"\s*\(\s*([0-9]*)\s*\)")
+_ELEMENT = re.compile(r"(R|[A-Z_][A-Z_][A-Z0-9_]*)\s*\[\s*")
+_SYSTEM = re.compile(r"\$[A-Z0-9_]+")
+_BRACKET = re.compile(r"\s*\(")
+_PROGRAM = re.compile(r'\s*"?([A-Z_][A-Z0-9_]*|L[0-9]+)"?(?![A-Z0-9_])')
 _FORM = re.compile(r"([A-Z]+)\s*(\()?\s*")
 _FORMS = frozenset(str(form) for form in Form if form)
 _REST_OF_WORD = re.compile(r"\S*\([^)]*\)?|\S+")
 _PASSES = re.compile(r"\s*P\s*=?\s*([0-9]+)")
 _MOST_PASSES = 9999
+_CALLS = frozenset({"MCALL", "CALL"})
+_TRANSFORMATIONS = frozenset({"TRANSMIT", "TRACYL", "TRAFOOF"})
 
 
-def lex_line(number: int, text: str) -> Line:
-    """The words of line ``number``. Never raises: errors are in the line, each with its column."""
+def lex_line(number: int, text: str, third_axis: str = OWN) -> Line:
+    """The words of line ``number``. Never raises: errors are in the line, each with its column.
+
+    ``third_axis`` is the name of the machine's third axis, whose words come out as those of C.
+    """
     code, comment = _without_comment(text)
     upper = ascii_upper(code)
     head = _HEAD.match(upper)
     assert head is not None  # every part of it may be missing
     level, kind, count, label = head.groups()
     block = f"{kind}{count}" if kind else label or f"in line {number}"
+    wrong = -1
+    if third_axis != OWN:
+        upper, wrong = words_as_c(upper, third_axis)
     scanner = _Scanner(number, block, upper, code)
+    if wrong >= 0:
+        scanner.no_axis(wrong, third_axis)
     if len(text) > LONGEST_LINE:
         scanner.refuse(1, f"the block has {len(text)} characters", f"{LONGEST_LINE} are the most; split it.")
     elif steering := steering_word(upper, head.end()):
         scanner.steer(head.end(), steering)
     else:
         scanner.scan(head.end())
+    words = scanner.words
+    if third_axis != OWN:
+        words = [w._replace(text=f"{third_axis}{w.text[1:]}") if w.name == OWN else w for w in words]
     return Line(
         number,
         block,
-        tuple(scanner.words),
+        tuple(words),
         label or "",
         None if level is None else int(level or 0),
         scanner.call,
@@ -114,6 +141,8 @@ def lex_line(number: int, text: str) -> Line:
         code[head.end() :].strip(),
         tuple(scanner.errors),
         scanner.jump,
+        scanner.arguments,
+        scanner.modal_call,
     )
 
 
@@ -134,6 +163,8 @@ class _Scanner:
         self._written = written
         self.errors: list[Diagnostic] = []
         self.call, self.call_column, self.passes = "", 0, 1
+        self.arguments: tuple[Argument, ...] | None = None
+        self.modal_call = False
         self._number, self._block, self._text = number, block, text
 
     def steer(self, at: int, steering: Steering) -> None:
@@ -151,8 +182,12 @@ class _Scanner:
                 at = self._plain(match)
             elif text[at].isspace():
                 at += 1
-            elif match := _ASSIGNED.match(text, at):
+            elif match := _ASSIGNED.match(text, at) or _INDEXED.match(text, at):
                 at = self._assigned(match)
+            elif match := _ELEMENT.match(text, at):
+                at = self._element(match)
+            elif match := _SYSTEM.match(text, at):
+                at = self._outside(at, match.end(), match[0], "system variables cannot be written here")
             elif match := _NAME.match(text, at):
                 at = self._named(match)
             elif text[at].isalpha() and text[at].isascii():
@@ -169,6 +204,10 @@ class _Scanner:
             self.refuse(word.column, *wrong)
         self.words.append(word)
         return match.end()
+
+    def no_axis(self, at: int, third_axis: str) -> None:
+        """A word of C on a machine whose third axis has another name."""
+        self._outside(at, at + 1, OWN, f"this lathe has no axis C; its third axis is {third_axis}")
 
     def refuse(self, column: int, text: str, hint: str) -> None:
         """A syntax alarm at this column."""
@@ -210,41 +249,127 @@ class _Scanner:
         """A key word, or the name of a subprogram, which stands alone in its block."""
         name, at, end = match[0], match.start(), match.end()
         if name in known.KEYS:
-            self.words.append(Word(name, None, at + 1, name))
-            return end
+            return self._key(name, at, end)
+        if name == "SETMS":
+            return self._master(at, end)
+        if name in _CALLS and not self.words:
+            return self._behind_call(name, at, end)
+        if name in known.NAMES_OUTSIDE:
+            why = known.WHY_OUTSIDE.get(name, "this control does not execute it")
+            return self._outside(at, end, name, why)
         base = name.rstrip("0123456789")
-        if name in known.NAMES_OUTSIDE or base == "CYCLE":
-            return self._outside(at, end, name, "this control does not execute it")
-        if name in known.ASSIGNED or base in known.ASSIGNED - {"X", "Z", "C", "I", "K", "F", "S"}:
+        if name in known.ASSIGNED or base in known.ASSIGNED - known.LETTERS:
             return self._skip(at, f"{base} lacks its =", f"Write {base}=…")
-        if self.words or self.call or self._text[end : end + 1] == "(":
-            return self._skip(
-                at, f"{name} is no word", "A comment begins with ;, and a subprogram's name stands alone."
-            )
-        return self._called(name, at, end)
+        return self._program(name, at, end)
+
+    def _program(self, name: str, at: int, end: int) -> int:
+        if not self.words and not self.call:
+            return self._called(name, at, end)
+        if name in CYCLES or name in CYCLES_OUTSIDE or name in CYCLES_TAKEN:
+            return self._skip(at, f"{name} stands behind other words", "A call stands alone in its block.")
+        hint = "A comment begins with ;, and a subprogram's name stands alone."
+        return self._skip(at, f"{name} is no word", hint)
+
+    def _key(self, name: str, at: int, end: int) -> int:
+        """A word without a value, or with what stands in its brackets."""
+        if name in _TRANSFORMATIONS:
+            return self._transformation(name, at, end)
+        self.words.append(Word(name, None, at + 1, name))
+        blank = _BLANK.match(self._text, end) if name == "WORKPIECE" else None
+        return end if blank is None else blank.end()
+
+    def _transformation(self, name: str, at: int, end: int) -> int:
+        """TRANSMIT, TRACYL and TRAFOOF with what stands in their brackets."""
+        arguments: tuple[Argument, ...] = ()
+        if bracket := _BRACKET.match(self._text, end):
+            try:
+                arguments, end = read_arguments(self._text, self._written, bracket.end() - 1)
+            except FormulaError as problem:
+                self.refuse(problem.at + 1, f"{name}: {problem}", problem.hint)
+                return len(self._text)
+        self.words.append(Word(name, None, at + 1, name, arguments=arguments))
+        return end
+
+    def _master(self, at: int, end: int) -> int:
+        """SETMS, SETMS(1): which spindle the words without a number mean."""
+        match = _MASTER.match(self._text, end)
+        number = int(match[1] or 1) if match is not None else 1
+        word = Word("SETMS", float(number), at + 1, f"SETMS({number})", spindle=number)
+        self.words.append(word)
+        return match.end() if match is not None else end
+
+    def _behind_call(self, word: str, at: int, end: int) -> int:
+        """MCALL with or without a name, CALL "NAME"."""
+        match = _PROGRAM.match(self._text, end)
+        self.modal_call, self.call_column = word == "MCALL", at + 1
+        if match is not None:
+            return self._called(match[1], match.start(1), match.end())
+        if word == "CALL" or self._text[end:].strip():
+            self.refuse(end + 1, f"{word} lacks the name of a program", f"Write {word} NAME.")
+        return len(self._text)
 
     def _called(self, name: str, at: int, end: int) -> int:
         self.call, self.call_column = name, at + 1
+        if bracket := _BRACKET.match(self._text, end):
+            try:
+                self.arguments, end = read_arguments(self._text, self._written, bracket.end() - 1)
+            except FormulaError as problem:
+                self.refuse(problem.at + 1, f"{name}: {problem}", problem.hint)
+                return len(self._text)
         passes = _PASSES.match(self._text, end)
-        if passes is None:
-            rest = self._text[end:]
-            if rest.strip():
-                self.refuse(end + 1, f"{rest.strip()} stands behind {name}", "A call stands alone.")
-            return len(self._text)
-        self.passes = int(passes[1][:9])
-        if not 1 <= self.passes <= _MOST_PASSES:
-            self.refuse(end + 1, f"P{passes[1]} is no number of passes", f"Write P1 to P{_MOST_PASSES}.")
-        if self._text[passes.end() :].strip():
-            self.refuse(passes.end() + 1, f"more stands behind {name}", "A call stands alone.")
+        if passes is not None:
+            end = passes.end()
+            self.passes = int(passes[1][:9])
+            if not 1 <= self.passes <= _MOST_PASSES:
+                self.refuse(end, f"P{passes[1]} is no number of passes", f"Write P1 to P{_MOST_PASSES}.")
+        if rest := self._text[end:].strip():
+            self.refuse(end + 1, f"{rest} stands behind {name}", "A call stands alone.")
         return len(self._text)
+
+    def _element(self, match: re.Match[str]) -> int:
+        """R[ ]= or an element of an array."""
+        if match[1] in known.NAMES_OUTSIDE:
+            why = known.WHY_OUTSIDE.get(match[1], "this control does not execute it")
+            return self._outside(match.start(), match.end(), match[1], why)
+        name, at = match[1], match.start()
+        try:
+            index = value_at(self._text, match.end())
+            close = re.compile(r"\s*\]\s*=(?!=)\s*").match(self._text, index.end)
+            if close is None:
+                return self._skip(at, f"{name}[ ] is not set", f"Write {name}[1]=…")
+            value = value_at(self._text, close.end())
+        except FormulaError as problem:
+            return self._skip(at, f"{name}[ ]= has no value: {problem}", problem.hint)
+        written = "".join(self._text[at : value.end].split())
+        place = index.formula if index.formula is not None else Number(index.number or 0.0)
+        named = "R0" if name == "R" else name
+        word = Word(named, value.number, at + 1, written, Form.PLAIN, value.formula, element=place)
+        return self._keep(word, value.end)
 
     def _assigned(self, match: re.Match[str]) -> int:
         """A word with =."""
         name, at, end = match[1], match.start(), match.end()
+        index = match[2] if match.re is _INDEXED else None
+        if of := _OF_SPINDLE.fullmatch(name):
+            name, index = of[1], of[2]
+        if index is not None and not index.isdigit():
+            return self._skip(at, f"{name} is that of a spindle, by its number", f"Write {name}[1]=…")
+        before = len(self.words)
+        end = self._with_value(name, at, end)
+        if index is not None and len(self.words) > before:
+            self.words[-1] = self.words[-1]._replace(spindle=int(index[:9]))
+        return end
+
+    def _with_value(self, name: str, at: int, end: int) -> int:
         is_r = PARAMETER.fullmatch(name)
-        if is_r is None and name not in known.ASSIGNED and (len(name) == 1 or name in known.NAMES_OUTSIDE):
-            why = known.LETTERS_OUTSIDE.get(name, "this control does not execute it")
-            return self._outside(at, end, name, why)
+        if name == "T" and (quoted := _QUOTED.match(self._written, end)):
+            word = Word("T", None, at + 1, f'T="{quoted[1]}"', string=quoted[1].strip())
+            self.words.append(word)
+            return quoted.end()
+        assigned = name in known.ASSIGNED or name == "M"
+        if is_r is None and not assigned and (len(name) == 1 or name in known.NAMES_OUTSIDE):
+            why = known.LETTERS_OUTSIDE.get(name) or known.WHY_OUTSIDE.get(name)
+            return self._outside(at, end, name, why or "this control does not execute it")
         if is_r is not None and int(is_r[1][:9]) > known.MOST_R:
             return self._outside(at, end, name, f"R parameters are R0 to R{known.MOST_R}")
         found = _FORM.match(self._text, end)

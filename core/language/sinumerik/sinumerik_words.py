@@ -7,7 +7,9 @@ from typing import NamedTuple
 
 from core.language.diagnostics import Diagnostic
 from core.language.formulas import Formula
+from core.language.sinumerik.call_arguments import Argument
 from core.language.sinumerik.program_jumps import Jump
+from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, OUTSIDE, WORDS
 
 LONGEST_LINE = 512
 
@@ -26,7 +28,8 @@ class Form(StrEnum):
 class Word(NamedTuple):
     """One word. ``name`` is upper case; ``value`` its number, or None where a ``formula`` gives it.
 
-    ``column`` is that of its first sign, from 1; ``text`` as written, without blanks.
+    ``column`` is that of its first sign, from 1; ``text`` as written, without blanks. ``string`` is a name in
+    quotes, T="ROUGHER"; ``spindle`` the number in M1=3, S1=500 and SPOS[1]=90, 0 without one.
     """
 
     name: str
@@ -35,15 +38,20 @@ class Word(NamedTuple):
     text: str
     form: Form = Form.PLAIN
     formula: Formula | None = None
+    string: str = ""
+    spindle: int = 0
+    element: Formula | None = None  # index of R[ ] or of an array; ``name`` is then R0, or the array's
+    arguments: tuple[Argument, ...] = ()  # of TRANSMIT( ) and TRACYL( )
 
 
 class Line(NamedTuple):
     """One block of source; ``number`` is its line, from 1.
 
     ``block`` is what alarms call it: its N or : number, its label, or its line. ``skip`` is the level of
-    ``/`` (0 for a bare one), None without. ``call`` names a subprogram, run ``passes`` times. ``text`` is the
-    code as written without number, label and comment. ``errors`` tells what could not be read; such a line
-    must not run.
+    ``/`` (0 for a bare one), None without. ``call`` names a subprogram or a cycle, run ``passes`` times with
+    ``arguments`` (None: without brackets), with ``modal_call`` (MCALL) behind each move from now on. ``text``
+    is the code as written without number, label and comment. ``errors`` tells what could not be read; such a
+    line must not run.
     """
 
     number: int
@@ -58,89 +66,100 @@ class Line(NamedTuple):
     text: str = ""
     errors: tuple[Diagnostic, ...] = ()
     jump: Jump | None = None  # what steers the program; it has no words beside it
+    arguments: tuple[Argument, ...] | None = None
+    modal_call: bool = False
 
     @property
     def executable(self) -> bool:
         """Whether there is anything to do in it."""
-        return bool(self.words or self.call or self.errors or self.jump)
+        return bool(self.words or self.call or self.errors or self.jump or self.modal_call)
 
 
 # --- vocabulary: what this control knows, and what it knows of but does not execute
 
 
-AXES = ("X", "Z", "C")
+AXES = ("X", "Y", "Z", "C")
 
 G_GROUPS: dict[int, str] = {
-    **dict.fromkeys((0, 1, 2, 3), "motion"),
-    4: "dwell",
-    **dict.fromkeys((17, 18), "plane"),
-    53: "suppression of offsets",
-    **dict.fromkeys((54, 55, 56, 57, 58, 59, 500), "settable offset"),
-    **dict.fromkeys((70, 71), "unit of length"),
-    **dict.fromkeys((90, 91), "absolute or incremental"),
-    **dict.fromkeys((94, 95), "kind of feed"),
-    **dict.fromkeys((96, 97), "kind of spindle speed"),
+    int(name[1:]): entry.group for name, entry in FUNCTIONS.items() if name[0] == "G" and name[1:].isdigit()
 }
 """G codes of this control by the group in which each excludes the others."""
 
-M_CODES = frozenset({0, 1, 2, 3, 4, 5, 7, 8, 9, 17, 30})
+NAMED_GROUPS: dict[str, str] = {
+    name: entry.group for name, entry in FUNCTIONS.items() if name[0] != "G" or not name[1:].isdigit()
+}
+"""Functions that have a name, by their group."""
+
+M_CODES = frozenset(M_FUNCTIONS)
 MOST_M = 5
 
-ARC = frozenset({"I", "K", "CR", "AR"})
+ARC = frozenset({"I", "J", "K", "CR", "AR", "I1", "K1"})
 SPINDLE = frozenset({"S", "LIMS"})
 CORNERS = frozenset({"CHF", "CHR", "RND"})
-LETTERS = frozenset({"G", "M", "X", "Z", "C", "I", "K", "F", "S"})
+LETTERS = frozenset({"G", "M", "X", "Y", "Z", "C", "I", "J", "K", "F", "S", "T", "D"})
 """Words that may stand without =."""
 
-ASSIGNED = frozenset({"X", "Z", "C", "I", "K", "F", "S", "CR", "AR", "CHF", "CHR", "RND", "LIMS"})
+POLAR = frozenset({"RP", "AP"})
+PLACES = frozenset({"X", "Y", "Z", "C", "RP", "AP", "ANG"})
+"""Words that move, or turn, something."""
+
+ASSIGNED = frozenset(WORDS) - {"SETMS"}
 """Words that take a value behind =."""
 
-KEYS = frozenset({"DIAMON", "DIAMOF", "TRANS", "ATRANS"})
+FRAMES = frozenset({"TRANS", "ATRANS", "ROT", "AROT", "SCALE", "ASCALE", "MIRROR", "AMIRROR"})
+KEYS = frozenset(NAMED_GROUPS)
 """Words without a value."""
 
+TARGETS = frozenset({"AC", "IC", "DC", "ACP", "ACN"})
 FORMS: dict[str, frozenset[str]] = {
-    **dict.fromkeys(AXES, frozenset({"AC", "IC", "DC", "ACP", "ACN"})),
-    "I": frozenset({"AC"}),
-    "K": frozenset({"AC"}),
+    **dict.fromkeys((*AXES, "SPOS", "SPOSA"), TARGETS),
+    **dict.fromkeys(("I", "J", "K"), frozenset({"AC"})),
+    **dict.fromkeys(("RP", "AP"), frozenset({"AC", "IC"})),
 }
 """Which words take a target in brackets."""
 
-VOCABULARY = LETTERS | ASSIGNED | KEYS
+VOCABULARY = LETTERS | ASSIGNED | KEYS | {"SETMS"}
 """Words that are no variable of the program."""
 
 REACH: dict[str, tuple[float, float]] = {
-    **dict.fromkeys(("X", "Z", "I", "K", "CR"), (-100_000.0, 100_000.0)),
+    **dict.fromkeys(("X", "Y", "Z", "X1", "Z1", "RP"), (-100_000.0, 100_000.0)),
+    **dict.fromkeys(("I", "J", "K", "CR", "I1", "K1"), (-100_000.0, 100_000.0)),
     "C": (-10_000_000.0, 10_000_000.0),
-    "AR": (0.0, 360.0),
-    **dict.fromkeys(CORNERS, (0.0, 10_000.0)),
-    "F": (-1_000_000.0, 1_000_000.0),
+    **dict.fromkeys(("SPOS", "SPOSA"), (-10_000_000.0, 10_000_000.0)),
+    **dict.fromkeys(("AR", "SF"), (0.0, 360.0)),
+    **dict.fromkeys(("AP", "ANG", "RPL"), (-360.0, 360.0)),
+    **dict.fromkeys((*CORNERS, "RNDM", "ADIS", "ADISPOS"), (0.0, 10_000.0)),
+    "OFFN": (-1000.0, 1000.0),
+    **dict.fromkeys(("DITS", "DITE"), (-1.0, 1000.0)),
+    **dict.fromkeys(("F", "FB", "FRC", "FRCM"), (-1_000_000.0, 1_000_000.0)),
+    "OVR": (1.0, 200.0),
     **dict.fromkeys(("S", "LIMS"), (-1_000_000.0, 1_000_000.0)),
+    "FP": (1.0, 4.0),
+    "T": (0.0, 32_000.0),
+    "D": (0.0, 9.0),
     "R": (-1e9, 1e9),
 }
 """Between what a number must lie to be meant at all."""
 
 MOST_R = 299
 LETTERS_OUTSIDE = {
-    "T": "tools are not part of this control's SINUMERIK subset; put the offset into G54 to G59",
-    "D": "tool offsets are not part of this control's SINUMERIK subset; use G54 to G59",
     "H": "H functions are not part of this control's SINUMERIK subset",
     "L": "L is a subprogram only as L with a whole number",
-    "Y": "this lathe has no axis Y",
     "A": "this lathe has no axis A",
     "B": "this lathe has no axis B",
-    "U": "incremental words are written with IC( ), such as X=IC(1)",
-    "W": "incremental words are written with IC( ), such as Z=IC(1)",
-    "J": "an arc in G18 has I and K",
+    "U": "this lathe has no axis U; incremental words are written with IC( ), such as X=IC(1)",
+    "W": "this lathe has no axis W; incremental words are written with IC( ), such as Z=IC(1)",
     "P": "P stands only behind the name of a subprogram",
     "R": "an R parameter stands behind = or is set with =, such as R1=10",
 }
 """Letters that a program of the trade may hold, and what to do about them here."""
 
 _OUTSIDE = """
-    AMIRROR AROT AROTS ASCALE ASPOS BRISK CALL CASE CFC CFIN CFTCP CIP CT CYCLE DEFAULT DEFINE DIAM90
-    DIAMCYCOF ENDPROC EXTERN FFWOF FFWON FRC FRCM G5 GOTOC GOTOS INVCCW INVCW MCALL MIRROR OEMIPO OFFN POLF
-    POS POSA PROC REPEATB REPOS RNDM ROT ROTS SAVE SBLOF SBLON SCALE SETAL SETMS SOFT SPCOF SPCON SPOS SUPA
-    TRACYL TRAFOOF TRANSMIT TURN VELOLIM WAITM WAITP WAITS WORKPIECE
+    AROTS ASPOS CYCLE DEFAULT DEFINE ENDPROC GOTOC OEMIPO POLF POS POSA REPOS ROTS SAVE SPCOF SPCON
+    VELOLIM WAITM WAITP WAITS
 """
-NAMES_OUTSIDE = frozenset(_OUTSIDE.split())
+NAMES_OUTSIDE = (frozenset(_OUTSIDE.split()) | OUTSIDE.keys()) - ASSIGNED
 """Names of the language that are no subprograms, and that this control does not execute."""
+
+WHY_OUTSIDE = OUTSIDE
+"""What to do instead, of those where something can be told."""

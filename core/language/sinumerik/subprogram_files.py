@@ -8,10 +8,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from core.language.sinumerik.sinumerik_lexer import lex_line
+from core.language.sinumerik.sinumerik_words import Line
 from core.language.source import Source
 
 HEADER = re.compile(r"\s*%_N_([A-Z0-9_]+)_(MPF|SPF)\s*(?:;.*)?", re.IGNORECASE)
 ENDING = ".SPF"
+PROGRAM_NAME = re.compile(r"[A-Z_][A-Z0-9_]{1,30}")
 # Nearly all lines begin with a number, or with a letter and a number; only the others can be calls.
 _MAY_CALL = re.compile(
     r"\s*(?:/[0-9]?)?\s*(?:[N:][0-9]+)?\s*(?:\w+\s*:)?\s*(?:L[0-9]|[A-Z_]{2})", re.IGNORECASE
@@ -43,8 +45,21 @@ def called_files(source: Source) -> Iterator[str]:
     """Names of the files, in capitals, of the subprograms that are called and not in the file itself."""
     inside = {section.name for section in sections(source)}
     for number, text in enumerate(source.lines, start=1):
-        if _MAY_CALL.match(text) and (call := lex_line(number, text).call) and call not in inside:
-            yield f"{call}{ENDING}"
+        if not _MAY_CALL.match(text):
+            continue
+        line = lex_line(number, text)
+        for name in _names(line):
+            if name not in inside:
+                yield f"{name}{ENDING}"
+
+
+def _names(line: Line) -> Iterator[str]:
+    """Programs that a line calls by name, and those that it hands over to a cycle as a contour."""
+    if line.call:
+        yield line.call
+        for argument in line.arguments or ():
+            if argument.text and PROGRAM_NAME.fullmatch(argument.text.upper()):
+                yield argument.text.upper()
 
 
 def program_name(source: Source) -> str:

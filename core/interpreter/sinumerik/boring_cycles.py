@@ -1,0 +1,59 @@
+"""CYCLE86, CYCLE87 and CYCLE88: boring that ends with the spindle held, or stopped for the operator."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from core.interpreter.actions import ProgramStop, SpindleLock, SpindleRun, SpindleStop
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.sinumerik.cycle_parameters import Cycle, Step, dwell
+from core.interpreter.sinumerik.drilling_cycles import approach, hole_of, needed_feed, seconds
+from core.interpreter.sinumerik.spindle_and_dwell import demand_position, shortest_turn
+
+NO_DIRECTION = 61102
+
+
+def _turning(cycle: Cycle) -> list[Step]:
+    """The spindle in the direction SDIR. Raises ProgramError."""
+    direction = cycle.number("SDIR")
+    if direction not in {3.0, 4.0}:
+        raise cycle.wrong("SDIR", "is neither 3 nor 4", "Write the direction of the spindle.", NO_DIRECTION)
+    modal, sign = cycle.state.modal, 1 if direction == 3.0 else -1
+    if not modal.rpm or modal.css:
+        raise cycle.refused("speed-missing", f"{cycle.line.call} needs S in rpm.", "Write G97 S before it.")
+    if modal.spindle == sign:
+        return []
+    return [Step(0.0, 0.0, action=SpindleRun(sign * modal.rpm), spindle=sign)]
+
+
+def lift_off(cycle: Cycle) -> Iterator[Block]:
+    """CYCLE86: at the bottom the spindle is held at POSS, the edge lifted by RPA and RPAP, and rapid out."""
+    hole, state = hole_of(cycle), cycle.state
+    demand_position(state, lambda text, hint: cycle.refused("spindle-position", text, hint))
+    cycle.zero_only("RPO", "this lathe has no axis Y")
+    angle = cycle.number("POSS")
+    if not 0.0 <= angle < 360.0:
+        raise cycle.wrong("POSS", "is an angle of 0 to under 360", "Correct it.")
+    aside, up = cycle.length("RPA"), cycle.length("RPAP")
+    if up * hole.down > 0.0:
+        raise cycle.wrong("RPAP", "leads on into the hole", "Correct its sign.")
+    x = cycle.x
+    steps = [
+        *approach(cycle, hole), *_turning(cycle), Step(x, hole.bottom, needed_feed(cycle)),
+        *dwell(seconds(cycle, "DTB")), Step(0.0, 0.0, action=SpindleLock(orient=False), spindle=0),
+    ]  # fmt: skip
+    if turn := shortest_turn(state, angle):
+        steps.append(Step(x, hole.bottom, state.setup.limits.speeds[2], turn=turn))
+    steps += [Step(x + aside, hole.bottom + up), Step(x + aside, hole.retract), Step(x, hole.retract)]
+    return cycle.blocks(steps)
+
+
+def stop(cycle: Cycle) -> Iterator[Block]:
+    """CYCLE87, CYCLE88: at the bottom the spindle stops, M0 waits for the operator, and rapid out."""
+    hole = hole_of(cycle)
+    steps = [
+        *approach(cycle, hole), *_turning(cycle), Step(cycle.x, hole.bottom, needed_feed(cycle)),
+        *dwell(seconds(cycle, "DTB")), Step(0.0, 0.0, action=SpindleStop(), spindle=0),
+        Step(0.0, 0.0, action=ProgramStop(optional=False)), Step(cycle.x, hole.retract),
+    ]  # fmt: skip
+    return cycle.blocks(steps)

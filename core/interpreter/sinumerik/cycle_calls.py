@@ -1,0 +1,78 @@
+"""Which cycle a call of CYCLE… runs, and what all of them share before the first move."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+
+from core.geometry.lines_and_arcs import Element
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.sinumerik.boring_cycles import lift_off, stop
+from core.interpreter.sinumerik.cycle_contour import WRONG_CONTOUR, contour_lines, read_contour
+from core.interpreter.sinumerik.cycle_parameters import Cycle
+from core.interpreter.sinumerik.drilling_cycles import bore, drill, peck
+from core.interpreter.sinumerik.groove_cycle import groove
+from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.stock_removal import stock_removal
+from core.interpreter.sinumerik.subprogram_flow import Flow
+from core.interpreter.sinumerik.tapping_cycles import compensating, rigid
+from core.interpreter.sinumerik.thread_chain_cycle import thread_chain
+from core.interpreter.sinumerik.thread_cycle import thread_cycle
+from core.interpreter.sinumerik.undercut_cycles import shoulder_undercut, thread_undercut
+from core.language.diagnostics import Diagnostic, ProgramError
+from core.language.sinumerik.sinumerik_words import Line
+
+_RUN: Mapping[str, Callable[[Cycle], Iterator[Block]]] = {
+    "CYCLE81": drill,
+    "CYCLE82": drill,
+    "CYCLE83": peck,
+    "CYCLE84": rigid,
+    "CYCLE840": compensating,
+    "CYCLE85": bore,
+    "CYCLE86": lift_off,
+    "CYCLE87": stop,
+    "CYCLE88": stop,
+    "CYCLE89": bore,
+    "CYCLE93": groove,
+    "CYCLE94": shoulder_undercut,
+    "CYCLE96": thread_undercut,
+    "CYCLE97": thread_cycle,
+    "CYCLE98": thread_chain,
+    "CYCLE99": thread_cycle,
+}
+
+
+def cycle_blocks(state: State, line: Line, flow: Flow) -> Iterator[Block]:
+    """All blocks of a standard cycle. Raises ProgramError before the first of them."""
+    cycle = Cycle(state, line)
+    if line.call == "CYCLE95":
+        return stock_removal(cycle, _contour(cycle, flow))
+    return _RUN[line.call](cycle)
+
+
+def _contour(cycle: Cycle, flow: Flow) -> list[Element]:
+    named = cycle.text("NPP")
+    if not named:
+        hint = 'Write "NAME" of a subprogram, or "START:END" of two labels.'
+        raise cycle.wrong("NPP", "names no contour", hint, WRONG_CONTOUR)
+    known = flow.routine(named)
+    lines = contour_lines(named, flow.running, known)
+    if lines is None:
+        if ":" in named:
+            raise cycle.wrong("NPP", f"names labels that are not here: {named}", "Correct them.", 14080)
+        hint = f"Put {named}.spf beside the main program, or %_N_{named}_SPF into its file."
+        raise cycle.wrong(
+            "NPP", f"names the subprogram {named}, which does not exist", hint, "subprogram-missing"
+        )
+    try:
+        return read_contour(cycle.state, lines)
+    except ProgramError as problem:
+        if known is None or not known.shown:
+            raise
+        raise ProgramError(_told_at(cycle.line, known.shown, problem.diagnostic)) from None
+
+
+def _told_at(line: Line, shown: str, found: Diagnostic) -> Diagnostic:
+    """A mistake in the contour's own file, at the line of the cycle."""
+    message = f"{shown} line {found.line}: {found.message}"
+    return replace(found, line=line.number, column=line.call_column, message=message)

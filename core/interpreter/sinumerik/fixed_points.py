@@ -1,0 +1,94 @@
+"""G74 and G75: in rapid to the home of the machine, or to a fixed point of its axes, without any offset."""
+
+from __future__ import annotations
+
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.sinumerik.linear_moves import AxisTravel, rapid
+from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.language.diagnostics import ProgramError
+from core.language.sinumerik.sinumerik_words import Word
+from core.language.sinumerik.word_table import BLOCKWISE, MOTION
+
+_AXES = frozenset({"X", "Z", "X1", "Z1"})
+
+
+def home(state: State, statement: Statement) -> Block:
+    """G74: to the home of the axes that are named, X1=0 Z1=0. Raises ProgramError."""
+    named = _named(state, statement, _AXES)
+    for word in named:
+        if state.number(statement, word) != 0.0:
+            text = f"{word.text}: G74 goes to the home of the machine."
+            raise statement.refuse(word, "word-unused", text, f"Write {word.name}=0.")
+    return _to(state, statement, dict.fromkeys((word.name[0] for word in named), 0.0))
+
+
+def fixed_point(state: State, statement: Statement) -> Block:
+    """G75: to a fixed point of the axes that are named, FP=1 to 4; the value of an axis word says nothing.
+
+    Fixed points are the machine file's, in machine coordinates. Raises ProgramError for one that it has not.
+    """
+    named = _named(state, statement, _AXES | {"FP"})
+    number = _number(state, statement)
+    ends = {}
+    for word in named:
+        axis = word.name[0]
+        points = state.setup.limits.fixed_points.get(axis, ())
+        if number > len(points):
+            raise _missing(statement, axis, number, len(points))
+        ends[axis] = points[number - 1]
+        if state.number(statement, word) != 0.0:
+            _tell_value(state, statement, word, ends[axis])
+    return _to(state, statement, ends)
+
+
+def _named(state: State, statement: Statement, words: frozenset[str]) -> list[Word]:
+    """The axis words of the block, beside which there is nothing. Raises ProgramError."""
+    word = statement.g[BLOCKWISE]
+    named = [each for name, each in statement.words.items() if name in _AXES]
+    others = statement.words.keys() - words or statement.m or statement.sets
+    if not named or others or statement.g.keys() - {BLOCKWISE, MOTION}:
+        text = f"{word.text} names the axes that go there, each with 0, and nothing else."
+        raise statement.refuse(word, "own-block", text, f"Write {word.text} X1=0 Z1=0.")
+    if (code := state.modal.nose_comp) != 40:
+        text = f"{word.text} leaves the contour while G{code} is on."
+        raise statement.refuse(word, "comp-with", text, "Write G40 and a move before it.")
+    return named
+
+
+def _number(state: State, statement: Statement) -> int:
+    """Which fixed point: FP, or the first."""
+    word = statement.words.get("FP")
+    if word is None:
+        return 1
+    number = state.number(statement, word)
+    if number not in {1, 2, 3, 4}:
+        text = f"{word.text} is no fixed point."
+        raise statement.refuse(word, "fixed-point", text, "Write FP=1 to FP=4.")
+    return int(number)
+
+
+def _missing(statement: Statement, axis: str, number: int, known: int) -> ProgramError:
+    key = f"fixed_points under [axis.{axis}] of the machine file"
+    word = statement.words.get("FP") or statement.g[BLOCKWISE]
+    if known:
+        text = f"{word.text}: the machine file names {known} of {axis}, and number {number} is asked for."
+        return statement.refuse(word, "fixed-point", text, f"Correct FP, or add to {key}.")
+    text = f"{word.text}: the machine file names no fixed point of {axis}."
+    hint = f"Add {key}, or write SUPA G0 D0 with X and Z of the machine."
+    return statement.refuse(word, "fixed-point", text, hint)
+
+
+def _tell_value(state: State, statement: Statement, word: Word, end: float) -> None:
+    """Who writes X150 may expect to arrive there."""
+    text = f"{word.text} beside G75 says nothing: the axis goes to {end:g} mm of the machine."
+    state.log.add(statement.warning(word, "fixed-point-value", text, f"Write {word.name[0]}0."))
+
+
+def _to(state: State, statement: Statement, ends: dict[str, float]) -> Block:
+    """The rapid to these machine coordinates; all axes end together."""
+    state.threads = ()
+    x, z = ends.get("X", state.x), ends.get("Z", state.z)
+    modal = state.modal
+    travel = AxisTravel(state.x, state.z, state.c, x, z, state.c, modal, modal.offset_x, modal.offset_z)
+    return rapid(state, statement, travel)

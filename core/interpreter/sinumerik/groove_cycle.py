@@ -1,0 +1,153 @@
+"""CYCLE93: a groove with square flanks, outside or inside, as wide as the tool or wider.
+
+The tool's width is the way between its two cutting edges, D and _DN of the table, or D+1, as on the control.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import ceil
+from typing import NamedTuple
+
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.sinumerik.cycle_parameters import MOST_PASSES, RETRACT, Cycle, Step, dwell
+from core.tool_edges import edge_key, edge_name, edge_of, tool_of
+
+WRONG_WIDTH = 61602
+WRONG_FORM = 61603
+NO_TOOL = 61000
+_SAME = 1e-6  # mm
+_WHOLE = 1e-6
+_OVERLAP = 0.95  # of the tool's width: what a cut beside another takes at most
+
+
+class Groove(NamedTuple):
+    """mm, X a radius. ``out`` is the sign of X from the bottom to the open side; the groove lies between
+    ``low`` and ``high`` along Z, from ``top`` to ``bottom``.
+    """
+
+    out: float
+    top: float
+    bottom: float
+    low: float
+    high: float
+
+
+def groove_of(cycle: Cycle) -> Groove:
+    """The groove that a call asks for. Raises ProgramError by the parameter's name."""
+    kind = (cycle.machining("VARI", range(1, 19)) - 1) % 10 + 1
+    if kind > 8:
+        raise cycle.wrong("VARI", "is none of 1 to 8 and 11 to 18", "Correct it.", 61002)
+    slanted = "write a groove with slanted flanks as a contour of CYCLE95"
+    for name in ("STA1", "ANG1", "ANG2"):
+        cycle.zero_only(name, slanted)
+    for name in ("RCO1", "RCO2", "RCI1", "RCI2"):
+        cycle.zero_only(name, "write its corners as a contour of CYCLE95, or chamfer them with G1")
+    if kind % 2 == 0:
+        hint = "Write a groove in a face as a contour of CYCLE95, or as G1 blocks."
+        raise cycle.wrong("VARI", f"is {kind}, a groove in a face", hint, "not-in-subset")
+    inside, right = kind in {3, 7}, kind > 4
+    x, z = cycle.over_zero("SPD") / 2.0, cycle.needed("SPL")
+    width, depth = cycle.over_zero("WIDG"), cycle.over_zero("DIAG", WRONG_FORM)
+    out = -1.0 if inside else 1.0
+    low, high = (z - width, z) if right else (z, z + width)
+    if x - out * depth < 0.0:
+        raise cycle.wrong("DIAG", "reaches beyond the axis", "Correct SPD or DIAG.", WRONG_FORM)
+    return Groove(out, x, x - out * depth, low, high)
+
+
+def tool_width(cycle: Cycle) -> tuple[float, bool]:
+    """Width of the tool, mm, and whether the edge in force is the one at the lower end of it.
+
+    Raises ProgramError where the table does not have both edges.
+    """
+    state = cycle.state
+    key, tools = state.modal.tool, state.setup.tools
+    if not key or state.modal.edge == 0:
+        text = f"{cycle.line.call} needs a tool with its offset."
+        raise cycle.refused(NO_TOOL, text, "Write T and D before it.")
+    number = cycle.whole("_DN", 0, 0, 9) or edge_of(key) + 1
+    other = edge_key(tool_of(key), number)
+    if key not in tools or other not in tools:
+        name = edge_name(other)
+        text = f"{cycle.line.call} reckons with the tool's width, and {name}, its other corner, is not set."
+        raise cycle.refused(WRONG_WIDTH, text, f"Set {edge_name(other)} on the page of tool offsets (F8).")
+    here, there = tools[key], tools[other]
+    # A corner further to plus has the smaller machine position at part zero.
+    way = here.z - there.z
+    if abs(way) < _SAME:
+        text = f"{edge_name(key)} and {edge_name(other)} stand in one place: the tool has no width."
+        raise cycle.refused(WRONG_WIDTH, text, "Correct the offsets of its two corners.")
+    return abs(way), way > 0.0
+
+
+def groove(cycle: Cycle) -> Iterator[Block]:
+    """Cuts side by side, each in steps of IDEP, then the flanks and the bottom. Raises ProgramError."""
+    shape = groove_of(cycle)
+    width, at_low = tool_width(cycle)
+    bottom_left, flank_left = cycle.size("FAL1"), cycle.size("FAL2")
+    room = shape.high - shape.low - 2.0 * flank_left - width
+    if room < -_SAME:
+        text = f"is {shape.high - shape.low:g} with FAL2 on both flanks, and the tool is {width:g} wide"
+        raise cycle.wrong("WIDG", text, "Take a narrower tool.", WRONG_WIDTH)
+    feed = cycle.state.modal.feed
+    if feed is None:
+        raise cycle.refused(10860, "no feedrate is programmed.", "Write F before it.")
+    off = cycle.size("_VRT") or RETRACT
+    plan = _Plan(cycle, shape, feed, shape.top + shape.out * off, 0.0 if at_low else width)
+    steps = plan.begin()
+    bottom = shape.bottom + shape.out * bottom_left
+    count = ceil(max(room, 0.0) / (width * _OVERLAP) - _WHOLE)
+    if count > MOST_PASSES:
+        raise cycle.wrong("WIDG", f"would take {count:,} cuts", "Look for a lost decimal point.")
+    for k in range(count + 1):
+        place = shape.high - flank_left - width - (room * k / count if count else 0.0)
+        steps += plan.plunge(place, bottom)
+    if bottom_left or flank_left or count:
+        steps += plan.finish(width)
+    return cycle.blocks(steps)
+
+
+class _Plan:
+    """Motions by depth and place; a place is Z of the tool's lower corner."""
+
+    def __init__(self, cycle: Cycle, shape: Groove, feed: float, clear: float, corner: float) -> None:
+        self._cycle, self._shape, self._feed = cycle, shape, feed
+        self._clear, self._corner = clear, corner
+        self._infeed, self._dwell = cycle.size("IDEP"), cycle.number("DTB")
+        if self._dwell < 0.0:
+            raise cycle.wrong("DTB", "is a time in seconds", "Correct it.")
+
+    def begin(self) -> list[Step]:
+        """Off the part in depth first, from where the tool stands."""
+        cycle, out = self._cycle, self._shape.out
+        return [] if out * cycle.x >= out * self._clear else [Step(self._clear, cycle.z)]
+
+    def plunge(self, place: float, bottom: float) -> list[Step]:
+        """Down in steps of IDEP, each with a short way back to break the chip; dwell; out."""
+        shape = self._shape
+        whole = abs(bottom - shape.top)
+        count = max(ceil(whole / self._infeed - _WHOLE), 1) if self._infeed else 1
+        if count > MOST_PASSES:
+            raise self._cycle.wrong("IDEP", f"would take {count:,} steps", "Look for a lost decimal point.")
+        steps = [self._to(self._clear, place)]
+        for k in range(1, count + 1):
+            depth = shape.top - shape.out * whole * k / count
+            steps.append(self._to(depth, place, self._feed))
+            if k < count:
+                steps.append(self._to(depth + shape.out * RETRACT, place))
+        return [*steps, *dwell(self._dwell), self._to(self._clear, place)]
+
+    def finish(self, width: float) -> list[Step]:
+        """Down each flank and along the bottom to the middle."""
+        shape, feed = self._shape, self._feed
+        high, middle = shape.high - width, (shape.low + shape.high - width) / 2.0
+        return [
+            self._to(self._clear, high), self._to(shape.bottom, high, feed),
+            self._to(shape.bottom, middle, feed), self._to(self._clear, middle),
+            self._to(self._clear, shape.low), self._to(shape.bottom, shape.low, feed),
+            self._to(shape.bottom, middle, feed), self._to(self._clear, middle),
+        ]  # fmt: skip
+
+    def _to(self, depth: float, place: float, feed: float | None = None) -> Step:
+        return Step(depth, place + self._corner, feed)

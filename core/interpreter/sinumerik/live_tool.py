@@ -1,0 +1,80 @@
+"""The live tool as spindle 2: S2=, M2=3, M2=5, and S, M3, M5 while SETMS(2) makes it the master."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from core.interpreter.actions import Output
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.language.sinumerik.sinumerik_words import Word
+from core.language.sinumerik.word_table import DWELL
+
+NUMBER = 2
+_TURNS = frozenset({3, 4, 5})
+
+
+def live_words(state: State, statement: Statement) -> None:
+    """Take out of the block what is meant for the live tool. Raises ProgramError where there is none."""
+    for word in statement.live:
+        _demand(state, statement, word)
+    masters = [
+        each for each in (*statement.live, statement.words.get("SETMS")) if each and each.name == "SETMS"
+    ]
+    if masters:
+        state.master = NUMBER if masters[0].spindle == NUMBER else 1
+    if state.master != NUMBER or DWELL in statement.g:
+        return
+    if (speed := statement.words.get("S")) and not speed.spindle:
+        statement.live.append(statement.words.pop("S"))
+    for code in _TURNS & statement.m.keys():
+        if not statement.m[code].spindle:
+            statement.live.append(statement.m.pop(code))
+
+
+def _demand(state: State, statement: Statement, word: Word) -> None:
+    if not state.setup.limits.live_output:
+        text = f"{word.text}: this machine has one spindle, and no output that turns a live tool."
+        hint = "Take it out, or name an output live under [io.out] of the machine file."
+        raise statement.refuse(word, "one-spindle", text, hint)
+
+
+def live_tool(state: State, statement: Statement) -> Iterator[Block]:
+    """Speed and start or stop of the live tool. Raises ProgramError."""
+    for word in statement.live:
+        if word.name == "S":
+            _speed(state, statement, word)
+    for word in statement.live:
+        if word.name == "M":
+            yield from _turn(state, statement, word)
+
+
+def _speed(state: State, statement: Statement, word: Word) -> None:
+    value = state.number(statement, word)
+    if value < 0.0:
+        text = f"{word.text}: the speed has no sign; M3 and M4 say the direction."
+        raise statement.refuse(word, "speed-sign", text, "Take the sign out.")
+    state.live_speed = value
+    if state.live_rpm:
+        state.live_rpm = value
+    if "live-speed" not in state.told:
+        state.told.add("live-speed")
+        text = f"{word.text}: the live tool is switched on and off here; its speed is set at its own drive."
+        state.log.add(statement.warning(word, "live-speed", text, f"Set it to {value:g} rpm by hand."))
+
+
+def _turn(state: State, statement: Statement, word: Word) -> Iterator[Block]:
+    code = int(word.value or 0)
+    if code == 4:
+        text = f"{word.text}: the live tool turns one way."
+        raise statement.refuse(word, "live-direction", text, "Write M3, with a tool of that hand.")
+    on = code == 3
+    if on and not state.live_speed:
+        text = f"{word.text} starts the live tool, and no S has said how fast."
+        raise statement.refuse(word, "speed-missing", text, "Write S2= in the block.")
+    state.live_rpm = state.live_speed if on else 0.0
+    name = state.setup.limits.live_output
+    outputs = state.modal.outputs | {name} if on else state.modal.outputs - {name}
+    state.adopt(state.modal._replace(outputs=outputs))
+    yield state.action(statement.line.number, word.text, Output(name, on))

@@ -1,0 +1,91 @@
+"""M functions beside spindle and end: coolant, tool change, gear steps, and those of the machine file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from core.interpreter.actions import Coolant, Output
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.machine_requirements import BUILDERS_M, Need, how_bound
+from core.interpreter.sinumerik.modes_and_offsets import tell_idle
+from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.language.diagnostics import ProgramError
+from core.language.sinumerik.sinumerik_words import Word
+from core.language.sinumerik.word_table import M_FUNCTIONS
+
+_OF_ISO = frozenset({98, 99})  # which call and end subprograms in the other language of this control
+
+
+def check_m(state: State, statement: Statement, lacking: list[Need]) -> None:
+    """What the M functions of the block mean; into ``lacking`` goes the builder's that nothing here answers.
+
+    The control of the maker hands a code that it does not know to the builder's PLC and raises no alarm.
+    Raises ProgramError for one that the machine file does not switch on.
+    """
+    limits = state.setup.limits
+    for code, word in statement.m.items():
+        if code in limits.m_ignored:
+            tell_idle(state, statement, word, f"M{code}", "the machine file says that it does nothing")
+        elif code in M_FUNCTIONS:
+            tell_idle(state, statement, word, f"M{code}", _idle(state, code))
+        elif code in limits.m_outputs:
+            continue
+        elif code in limits.m_disabled or code in _OF_ISO:
+            raise _refused(state, statement, code, word)
+        else:
+            lacking.append(Need(f"{BUILDERS_M}{code}", statement.line.number))
+            _tell_unanswered(state, statement, code, word)
+
+
+def _idle(state: State, code: int) -> str:
+    if code == 6 and 6 not in state.setup.limits.m_outputs:
+        return "T changes the tool by itself on this machine"
+    return M_FUNCTIONS[code].idle
+
+
+def _refused(state: State, statement: Statement, code: int, word: Word) -> ProgramError:
+    if code in state.setup.limits.m_disabled:
+        text = f"M{code} is defined, and not switched on in the machine file."
+        return statement.refuse(word, "m-disabled", text, f"Set enabled = true for {code} under [m_codes].")
+    text = f"M{code} belongs to the ISO language of this control."
+    return statement.refuse(word, "m-unknown", text, "Write the name of a subprogram, M17 at its end.")
+
+
+def _tell_unanswered(state: State, statement: Statement, code: int, word: Word) -> None:
+    """Say once that a function is the builder's, and that the machine will not start with it."""
+    if f"M{code}" in state.told:
+        return
+    state.told.add(f"M{code}")
+    what = f"M{code} is the machine builder's, and nothing on this machine answers it"
+    text = f"{what}: the machine will not start."
+    hint = how_bound(code)
+    state.log.add(statement.warning(word, "m-unanswered", text, f"{hint[0].upper()}{hint[1:]}."))
+
+
+def functions_before(state: State, statement: Statement) -> Iterator[Block]:
+    """What is switched on, before the motion of the block: coolant, and outputs of the machine file."""
+    yield from _outputs(state, statement, on=True)
+    yield from _coolant(state, statement, {7, 8})
+
+
+def functions_after(state: State, statement: Statement) -> Iterator[Block]:
+    """What is switched off, behind the motion."""
+    yield from _coolant(state, statement, {9})
+    yield from _outputs(state, statement, on=False)
+
+
+def _outputs(state: State, statement: Statement, *, on: bool) -> Iterator[Block]:
+    for code in statement.m:
+        name, wanted = state.setup.limits.m_outputs.get(code, ("", not on))
+        if name and wanted is on:
+            outputs = state.modal.outputs | {name} if on else state.modal.outputs - {name}
+            state.adopt(state.modal._replace(outputs=outputs))
+            yield state.action(statement.line.number, f"M{code}", Output(name, on))
+
+
+def _coolant(state: State, statement: Statement, codes: set[int]) -> Iterator[Block]:
+    code = next((code for code in sorted(codes) if code in statement.m), None)
+    if code is not None:
+        state.adopt(state.modal._replace(coolant=code != 9))
+        yield state.action(statement.line.number, f"M{code}", Coolant(code != 9))

@@ -1,0 +1,122 @@
+"""What a call hands over to PROC: values, VAR by reference, defaults; and what SAVE brings back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from core.interpreter.job_setup import ZeroOffset
+from core.interpreter.modal_state import Modal
+from core.interpreter.sinumerik.programmed_frame import ProgrammedFrame
+from core.interpreter.sinumerik.sinumerik_state import Motion, State
+from core.interpreter.sinumerik.variables import Scope, place_name
+from core.language.diagnostics import ProgramError
+from core.language.formulas import Parameter as Variable
+from core.language.sinumerik.call_arguments import Argument, Parameter
+from core.language.sinumerik.program_jumps import Jump
+from core.language.sinumerik.sinumerik_alarms import fault
+from core.language.sinumerik.sinumerik_words import Line
+
+TOO_MANY = 12330
+"""The alarm of a call whose arguments do not fit the parameters."""
+
+_GROUPS = ("absolute", "metric", "diameter", "per_rev", "feed", "settable")
+
+
+@dataclass(frozen=True, slots=True)
+class Saved:
+    """Modal G functions and the frame at the call of a program with SAVE."""
+
+    modal: Modal
+    motion: Motion
+    plane: int
+    settable: ZeroOffset
+    programmed: ProgrammedFrame
+
+    @classmethod
+    def of(cls, state: State) -> Saved:
+        """What is in force now."""
+        return cls(state.modal, state.motion, state.plane, state.settable, state.programmed)
+
+    def bring_back(self, state: State) -> None:
+        """G functions and frame as they were; F, S and M stay what the program has made them."""
+        state.motion, state.plane = self.motion, self.plane
+        state.settable, state.programmed = self.settable, self.programmed
+        kept = {name: getattr(self.modal, name) for name in _GROUPS}
+        if self.modal.per_rev == state.modal.per_rev:
+            kept["feed"] = state.modal.feed
+        state.adopt(state.modal._replace(**kept, rapid=self.motion == 0))
+        state.derive_offsets()
+
+
+def handed_over(state: State, line: Line, heading: Jump | None) -> tuple[Scope, list[tuple[str, str]]]:
+    """The variables that the program begins with, and its VAR parameters with the caller's place of each.
+
+    Raises ProgramError where the arguments do not fit.
+    """
+    parameters = () if heading is None else heading.parameters
+    arguments = line.arguments or ()
+    if len(arguments) > len(parameters):
+        text = f"{line.call} takes {_count(len(parameters))}, and {len(arguments)} are handed over."
+        hint = "Correct the call, or the PROC line of the subprogram."
+        raise _refused(line, arguments[len(parameters)].column, TOO_MANY, text, hint)
+    scope, references = Scope(), list[tuple[str, str]]()
+    for place, parameter in enumerate(parameters):
+        argument = arguments[place] if place < len(arguments) else None
+        _hand_over(state, line, parameter, argument, scope, references)
+    return scope, references
+
+
+def _hand_over(
+    state: State,
+    line: Line,
+    parameter: Parameter,
+    argument: Argument | None,
+    scope: Scope,
+    references: list[tuple[str, str]],
+) -> None:
+    given = argument if argument is not None and argument.given else parameter.default
+    if parameter.by_reference:
+        references.append((parameter.name, _place(state, line, parameter, argument)))
+    if given is None:  # what is left out is 0, and an empty text
+        _keep_nothing(parameter, scope)
+    elif given.text is not None:
+        scope.texts[parameter.name] = given.text
+    elif given.formula is not None:
+        scope.numbers[parameter.name] = _value(state, line, parameter, given)
+
+
+def _keep_nothing(parameter: Parameter, scope: Scope) -> None:
+    if parameter.kind in {"STRING", "AXIS"}:
+        scope.texts[parameter.name] = ""
+    else:
+        scope.numbers[parameter.name] = 0.0
+
+
+def _value(state: State, line: Line, parameter: Parameter, given: Argument) -> float:
+    assert given.formula is not None
+    value = state.worth(given.formula, lambda c, t, h: _refused(line, given.column, c, t, h))
+    if parameter.kind == "INT" and value != round(value):
+        return float(round(value))
+    return value
+
+
+def _place(state: State, line: Line, parameter: Parameter, argument: Argument | None) -> str:
+    """The caller's variable that VAR writes back to."""
+    formula = None if argument is None else argument.formula
+    if not isinstance(formula, Variable):
+        text = f"{parameter.name} of {line.call} is VAR and takes a variable."
+        column = line.call_column if argument is None else argument.column
+        raise _refused(line, column, TOO_MANY, text, "Hand over a variable or an R parameter.")
+
+    def refuse(code: int | str, text: str, hint: str) -> ProgramError:
+        return _refused(line, line.call_column, code, text, hint)
+
+    return place_name(formula.letters, formula.number, lambda index: state.worth(index, refuse), refuse)
+
+
+def _count(count: int) -> str:
+    return f"{count} parameter{'s' if count != 1 else ''}" if count else "no parameters"
+
+
+def _refused(line: Line, column: int, code: int | str, text: str, hint: str) -> ProgramError:
+    return ProgramError(fault(line.number, column, code, line.block, text, hint))

@@ -1,0 +1,345 @@
+"""G41, G42 and G40: the nose beside the contour, NORM and KONT to it and off it, G450 and G451 at corners.
+
+The contour is kept until the move that leaves it is known. What is handed out is the way of the tip: the
+nose's centre runs its radius beside the contour, and the tip lies from it as the tip quadrant says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from math import acos, atan2, cos, dist, pi, sin
+from typing import NamedTuple
+
+from core.geometry.contour_offset import GougeError, Offset, Piece
+from core.geometry.intersections import clearance
+from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Line, Point, turn
+from core.interpreter.actions import ProgramEnd, ToolChange
+from core.interpreter.adjusted_moves import element_of, standstill_at
+from core.interpreter.diagnostic_log import Log
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.nose_clearance import cuts_in
+from core.interpreter.sinumerik.moves_along import along, inserted
+from core.interpreter.sinumerik.sinumerik_state import State
+from core.language.diagnostics import ProgramError
+from core.language.sinumerik.sinumerik_alarms import fault
+from core.tool_edges import TIP_DIRECTIONS
+
+_STRAIGHT = frozenset({Kind.FEED, Kind.RAPID})
+_FOLLOWED = _STRAIGHT | {Kind.ARC}
+_TOUCHES = 0.002  # mm
+_SHARPEST = 2.0 * pi / 3.0  # rad of a turn that G451 still goes round by the intersection
+
+
+@dataclass(slots=True)
+class _Move:
+    """A programmed move and what stands still behind it."""
+
+    block: Block
+    after: list[Block] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class _Contour:
+    """What is kept between G41 or G42 and the move behind G40; ``left`` mm to the left of it runs the centre.
+
+    ``tip`` is where the tip lies from the centre, mm: X, Z.
+    """
+
+    approach: _Move
+    left: float
+    tip: Point
+    rounded: bool
+    round_ends: bool
+    moves: list[_Move] = field(default_factory=list)
+
+    @property
+    def radius(self) -> float:
+        return abs(self.left)
+
+
+class Compensation:
+    """Takes the blocks of a program in order; while G41 or G42 is on they come out beside the contour."""
+
+    def __init__(self, state: State, log: Log, *, in_plane: bool = False) -> None:
+        self._state, self._log = state, log
+        self._in_plane = in_plane  # of TRANSMIT or TRACYL: C of a block is its depth, which may change
+        self._contour: _Contour | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether a contour is under way, which no other pass can begin in."""
+        return self._contour is not None
+
+    def drop(self) -> None:
+        """Forget what is held, after an error."""
+        self._contour = None
+
+    def take(self, block: Block) -> Iterator[Block]:
+        """Yields what no later block can change. Raises ProgramError where the nose cannot follow."""
+        contour, code = self._contour, block.modal.nose_comp
+        ends = isinstance(block.action, ProgramEnd)
+        if contour is None:
+            if block.moves and code != 40:
+                self._begin(block)
+            else:
+                yield block
+        elif block.action is not None and not (ends and code == 40):
+            self._rest(contour, block)
+        elif code == 40:
+            self._contour = None
+            yield from self._close(contour, block)
+        else:
+            self._follow(contour, block)
+
+    def end(self) -> Iterator[Block]:
+        """No block comes any more. Raises ProgramError where a contour is open."""
+        contour, self._contour = self._contour, None
+        if contour is not None:
+            raise _open(_last(contour).block)
+        yield from ()
+
+    def _begin(self, block: Block) -> None:
+        """The move that leads to the contour."""
+        state, code = self._state, block.modal.nose_comp
+        if block.kind not in _STRAIGHT or self._turns(block):
+            text = f"the first move with G{code} is no straight line."
+            raise _fault(block, "comp-approach", text, "Approach with G0 or G1, and then begin the contour.")
+        if not state.modal.edge:
+            text = f"G{code} needs a tool and its cutting edge."
+            raise _fault(block, "comp-no-edge", text, "Write T and D before it.")
+        edge = state.edge
+        if not edge.nose_radius:
+            text = f"the nose radius of the tool is 0: G{code} compensates nothing."
+            self._warn(block, "comp-no-radius", text, "Enter the nose radius among the offsets (F8).")
+        elif not edge.quadrant:
+            text = f"the tool has no tip quadrant: G{code} takes its offset as that of the nose's centre."
+            self._warn(block, "comp-no-quadrant", text, "Enter the tip quadrant (F8); 9 says the centre.")
+        # G42 is to the right with X up, which is to the left with X down, as blocks count.
+        side = 1.0 if (code == 42) is not state.programmed.mirrored else -1.0
+        z, x = TIP_DIRECTIONS[edge.quadrant]
+        tip = x * edge.nose_radius, z * edge.nose_radius
+        self._contour = _Contour(_Move(block), side * edge.nose_radius, tip, state.rounded, state.round_ends)
+
+    def _rest(self, contour: _Contour, block: Block) -> None:
+        """A block in which nothing moves: at the compensated end of the move before it."""
+        if isinstance(block.action, ProgramEnd):
+            raise _open(block)
+        if isinstance(block.action, ToolChange):
+            text = "T or D stands before the move that leaves the contour."
+            raise _fault(block, "comp-with", text, "Write a move behind G40 first.")
+        _last(contour).after.append(block)
+
+    def _follow(self, contour: _Contour, block: Block) -> None:
+        """One more move of the contour."""
+        first, code = contour.approach.block, block.modal.nose_comp
+        if code != first.modal.nose_comp:
+            text = f"G{code} follows G{first.modal.nose_comp} on the contour."
+            raise _fault(block, "comp-with", text, "Leave the contour with G40 before it.")
+        if block.kind not in _FOLLOWED or self._turns(block):
+            what = "C turns" if self._turns(block) else "a thread is cut"
+            raise _fault(block, "comp-with", f"{what} while G{code} is on.", "Write G40 before it.")
+        if (block.offset_x, block.offset_z) != (first.offset_x, first.offset_z):
+            text = f"the zero changes while G{code} is on."
+            raise _fault(block, "comp-with", text, "Write G40 and a move before it.")
+        if (block.x, block.z) == (block.x0, block.z0) and block.kind is not Kind.ARC:
+            _last(contour).after.append(block)
+        else:
+            contour.moves.append(_Move(block))
+
+    def _close(self, contour: _Contour, block: Block) -> Iterator[Block]:
+        """The contour, and the move of G40 that leaves it; the program's end leaves the nose where it is."""
+        code = contour.approach.block.modal.nose_comp
+        if block.moves and (block.kind not in _STRAIGHT or self._turns(block)):
+            text = "the first move with G40 is no straight line."
+            raise _fault(block, "comp-departure", text, "Leave the contour with G0 or G1.")
+        if block.moves and (block.offset_x, block.offset_z) != (
+            contour.approach.block.offset_x,
+            contour.approach.block.offset_z,
+        ):
+            text = "the zero is another one in the move that leaves the contour."
+            raise _fault(block, "comp-departure", text, "Leave the contour first.")
+        if not contour.moves:
+            text = f"no move of a contour follows G{code}."
+            raise _fault(contour.approach.block, "comp-empty", text, "Write the contour before G40.")
+        yield from _Beside(self._state, contour, block).blocks()
+
+    def _turns(self, block: Block) -> bool:
+        return block.c != block.c0 and not self._in_plane
+
+    def _warn(self, block: Block, code: str, text: str, hint: str) -> None:
+        self._log.warn(block.line, 0, code, f"channel 1 block in line {block.line}: {text}", hint)
+
+
+class _End(NamedTuple):
+    """One end of the contour, at ``corner``: the centre goes from ``at`` to ``to``, square beside it.
+
+    ``contour`` begins with the element at that end.
+    """
+
+    name: str  # approach or departure
+    block: Block
+    at: Point
+    to: Point
+    corner: Point
+    contour: Sequence[Element]
+
+
+class _Beside:
+    """Works out one contour."""
+
+    def __init__(self, state: State, contour: _Contour, leaving: Block) -> None:
+        self._state, self._contour, self._leaving = state, contour, leaving
+        self._elements = [element_of(move.block) for move in contour.moves]
+        self._end: Point = (0.0, 0.0)  # of the tip, at the end of what has been handed out
+
+    def blocks(self) -> Iterator[Block]:
+        contour = self._contour
+        pieces = self._pieces()
+        into = self._approach(pieces[0].element.start)
+        out = self._departure(pieces[-1].element.end)
+        yield from self._lead(contour.approach, into)
+        at = 0
+        for piece in pieces:
+            while at < piece.source:
+                yield from self._standing(contour.moves[at])
+                at += 1
+            yield from self._piece(piece)
+        yield from self._standing(contour.moves[-1])
+        if self._leaving.moves:
+            yield from self._lead(_Move(self._leaving), out)
+        else:
+            yield standstill_at(self._leaving, self._end, self._state.highest)
+
+    def _pieces(self) -> list[Piece]:
+        """The way of the centre beside the contour. Raises ProgramError for a bottleneck."""
+        contour = self._contour
+        offset, found = Offset(contour.left), list[Piece]()
+        try:
+            for element in self._elements:
+                found += offset.add(element)
+            found += offset.close()
+        except GougeError as problem:
+            block = contour.moves[min(problem.index, len(contour.moves) - 1)].block
+            text = f"a nose radius of {contour.radius:g} mm does not fit here: {problem.why}."
+            raise _fault(block, "comp-gouge", text, "Take a smaller nose, or change the contour.") from None
+        return found
+
+    def _piece(self, piece: Piece) -> Iterator[Block]:
+        block = self._contour.moves[piece.source].block
+        if not piece.corner:
+            yield self._made(along(self._state, block, self._tip(piece.element)))
+            return
+        for element in self._corner(piece.element, block):
+            yield self._made(inserted(self._state, block, self._tip(element)))
+
+    def _corner(self, element: Element, block: Block) -> Sequence[Element]:
+        """An outside corner: an arc about it, or under G451 the tangents to where they meet.
+
+        A rapid takes the tangents too, of halves where they would meet far off.
+        """
+        if not isinstance(element, Arc):
+            return [element]
+        angle = turn(element.start_direction, element.end_direction)
+        sharp = abs(element.sweep) > _SHARPEST
+        if block.kind is Kind.RAPID and sharp:
+            middle = element.point(element.length / 2.0)
+            halves = element.part(element.start, middle), element.part(middle, element.end)
+            return [each for half in halves for each in self._corner(half, block)]
+        if sharp or (self._contour.rounded and block.kind is not Kind.RAPID):
+            return [element]
+        reach = element.radius * abs(sin(angle) / (1.0 + cos(angle)))
+        ux, uz = element.start_direction
+        meet = element.start[0] + ux * reach, element.start[1] + uz * reach
+        return [Line(element.start, meet), Line(meet, element.end)]
+
+    def _approach(self, to: Point) -> list[Element]:
+        """The way of the centre to the contour, its start where the tool stands."""
+        block, first = self._contour.approach.block, self._elements[0]
+        at = self._centre((block.x0, block.z0))
+        return self._way(_End("approach", block, at, to, first.start, self._elements))
+
+    def _departure(self, begun: Point) -> list[Element]:
+        """The way off the contour: that to it, run backwards."""
+        block, last = self._leaving, self._elements[-1]
+        if not block.moves:
+            return []
+        at = self._centre((block.x, block.z))
+        back = self._way(_End("departure", block, at, begun, last.end, self._elements[::-1]))
+        return [element.reversed() for element in reversed(back)]
+
+    def _way(self, end: _End) -> list[Element]:
+        """Straight; under KONT round the end of the contour where the straight way would cut it.
+
+        Raises ProgramError where it cuts the contour all the same.
+        """
+        contour, way = self._contour, Line(end.at, end.to)
+        radius = contour.radius
+        if not radius or not cuts_in(way, end.contour, radius):
+            return [way]
+        text = f"on the {end.name} the nose of {radius:g} mm cuts into the contour."
+        if not contour.round_ends:
+            hint = "Begin it elsewhere, or write KONT, which goes round the end of the contour."
+            raise _fault(end.block, "comp-gouge", text, hint)
+        away = dist(end.at, end.corner)
+        if away < radius - SAME_POINT:
+            text = f"the {end.name} by KONT begins nearer to the contour's end than the nose radius."
+            raise _fault(end.block, f"comp-{end.name}-short", text, "Begin further off.")
+        around = self._round(end, away)
+        straight = Line(end.at, around.start)
+        if any(clearance(straight, each) < radius - _TOUCHES for each in end.contour):
+            raise _fault(end.block, "comp-gouge", text, "Begin it elsewhere.")
+        return [straight, *self._corner(around, end.block)]
+
+    def _round(self, end: _End, away: float) -> Arc:
+        """The arc about the contour's end that the way touches, and that ends beside the contour."""
+        radius, (dx, dz) = self._contour.radius, (end.at[0] - end.corner[0], end.at[1] - end.corner[1])
+        # To the contour with the centre of the arc on its right is clockwise, and off it run backwards not.
+        clockwise = (self._contour.left < 0.0) is (end.name == "departure")
+        half = acos(min(1.0, radius / away))
+        # From Z+ towards X+ is clockwise: in that sense the circle is met by half an angle further on.
+        angle = atan2(dx, dz) + (half if clockwise else -half)
+        touch = end.corner[0] + radius * sin(angle), end.corner[1] + radius * cos(angle)
+        return Arc(touch, end.to, end.corner, clockwise=clockwise)
+
+    def _lead(self, move: _Move, way: Sequence[Element]) -> Iterator[Block]:
+        elements = [self._tip(element) for element in way if element.length > SAME_POINT]
+        for element in elements:
+            yield self._made(along(self._state, move.block, element))
+        if not elements:
+            self._end = self._tip_of(way[0].end) if way else self._end
+        yield from self._standing(move)
+
+    def _standing(self, move: _Move) -> Iterator[Block]:
+        for block in move.after:
+            yield standstill_at(block, self._end, self._state.highest)
+
+    def _made(self, block: Block) -> Block:
+        self._end = block.x, block.z
+        return block
+
+    def _tip(self, element: Element) -> Element:
+        """The way of the tip, where that of the centre is ``element``."""
+        start, end = self._tip_of(element.start), self._tip_of(element.end)
+        if isinstance(element, Line):
+            return Line(start, end)
+        return Arc(start, end, self._tip_of(element.centre), element.clockwise)
+
+    def _tip_of(self, point: Point) -> Point:
+        return point[0] + self._contour.tip[0], point[1] + self._contour.tip[1]
+
+    def _centre(self, tip: Point) -> Point:
+        return tip[0] - self._contour.tip[0], tip[1] - self._contour.tip[1]
+
+
+def _last(contour: _Contour) -> _Move:
+    return contour.moves[-1] if contour.moves else contour.approach
+
+
+def _open(block: Block) -> ProgramError:
+    text = "the program ends while G41 or G42 is on."
+    return _fault(block, "comp-open", text, "Move off the part with G40 before it.")
+
+
+def _fault(block: Block, code: str, text: str, hint: str) -> ProgramError:
+    return ProgramError(fault(block.line, 1, code, f"in line {block.line}", text, hint))

@@ -1,0 +1,187 @@
+"""CYCLE84, CYCLE840, G331, G332: tapping with the spindle held as C, and with a compensating chuck.
+
+Rigid: C turns in proportion to the way along Z, one turn a lead, as two axes of one move. With a compensating
+chuck the slide is fed by the revolution, and the spindle turned back at the bottom.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import ceil, copysign
+
+from core.interpreter.actions import SpindleLock, SpindleRun
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.sinumerik.cycle_parameters import MOST_PASSES, Cycle, Step, dwell
+from core.interpreter.sinumerik.drilling_cycles import Hole, approach, hole_of, needed_feed, seconds
+from core.interpreter.sinumerik.linear_moves import block_of, travel_of
+from core.interpreter.sinumerik.sinumerik_state import Motion, State
+from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.interpreter.sinumerik.spindle_and_dwell import demand_position, shortest_turn
+from core.interpreter.sinumerik.thread_cycle import COARSE_LEADS, WRONG_LEAD
+
+NO_DIRECTION = 61102
+_SAME = 1e-6  # mm
+_WHOLE = 1e-6
+_INCH = 25.4
+
+
+def lead_of_tap(cycle: Cycle) -> float:
+    """PIT or MPIT, under 0 for a left-hand thread: mm a revolution; 0 where neither is written."""
+    unit = cycle.whole("_PITA", 0, 0, 4)
+    if unit == 4:
+        raise cycle.wrong("_PITA", "is 4, a lead in modules", "Write PIT in mm.", WRONG_LEAD)
+    pit, size = cycle.number("PIT"), cycle.number("MPIT")
+    if pit:
+        in_inches = unit == 3 or (unit == 0 and not cycle.state.modal.metric)
+        return _INCH / pit if unit == 2 else pit * (_INCH if in_inches else 1.0)
+    if not size:
+        return 0.0
+    lead = COARSE_LEADS.get(round(abs(size)), 0.0) if size == round(size) else 0.0
+    if not lead:
+        raise cycle.wrong("MPIT", "says no lead", "Write PIT, or MPIT as 3 to 68 of M3 to M68.", WRONG_LEAD)
+    return copysign(lead, size)
+
+
+# --- rigid
+
+
+def rigid(cycle: Cycle) -> Iterator[Block]:
+    """CYCLE84: the spindle stops at POSS, turns in with Z by SST, and out by SST1. Raises ProgramError."""
+    hole, state = hole_of(cycle), cycle.state
+    demand_position(state, lambda text, hint: cycle.refused("spindle-position", text, hint))
+    lead = lead_of_tap(cycle)
+    if not lead:
+        raise cycle.wrong("PIT", "says no lead", "Write PIT, or MPIT as 3 to 68 of M3 to M68.", WRONG_LEAD)
+    into = _speed(cycle, "SST", state.modal.rpm)
+    out = _speed(cycle, "SST1", into)
+    rest = cycle.whole("SDAC", 5, 3, 5)
+    if rest != 5 and not state.modal.rpm:
+        raise cycle.wrong("SDAC", "starts the spindle, and no S has been written", "Write S before it.")
+    wanted = cycle.number("POSS")
+    if not 0.0 <= wanted < 360.0:
+        raise cycle.wrong("POSS", "is an angle of 0 to under 360", "Correct it.")
+    lock = [Step(0.0, 0.0, action=SpindleLock(orient=False), spindle=0)]
+    steps = [*approach(cycle, hole), *lock]
+    if turn := shortest_turn(state, wanted):
+        steps.append(Step(cycle.x, hole.clear, state.setup.limits.speeds[2], turn=turn))
+    steps += _ways(cycle, hole, lead, (into, out))
+    steps.append(Step(cycle.x, hole.retract))
+    if rest != 5:
+        sign = 1 if rest == 3 else -1
+        steps.append(Step(0.0, 0.0, action=SpindleRun(sign * state.modal.rpm), spindle=sign))
+    return cycle.blocks(steps)
+
+
+def _speed(cycle: Cycle, name: str, default: float) -> float:
+    """A speed for tapping, rpm, no faster than C turns."""
+    value = cycle.number(name, default) or default
+    most = cycle.state.setup.limits.c_max_rpm
+    if value <= 0.0:
+        raise cycle.wrong(name, "says no speed", "Write it, or S before the cycle.")
+    if value > most:
+        text = f"{cycle.line.call}: {name} is {value:g} rpm; C turns at {most:g} at most, which it taps at."
+        cycle.warn("tap-speed", text, "Lower it.")
+    return min(value, most)
+
+
+def _ways(cycle: Cycle, hole: Hole, lead: float, speeds: tuple[float, float]) -> list[Step]:
+    """In one go, or by _DAM with a way back each time: _VRT (_VARI 1), or out of the hole (_VARI 2)."""
+    kind, each = cycle.whole("_VARI", 0, 0, 2), cycle.size("_DAM")
+    whole = abs(hole.bottom - hole.clear)
+    count = max(ceil(whole / each - _WHOLE), 1) if kind and each else 1
+    if count > MOST_PASSES:
+        raise cycle.wrong("_DAM", f"would take {count:,} steps", "Look for a lost decimal point.")
+    back, at, steps = cycle.size("_VRT") or 1.0, hole.clear, list[Step]()
+
+    def turned(to: float, rpm: float) -> Step:
+        # The way into the hole turns a right-hand tap as M3 does.
+        turn = (to - at) * hole.down / lead * 360.0
+        return Step(cycle.x, to, abs(lead) * rpm / 60.0, turn=turn)
+
+    for k in range(1, count + 1):
+        depth = hole.bottom if k == count else hole.clear + hole.down * k * each
+        steps.append(turned(depth, speeds[0]))
+        at = depth
+        if k < count:
+            away = hole.clear if kind == 2 else depth - hole.down * min(back, each)
+            steps.append(turned(away, speeds[1]))
+            at = away
+    steps += dwell(seconds(cycle, "DTB"))
+    steps.append(turned(hole.clear, speeds[1]))
+    return steps
+
+
+# --- with a compensating chuck
+
+
+def compensating(cycle: Cycle) -> Iterator[Block]:
+    """CYCLE840: fed in by the lead, the spindle turned back, fed out, turned as SDAC. Raises ProgramError."""
+    hole, state = hole_of(cycle), cycle.state
+    modal, sign = state.modal, state.modal.spindle
+    if not sign or not modal.rpm or modal.css:
+        text = f"{cycle.line.call} needs a spindle that turns by rpm."
+        raise cycle.refused(NO_DIRECTION, text, "Write G97 with S and M3 or M4 before it.")
+    by_feed = _by_feed(cycle)
+    back, rest = cycle.whole("SDR", 0, 0, 5), cycle.whole("SDAC", 3 if sign > 0 else 4, 3, 5)
+    if back not in {0, 3, 4} or (back and (back == 3) is (sign > 0)):
+        raise cycle.wrong("SDR", "does not turn the tap back", "Write 0, or 4 behind M3 and 3 behind M4.")
+    lead = abs(lead_of_tap(cycle))
+    if not lead and not by_feed:
+        raise cycle.wrong(
+            "PIT", "says no lead", "Write PIT or MPIT, or ENC 1 for the feed in force.", WRONG_LEAD
+        )
+    feed = needed_feed(cycle) if by_feed else lead if modal.per_rev else lead * modal.rpm / 60.0
+    deep = [
+        Step(cycle.x, hole.bottom, feed, tap=True), *dwell(seconds(cycle, "DTB")),
+        Step(0.0, 0.0, action=SpindleRun(-sign * modal.rpm), spindle=-sign),
+    ]  # fmt: skip
+    steps = [*approach(cycle, hole), *(step._replace(in_hole=True) for step in deep)]
+    steps += [Step(cycle.x, hole.clear, feed, tap=True), Step(cycle.x, hole.retract)]
+    if rest != 5:
+        after = 1 if rest == 3 else -1
+        steps.append(Step(0.0, 0.0, action=SpindleRun(after * modal.rpm), spindle=after))
+    return cycle.blocks(steps)
+
+
+def _by_feed(cycle: Cycle) -> bool:
+    """ENC: 0, 11 and 20 take the lead from PIT or MPIT, 1 from the feed in force. Raises ProgramError."""
+    value = cycle.whole("ENC", 0, 0, 20)
+    if value not in {0, 1, 11, 20}:
+        raise cycle.wrong("ENC", f"is {value}, and none of 0, 1, 11 and 20", "Correct it.")
+    return value == 1
+
+
+# --- G331 and G332
+
+
+def tap(state: State, statement: Statement) -> Block:
+    """G331 into the hole, G332 out of it, with C held: lead K, speed S. Raises ProgramError."""
+    word = statement.g.get("motion")
+    code = f"G{int(state.motion)}"
+    demand_position(state, lambda text, hint: statement.refuse(word, "spindle-position", text, hint))
+    if not state.modal.c_locked:
+        text = f"{code} turns the spindle as C, and it is not held as one."
+        raise statement.refuse(word, "spindle-position", text, "Write SPOS=0 before it.")
+    for name in ("X", "C", "I", "CR", "AR"):
+        if other := statement.words.get(name):
+            text = f"{other.text}: {code} taps along Z alone."
+            raise statement.refuse(other, "word-unused", text, "Take it out.")
+    lead = statement.words.get("K")
+    pitch = state.length(statement, lead) if lead is not None else state.tap_lead
+    if not pitch:
+        raise statement.refuse(lead or word, "thread-lead-missing", f"{code} needs K, its lead.", "Write K.")
+    state.tap_lead = pitch
+    travel = travel_of(state, statement)
+    way = travel.z - travel.z0
+    if abs(way) < _SAME:
+        raise statement.refuse(word, "thread-length", f"{code} has no way along Z.", "Write Z of its end.")
+    rpm = state.modal.rpm
+    if not rpm:
+        raise statement.refuse(word, "speed-missing", f"{code} has no speed.", "Write S in the block.")
+    rpm = min(rpm, state.setup.limits.c_max_rpm)
+    # Into the hole, G331, a lead over 0 turns as M3 does; G332 is the same the other way round.
+    sense = 1.0 if state.motion is Motion.TAP else -1.0
+    turn = sense * abs(way) / pitch * 360.0
+    made = block_of(state, statement, travel._replace(c=travel.c0 + turn), Kind.FEED, abs(pitch) * rpm / 60.0)
+    made.per_rev = False
+    return made

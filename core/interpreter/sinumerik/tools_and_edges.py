@@ -1,0 +1,96 @@
+"""T and D: the tool by number or name, and its cutting edge, whose length is in every position from there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from core.interpreter.actions import ToolChange
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.interpretation import ToolUse
+from core.interpreter.job_setup import ToolOffset
+from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.language.sinumerik.sinumerik_words import Word
+from core.tool_edges import EDGES, NAMED_TOOLS, edge_key, edge_name, edge_of, tool_of
+
+WRONG_TOOL = 17190
+WRONG_EDGE = 17180
+
+
+def tool_words(state: State, statement: Statement, use: ToolUse) -> Iterator[Block]:
+    """T takes the tool and its D1, D another edge, D0 no offset. Raises ProgramError."""
+    tool, edge = statement.words.get("T"), statement.words.get("D")
+    if tool is None and edge is None:
+        return
+    if state.modal.nose_comp != 40:
+        word = tool or edge
+        text = f"{word.text if word else ''} stands while G{state.modal.nose_comp} is on."
+        raise statement.refuse(word, "comp-with", text, "Write G40 and a move before it.")
+    before = state.modal.tool
+    number = tool_of(before) if tool is None else _number(state, statement, tool)
+    wanted = 1 if edge is None else _edge(state, statement, edge)
+    if not number and edge is not None and wanted:
+        text = f"{edge.text}: no tool is in work."
+        raise statement.refuse(edge, WRONG_EDGE, text, "Write T before it.")
+    _take(state, statement, number, wanted if number else 0, use)
+    if tool is not None or state.modal.tool != before:
+        text = " ".join(word.text for word in (tool, edge) if word is not None)
+        yield state.action(statement.line.number, text, ToolChange(state.modal.tool))
+
+
+def _number(state: State, statement: Statement, word: Word) -> int:
+    if not word.string:
+        value = state.number(statement, word)
+        if not value.is_integer() or not 0 <= value < NAMED_TOOLS:
+            text = f"{word.text} comes to {value:g}, which is no tool number."
+            raise statement.refuse(word, WRONG_TOOL, text, "Tools are whole numbers.")
+        return int(value)
+    wanted = word.string.casefold()
+    for key, offset in sorted(state.setup.tools.items()):
+        if offset.name.casefold() == wanted:
+            return tool_of(key)
+    if wanted not in state.names:
+        state.names.append(wanted)
+    return NAMED_TOOLS + state.names.index(wanted)
+
+
+def _edge(state: State, statement: Statement, word: Word) -> int:
+    value = state.number(statement, word)
+    if value != 0 and value not in EDGES:
+        text = f"{word.text}: cutting edges are D1 to D9, and D0 is none."
+        raise statement.refuse(word, WRONG_EDGE, text, "Correct D.")
+    return int(value)
+
+
+def _take(state: State, statement: Statement, number: int, edge: int, use: ToolUse) -> None:
+    """The edge of this number is in force; 0 with D0 and T0."""
+    key = edge_key(number, edge or edge_of(state.modal.tool) if number == tool_of(state.modal.tool) else edge)
+    offset = ToolOffset() if not number else _offset(state, statement, key, use)
+    moved = state.edge if state.modal.edge else ToolOffset()
+    other = offset if edge else ToolOffset()
+    state.moved_by_tool |= {
+        name for name, a, b in (("X", moved.x, other.x), ("Z", moved.z, other.z)) if a != b
+    }
+    state.edge = offset
+    state.adopt(state.modal._replace(tool=key if number else 0, edge=edge))
+    state.derive_offsets()
+
+
+def _offset(state: State, statement: Statement, key: int, use: ToolUse) -> ToolOffset:
+    """The row of the table. Raises ProgramError for an edge that a tool of the table does not have."""
+    tools = state.setup.tools
+    if key not in tools and tool_of(key) in tools:
+        name, word = edge_name(key), statement.words.get("D")
+        text = f"{name} does not exist: T{tool_of(key)} has no such cutting edge in the tool offsets."
+        raise statement.refuse(word, WRONG_EDGE, text, f"Set {name} on the page of tool offsets (F8).")
+    offset = use.offset(key, tools)
+    if offset is None:
+        word = statement.words.get("T") or statement.words.get("D")
+        name = f'T="{word.string}"' if word is not None and word.string else edge_name(key)
+        text = f"{name} has no tool offset; 0 is used, and the machine will refuse to start."
+        hint = "Enter the name as remark of a tool (F8)." if word is not None and word.string else _SET
+        state.log.add(statement.warning(word, "tool-offset-missing", text, hint))
+    return offset or ToolOffset()
+
+
+_SET = "Set the tool's offset on the page of tool offsets (F8); tools are T1 to T32."

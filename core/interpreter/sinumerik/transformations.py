@@ -1,0 +1,96 @@
+"""TRANSMIT, TRACYL and TRAFOOF: when the plane of the face or the side is on, and where it cannot be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from core.geometry.virtual_mill import Face, Side
+from core.interpreter.actions import SpindleLock
+from core.interpreter.diagnostic_log import Log
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.sinumerik.sinumerik_state import NO_FRAME, State
+from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.interpreter.sinumerik.transformed_plane import Transformation
+from core.language.sinumerik.sinumerik_words import PLACES, Word
+from core.language.sinumerik.word_table import TRANSFORMATION
+
+COMPENSATED = 14400
+"""Alarm: radius compensation is on where a transformation begins or ends."""
+NOT_THERE = 14401
+"""Alarm: the transformation is not there."""
+_SAME = 1e-9
+
+
+def transform(state: State, log: Log, statement: Statement) -> Iterator[Block]:
+    """TRANSMIT, TRACYL or TRAFOOF. Raises ProgramError where it cannot be."""
+    word = statement.g[TRANSFORMATION]
+    if (PLACES & statement.words.keys()) or statement.sets or statement.m:
+        text = f"{word.text} needs a block of its own."
+        raise statement.refuse(word, "own-block", text, "Split the block.")
+    if state.modal.nose_comp != 40:
+        text = f"{word.text} stands while G{state.modal.nose_comp} is on."
+        raise statement.refuse(word, COMPENSATED, text, "Write G40 and a move before it.")
+    if word.name == "TRAFOOF":
+        _leave(state)
+        return
+    frame = _frame(state, statement, word)
+    _check_machine(state, statement, word)
+    if not state.modal.c_locked and state.setup.limits.spindle_is_c:
+        state.adopt(state.modal._replace(c_locked=True))
+        yield state.action(statement.line.number, word.text, SpindleLock(orient=False))
+    _leave(state)
+    if state.modal.diameter and word.name == "TRANSMIT" and "DIAMON" not in state.told:
+        state.told.add("DIAMON")
+        text = "DIAMON is on: X of TRANSMIT counts as a diameter, and Y does not."
+        log.add(statement.warning(word, "transmit-diameter", text, "Write DIAMOF before it."))
+    state.transformation = Transformation(state, log, frame)
+
+
+def _leave(state: State) -> None:
+    """What the program has shifted and turned ends with the transformation, and with its beginning."""
+    state.transformation = None
+    state.programmed = NO_FRAME
+    state.pole, state.polar, state.direction = (0.0, 0.0), None, None
+    state.derive_offsets()
+    if state.modal.mill is not None:
+        state.adopt(state.modal._replace(mill=None))
+
+
+def _check_machine(state: State, statement: Statement, word: Word) -> None:
+    modal, limits = state.modal, state.setup.limits
+    if limits.third_axis == "Y":
+        text = f"{word.text} makes an axis Y of X and the spindle, and the third axis of this machine is Y."
+        raise statement.refuse(word, NOT_THERE, text, "Write the part for this machine's own Y.")
+    if not limits.c_enabled:
+        text = f"{word.text} turns the part by C, and this machine has no third axis."
+        raise statement.refuse(word, NOT_THERE, text, "Choose a machine file that has C.")
+    if modal.spindle:
+        text = f"{word.text}: the spindle turns, and the part has to be held as C."
+        raise statement.refuse(word, "transformation", text, "Write M5 or SPOS=0 before it.")
+    if modal.settable_x:
+        text = f"{word.text}: G{modal.settable} shifts X, and the part turns about X0."
+        raise statement.refuse(
+            word, "transformation", text, f"Set X of G{modal.settable} to 0, or write G500."
+        )
+
+
+def _frame(state: State, statement: Statement, word: Word) -> Face | Side:
+    """The frame that the word asks for, where the tool stands: on which side of the axis."""
+    values = [
+        0.0 if each.formula is None else state.worth(
+            each.formula, lambda code, text, hint: statement.refuse(word, code, text, hint)
+        )
+        for each in word.arguments
+    ]  # fmt: skip
+    sets = values[1:] if word.name == "TRACYL" else values
+    if any(value not in {0.0, 1.0} for value in sets[:1]) or any(sets[1:]):
+        text = f"{word.text} asks for another data set or for the walls of a groove, and there is one set."
+        raise statement.refuse(word, NOT_THERE, text, f"Write {word.name} alone, and the walls as contours.")
+    far = state.x - state.modal.base_x > -_SAME
+    if word.name == "TRANSMIT":
+        return Face(0.0, far=far)
+    diameter = values[0] * (1.0 if state.modal.metric else 25.4) if values else 0.0
+    if diameter <= 0.0:
+        text = "TRACYL needs the diameter on which Y is measured."
+        raise statement.refuse(word, NOT_THERE, text, "Write TRACYL(40).")
+    return Side(0.0, 0.0, diameter, far=far)

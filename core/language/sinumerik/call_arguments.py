@@ -1,0 +1,104 @@
+"""Arguments of a call, CYCLE95("CONTOUR", 2, , 0.4), and parameters of PROC and EXTERN."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from core.language.formulas import Formula, FormulaError, FormulaReader
+from core.language.sinumerik.sinumerik_formulas import GRAMMAR
+
+_QUOTED = re.compile(r'\s*"([^"]*)"\s*(?=[,)])')
+_AXIS = re.compile(r"\s*([A-CU-Z][0-9]?)\s*(?=[,)])")
+_PARAMETER = re.compile(
+    r"\s*(?:(VAR)\s+)?(REAL|INT|BOOL|CHAR|STRING|AXIS|FRAME)(?:\s*\[[^\]]*\])?"
+    r"(?:\s+([A-Z_][A-Z_][A-Z0-9_]*)(\s*\[[^\]]*\])?)?\s*(=)?\s*"
+)
+_NEXT = re.compile(r"\s*([,)])")
+
+
+class Argument(NamedTuple):
+    """One argument: a formula, or a text in quotes (an axis by its letter too); neither where it is left out.
+
+    ``column`` from 1.
+    """
+
+    formula: Formula | None
+    text: str | None
+    column: int
+
+    @property
+    def given(self) -> bool:
+        """Whether anything stands there."""
+        return self.formula is not None or self.text is not None
+
+
+class Parameter(NamedTuple):
+    """A parameter of PROC: ``kind`` such as REAL, ``by_reference`` with VAR, ``default`` where it has one."""
+
+    name: str
+    kind: str
+    by_reference: bool
+    default: Argument | None
+
+
+def read_arguments(text: str, written: str, at: int) -> tuple[tuple[Argument, ...], int]:
+    """The arguments in the brackets that open at ``at``, and the index behind them. Raises FormulaError.
+
+    ``text`` is in capitals, ``written`` the same in its own case.
+    """
+    found: list[Argument] = []
+    start, at = at, at + 1
+    while True:
+        at = _blanks(text, at)
+        argument, at = _argument(text, written, at)
+        found.append(argument)
+        match = _NEXT.match(text, at)
+        if match is None:
+            what = "is not closed" if at >= len(text) else "has something that is no argument"
+            raise FormulaError(at if at < len(text) else start, f"The bracket {what}", "Write ( , , ).")
+        at = match.end()
+        if match[1] == ")":
+            return (() if len(found) == 1 and not found[0].given else tuple(found)), at
+
+
+def _argument(text: str, written: str, at: int) -> tuple[Argument, int]:
+    column = at + 1
+    if text[at : at + 1] in {",", ")"}:
+        return Argument(None, None, column), at
+    if quoted := _QUOTED.match(written, at):
+        return Argument(None, quoted[1].strip(), column), quoted.end()
+    if axis := _AXIS.match(text, at):
+        return Argument(None, axis[1], column), axis.end()
+    reader = FormulaReader(GRAMMAR, text, at)
+    return Argument(reader.formula(), None, column), reader.at
+
+
+def read_parameters(text: str, written: str, at: int) -> tuple[tuple[Parameter, ...], int]:
+    """The parameters in the brackets that open at ``at``, and the index behind them. Raises FormulaError."""
+    found: list[Parameter] = []
+    at = _blanks(text, at + 1)
+    if text[at : at + 1] == ")":
+        return (), at + 1
+    while True:
+        match = _PARAMETER.match(text, at)
+        if match is None:
+            raise FormulaError(at, "A parameter needs its type and name", "Write PROC NAME(REAL LENGTH).")
+        if match[4]:
+            raise FormulaError(match.start(4), "Arrays as parameters are not read here", "Pass their values.")
+        at, default = match.end(), None
+        if match[5]:
+            default, at = _argument(text, written, at)
+        found.append(Parameter(match[3] or "", match[2], match[1] is not None, default))
+        end = _NEXT.match(text, at)
+        if end is None:
+            raise FormulaError(at, "The bracket of the parameters is not closed", "Write ) behind the last.")
+        at = end.end()
+        if end[1] == ")":
+            return tuple(found), at
+
+
+def _blanks(text: str, at: int) -> int:
+    while text[at : at + 1].isspace():
+        at += 1
+    return at

@@ -1,0 +1,48 @@
+"""The code book of SINUMERIK: subprograms with parameters, repeats, and lines that are taken."""
+
+from __future__ import annotations
+
+from core.language.code_book import Entry
+
+_DEPTH = (("STEP.spf", "PROC STEP(REAL DEPTH, INT TIMES=2)\nG0 Z=DEPTH*TIMES\nM17\n"),)
+_TAKEN = "Taken; the listing shows every block all the same."
+
+CALLS = (
+    Entry(
+        "PROC", "NAME(REAL LENGTH, VAR INT COUNT, REAL MORE=1) SAVE",
+        "First line of a subprogram: its parameters, VAR writes back, = is what counts where nothing is "
+        "handed over; SAVE brings G functions and frame back at its end.",
+        "STEP(-3)\nSTEP(-2, 4)", "STEP(1, 2, 3)", "12330", files=_DEPTH,
+    ),
+    Entry(
+        "EXTERN", "NAME(REAL, INT)", "Names a subprogram with parameters that stands in a file of its own.",
+        "EXTERN STEP(REAL, INT)\nSTEP(-3)", "EXTERN 5", "EXTERN", files=_DEPTH,
+    ),
+    Entry(
+        "MCALL", "NAME(…)", "Calls a subprogram or a cycle behind each block that moves; alone it ends that.",
+        "MCALL STEP(-3)\nX50\nMCALL", "MCALL NOWHERE\nX50", "NOWHERE", files=_DEPTH,
+    ),
+    Entry("CALL", '"NAME"', "Calls a subprogram by its name.", 'CALL "STEP"', "CALL", "CALL", files=_DEPTH),
+    Entry(
+        "REPEATB", "LABEL P=2", "Runs the block of the label again.",
+        "AGAIN: Z=IC(-1)\nREPEATB AGAIN P=2", "REPEATB NOWHERE", "14080",
+    ),
+    Entry(
+        "CASE", "R1 OF 1 GOTOF LABEL DEFAULT GOTOF OTHER", "Jumps by a value.",
+        "R1=2\nCASE R1 OF 1 GOTOF ONE DEFAULT GOTOF OTHER\nONE: Z5\nOTHER:",
+        "CASE 1 GOTOF ONE", "CASE needs OF",
+    ),
+    Entry("GOTOS", "", "Jumps to the first block.", "R1=1\nIF R1==2 GOTOS", "GOTOS X3", "GOTOS"),
+    Entry(
+        "SETAL", "(65000)", "The program raises an alarm: it is refused where it comes to this.",
+        "R1=1\nIF R1==2\nSETAL(65000)\nENDIF", "SETAL(65000)", "65000",
+    ),
+    *(
+        Entry(word, "", _TAKEN, word, f"{word} X3", word)
+        for word in ("DISPLOF", "DISPLON", "SBLOF", "SBLON")
+    ),
+    Entry("GROUP_BEGIN", '(0,"ROUGH",0,0)', "Head of a group of blocks in the control's editor; taken.",
+          'GROUP_BEGIN(0,"ROUGH",0,0)\nX40\nGROUP_END(0,0)', "GROUP_BEGIN X3", "GROUP_BEGIN"),
+    Entry("GROUP_END", "(0,0)", "End of it.", "GROUP_END(0,0)", "GROUP_END X3", "GROUP_END"),
+)  # fmt: skip
+"""What is written where a program calls others, or steers itself by name."""

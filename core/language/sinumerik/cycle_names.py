@@ -1,0 +1,64 @@
+"""Standard cycles of SINUMERIK by name: their parameters in order, and those that this control refuses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+_DRILL = "RTP RFP SDIS DP DPR"
+_MODES = "_GMODE _DMODE _AMODE"
+
+CYCLES: Mapping[str, tuple[str, ...]] = {
+    name: tuple(parameters.split())
+    for name, parameters in {
+        "CYCLE81": f"{_DRILL} DTB {_MODES}",
+        "CYCLE82": f"{_DRILL} DTB {_MODES}",
+        "CYCLE83": f"{_DRILL} FDEP FDPR DAM DTB DTS FRF VARI _AXN _MDEP _VRT _DTD _DIS1 {_MODES}",
+        "CYCLE84": f"{_DRILL} DTB SDAC MPIT PIT POSS SST SST1 _AXN _PITA _TECHNO _VARI _DAM _VRT "
+        f"_PITM _PTAB _PTABA {_MODES}",
+        "CYCLE840": f"{_DRILL} DTB SDR SDAC ENC MPIT PIT _AXN _PITA _TECHNO _PITM _PTAB _PTABA {_MODES}",
+        "CYCLE85": f"{_DRILL} DTB FFR RFF {_MODES}",
+        "CYCLE86": f"{_DRILL} DTB SDIR RPA RPO RPAP POSS {_MODES}",
+        "CYCLE87": f"{_DRILL} SDIR",
+        "CYCLE88": f"{_DRILL} DTB SDIR",
+        "CYCLE89": f"{_DRILL} DTB",
+        "CYCLE93": "SPD SPL WIDG DIAG STA1 ANG1 ANG2 RCO1 RCO2 RCI1 RCI2 FAL1 FAL2 IDEP DTB VARI _VRT _DN",
+        "CYCLE94": "SPD SPL FORM VARI",
+        "CYCLE95": "NPP MID FALZ FALX FAL FF1 FF2 FF3 VARI DT DAM _VRT",
+        "CYCLE96": "DIATH SPL FORM VARI",
+        "CYCLE97": "PIT MPIT SPL FPL DM1 DM2 APP ROP TDEP FAL IANG NSP NRC NID VARI NUMT _VRT",
+        "CYCLE98": "PO1 DM1 PO2 DM2 PO3 DM3 PO4 DM4 APP ROP TDEP FAL IANG NSP NRC NID PP1 PP2 PP3 "
+        "VARI NUMT _VRT",
+        "CYCLE99": "SPL DM1 FPL DM2 APP ROP TDEP FAL IANG NSP NRC NID PIT VARI NUMTH _SDIS _MID _GDEP "
+        "_PIT1 _FDEP _GST _GUD _IFLANK _PITA _PITM _PTAB _PTABA _DMODE _AMODE",
+        "HOLES1": "SPCA SPCO STA1 FDIS DBH NUM",
+        "HOLES2": "CPA CPO RAD STA1 INDA NUM",
+    }.items()
+}
+"""Parameters as the maker's manuals name them, in the order of the call; what begins with _ is newer."""
+
+_MASK = "it is written by a mask of the newer controls, whose digits differ from edition to edition"
+_MILL = "pockets and slots are not built here; write their path as moves of X, Z and C"
+_PROBE = "this lathe has no probe that a cycle can move to"
+_SWIVEL = "this lathe has no head that swivels; take it out"
+
+CYCLES_OUTSIDE: Mapping[str, str] = {
+    "CYCLE62": f"{_MASK}; name the contour in CYCLE95",
+    "CYCLE92": f"{_MASK}; write the parting off as G1 blocks, with a slower F near the centre",
+    "CYCLE930": f"{_MASK}; write the groove with CYCLE93",
+    "CYCLE940": f"{_MASK}; write forms E and F with CYCLE94, A to D with CYCLE96",
+    **dict.fromkeys(("CYCLE950", "CYCLE951", "CYCLE952"), f"{_MASK}; write the contour with CYCLE95"),
+    **dict.fromkeys(("LONGHOLE", "SLOT1", "SLOT2", "POCKET1", "POCKET2", "POCKET3", "POCKET4"), _MILL),
+    **dict.fromkeys(("CYCLE60", "CYCLE61", "CYCLE63", "CYCLE64", "CYCLE70", "CYCLE71", "CYCLE72"), _MILL),
+    **dict.fromkeys(("CYCLE73", "CYCLE74", "CYCLE75", "CYCLE76", "CYCLE77", "CYCLE78", "CYCLE79"), _MILL),
+    **dict.fromkeys(("CYCLE90", "CYCLE899", "CYCLE801", "CYCLE802"), _MILL),
+    **dict.fromkeys((f"CYCLE{number}" for number in (*range(971, 980), *range(994, 999), 982, 9960)), _PROBE),
+    **dict.fromkeys(("CYCLE806", "CYCLE996"), _SWIVEL),
+}
+"""Standard cycles that this control refuses, with what to do instead."""
+
+SWIVELS = "CYCLE800"
+CYCLES_TAKEN: Mapping[str, str] = {
+    SWIVELS: "nothing is swivelled that it could turn back",
+    "CYCLE832": "the path is kept exactly, whatever tolerance it names",
+}
+"""Standard cycles that change nothing here, and why; CYCLE800 with its brackets empty alone."""

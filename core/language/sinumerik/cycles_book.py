@@ -1,0 +1,150 @@
+"""The code book of SINUMERIK: its standard cycles, each with an example and a refusal."""
+
+from __future__ import annotations
+
+from core.language.code_book import Entry
+from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE, CYCLES_TAKEN
+
+_CUT = "S900 M3 G95 F0.1\n"
+_HOLE = "S900 M3 G94 F100 G17\nG0 X0 Z5\n"
+_FACE = "T1 D1\nG94 F100 G17\nG0 X40 Z5\nDIAMOF\nTRANSMIT\n"
+_KONTUR = (("KONTUR.spf", "G1 X20 Z0\nX20 Z-10 RND=2\nX30\nX50 Z-25\nM17\n"),)
+
+
+def _entry(
+    name: str, what: str, example: str, refused: str, why: str, files: tuple[tuple[str, str], ...] = ()
+) -> Entry:
+    return Entry(name, f"({', '.join(CYCLES[name])})", what, example, refused, why, files=files)
+
+
+STANDARD_CYCLES = (
+    _entry(
+        "CYCLE81", "A hole along Z under G17: rapid to SDIS before RFP, feed to DP (DPR deep), rapid to RTP.",
+        _HOLE + "CYCLE81(5, 0, 2, -12)", _HOLE + "CYCLE81(5, 0, 2, 12)", "DP",
+    ),
+    _entry(
+        "CYCLE82", "As CYCLE81, with a dwell of DTB seconds at the bottom; under 0 revolutions.",
+        _HOLE + "CYCLE82(5, 0, 2, -12, , 0.5)", _HOLE + "CYCLE82(5, 0, 2)", "DP",
+    ),
+    _entry(
+        "CYCLE83",
+        "A deep hole in pecks: FDEP or FDPR the first, each less by DAM; VARI 1 leaves the hole each time, 0 "
+        "draws back by _VRT.",
+        _HOLE + "CYCLE83(5, 0, 2, -30, , -10, , 2, 0.2, 0, 1, 1)",
+        _HOLE + "CYCLE83(5, 0, 2, -30, , -40)", "FDEP",
+    ),
+    _entry(
+        "CYCLE84",
+        "Tapping without a compensating chuck: the spindle is held at POSS and turns with Z by PIT (under 0 "
+        "left-hand) or MPIT, in at SST, out at SST1, rpm; _VARI 1 and 2 in steps of _DAM. SDAC: 3, 4, or 5 "
+        "for a spindle that stands then.",
+        "G94 F100 G17\nG0 X0 Z5\nCYCLE84(5, 0, 2, -12, , , 5, , 1, 0, 100, 100)",
+        _HOLE + "CYCLE84(5, 0, 2, -12, , , 5, , 1, 0, 100, 100)", "positioned",
+    ),
+    _entry(
+        "CYCLE840",
+        "Tapping with a compensating chuck: in by PIT or MPIT, with ENC 1 at F; the spindle turns back; out.",
+        _HOLE + "CYCLE840(5, 0, 2, -12, , , 0, 3, 0, , 1)", "G17\nCYCLE840(5, 0, 2, -12, , , 0, 3, 0, , 1)",
+        "61102",
+    ),
+    _entry(
+        "CYCLE86",
+        "Boring: at the bottom the spindle is held at POSS, the edge lifted by RPA along X and RPAP along Z.",
+        _HOLE + "CYCLE86(5, 0, 2, -12, , 0, 3, -1, 0, 1, 0)",
+        _HOLE + "CYCLE86(5, 0, 2, -12, , 0, 3, -1, 0, 1, 0)", "positioned",
+    ),
+    _entry(
+        "CYCLE87", "Boring: at the bottom the spindle stops, and the program until Cycle Start.",
+        _HOLE + "CYCLE87(5, 0, 2, -12, , 3)", _HOLE + "CYCLE87(5, 0, 2, -12, , 5)", "61102",
+    ),
+    _entry(
+        "CYCLE88", "As CYCLE87, with a dwell before the stop.",
+        _HOLE + "CYCLE88(5, 0, 2, -12, , 0.5, 3)", _HOLE + "CYCLE88(5, 0, 2, 12, , 0, 3)", "DP",
+    ),
+    _entry(
+        "CYCLE85", "Reaming and boring: in at FFR, out at RFF.",
+        _HOLE + "CYCLE85(5, 0, 2, -12, , 0, 80, 200)",
+        _HOLE + "CYCLE85(5, 0, 2, -12, , 0, -80)", "FFR",
+    ),
+    _entry(
+        "CYCLE89", "As CYCLE85, in and out at the feed in force.", _HOLE + "CYCLE89(5, 0, 2, -12, , 1)",
+        "G18\nCYCLE89(5, 0, 2, -12)", "G17",
+    ),
+    _entry(
+        "CYCLE93",
+        "A groove with square flanks from the point SPD (a diameter), SPL: WIDG wide, DIAG deep; VARI 5 "
+        "towards minus Z, 1 towards plus, 7 and 3 inside. Its width is the way from D to _DN, or to D+1.",
+        _CUT + "T1 D1\nG0 X44 Z-10\nCYCLE93(40, -12, 6, 4, , , , , , , , 0.1, 0.1, 1.5, 0.5, 5)",
+        _CUT + "T1 D1\nCYCLE93(40, -12, 6, 4, , , , , , , , 0.1, 0.1, 1.5, 0.5, 5, , 4)", "D4",
+    ),
+    _entry(
+        "CYCLE94",
+        "Undercut E or F (DIN 509) at the shoulder SPL of the diameter SPD, by the tip quadrant of the tool: "
+        "3 outside with the shoulder towards minus Z, 4 towards plus; 2 and 1 inside. VARI 1 to 4 says it in "
+        "its place.",
+        _CUT + 'T1 D1\nG0 X50 Z5\nCYCLE94(40, -12, "E")', _CUT + 'T1 D1\nCYCLE94(40, -12, "G")', "FORM",
+    ),
+    _entry(
+        "CYCLE96",
+        "Undercut (DIN 76) at the shoulder SPL behind a coarse thread of size DIATH: A, B (short) outside, "
+        "C and D (short) inside; VARI as CYCLE94.",
+        _CUT + 'T1 D1\nG0 X50 Z5\nCYCLE96(30, -20, "A")', _CUT + 'T1 D1\nCYCLE96(7, -20, "A")', "DIATH",
+    ),
+    _entry(
+        "CYCLE95",
+        'Turns the contour of a subprogram or between two labels ("START:END") out of the stock: passes of '
+        "MID, allowances FALZ, FALX (radius) or FAL, feeds FF1, FF2 into reliefs, FF3 for the finish. VARI 1 "
+        "to 4 rough, 5 to 8 finish, 9 to 12 do both: along Z outside, along X, along Z inside, along X. "
+        "The nose radius is reckoned with.",
+        _CUT + 'CYCLE95("KONTUR", 2, 0.1, 0.2, , 0.3, 0.1, 0.12, 9)',
+        _CUT + 'CYCLE95("KONTUR", , 0.1, 0.2, , 0.3, 0.1, 0.12, 9)', "MID", _KONTUR,
+    ),
+    _entry(
+        "CYCLE97",
+        "A thread from SPL to FPL on the diameters DM1 and DM2, lead PIT or size MPIT: NRC passes to TDEP "
+        "less FAL, then NID without infeed; NUMT starts; VARI 1 and 2 equal depth, 3 and 4 equal chip, 2 and "
+        "4 inside; IANG along a flank.",
+        "S800 M3\nG0 X44 Z6\nCYCLE97(1.5, , 0, -20, 40, 40, 4, 2, 0.92, 0.05, 30, , 4, 1, 3, 1)",
+        "S800 M3\nG0 X44 Z6\nCYCLE97( , 7, 0, -20, 40, 40, 4, 2, 0.92, 0, 0, , 4, 1, 3, 1)", "MPIT",
+    ),
+    _entry(
+        "CYCLE98",
+        "Three threads in one sweep: from PO1 DM1 over PO2 DM2 and PO3 DM3 to PO4 DM4, leads PP1 to PP3; the "
+        "rest as CYCLE97.",
+        "S300 M3\nCYCLE98(0, 30, -20, 30, -40, 36, -50, 36, 6, 3, 0.92, 0, 0, , 4, 1, 1.5, 2, 2, 1)",
+        "S300 M3\nCYCLE98(0, 30, -20, 30, -10, 36, -50, 36, 6, 3, 0.92, 0, 0, , 4, 1, 1.5, 2, 2, 1)",
+        "PO3",
+    ),
+    _entry(
+        "CYCLE99",
+        "A thread from SPL, DM1 to FPL, DM2, as CYCLE97. VARI 300101 and 300102: equal depth outside, "
+        "inside; 300103 and 300104: equal chip; 3002.. on both flanks in turn.",
+        "S800 M3\nG0 X44 Z6\nCYCLE99(0, 40, -20, 40, 4, 2, 0.92, 0.05, 30, , 4, 1, 1.5, 300103, 1)",
+        "S800 M3\nG0 X44 Z6\nCYCLE99(0, 40, -20, 40, 4, 2, 0.92, 0.05, 30, , 4, 1, 1.5, 300109, 1)", "VARI",
+    ),
+    _entry(
+        "HOLES1",
+        "A row of NUM holes in TRANSMIT, from X SPCA, Y SPCO along STA1: the first FDIS away, DBH between.",
+        _FACE + "MCALL CYCLE81(5, 0, 2, -3)\nHOLES1(20, 0, 90, -10, 10, 3)\nMCALL\nTRAFOOF",
+        "MCALL CYCLE81(5, 0, 2, -3)\nHOLES1(20, 0, 90, -10, 10, 3)", "TRANSMIT",
+    ),
+    _entry(
+        "HOLES2",
+        "A circle of NUM holes in TRANSMIT, round X CPA, Y CPO on RAD, the first at STA1, INDA between them; "
+        "0: all round.",
+        _FACE + "MCALL CYCLE81(5, 0, 2, -3)\nHOLES2(0, 0, 15, 0, 0, 6)\nMCALL\nTRAFOOF",
+        _FACE + "HOLES2(0, 0, 15, 0, 0, 6)", "MCALL",
+    ),
+    *(
+        Entry(
+            name, "( )", f"Taken. Without effect: {why}.", f"{name}()",
+            "CYCLE800(1)" if name == "CYCLE800" else "CYCLE832(", name,
+        )
+        for name, why in CYCLES_TAKEN.items()
+    ),
+    *(
+        Entry(name, "( )", f"Is refused: {why}.", "", f"{name}()", name)
+        for name, why in CYCLES_OUTSIDE.items()
+    ),
+)  # fmt: skip
+"""Standard cycles, and those that are refused by name."""

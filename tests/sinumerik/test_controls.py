@@ -1,0 +1,81 @@
+"""802D, 808D, 828D, 840D: what the control of the machine file has not is refused by its name."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.compose.machine_files import parse_machine, shipped_machine
+from app.compose.machine_setup import control_limits
+from core.interpreter.job_setup import Setup
+from core.language.sinumerik.control_differences import CONTROLS, LACKS
+from core.language.sinumerik.sinumerik_book import BOOK
+from core.table_schema import MachineFileError
+from tests.sinumerik.lathe import refused, run, setup
+
+PAGE = Path(__file__).parents[2] / "docs" / "sinumerik-controls.md"
+
+
+def of(control: str) -> Setup:
+    return replace(setup(), limits=replace(setup().limits, control=control))
+
+
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [
+        ("R1=1\nWHILE R1<2\nR1=2\nENDWHILE", "WHILE"),
+        ("R1=1\nIF R1==1\nG0 Z3\nENDIF", "IF without a jump"),
+        ("DIAM90", "DIAM90"),
+        ("G505 G0 X20", "G505"),
+        ('T="ROUGHER"', 'T="NAME"'),
+        ("CYCLE832()", "CYCLE832"),
+        ("DYNFINISH", "DYNFINISH"),
+    ],
+)
+@pytest.mark.parametrize("control", ["802d", "808d"])
+def test_what_a_small_control_lacks(text: str, named: str, control: str) -> None:
+    error = run(text, of(control)).errors[0]
+    assert error.code == "not-in-control"
+    assert f"{named} is no function of a SINUMERIK {control.upper()}" in error.message
+    assert "control under [machine]" in error.hint
+
+
+def test_cycle99_is_one_of_the_808d_and_none_of_the_802d() -> None:
+    text = "S800 M3\nG0 X44 Z6\nCYCLE99(0,40,-20,40,4,2,0.92,0.05,30,,4,1,1.5,300103,1)"
+    assert refused(text, of("802d")).code == "not-in-control"
+    assert run(text, of("808d")).errors == []
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+def test_what_all_of_them_have(control: str) -> None:
+    text = 'G18 G90 G71 DIAMON\nR1=1\nAGAIN: R1=R1+1\nIF R1<3 GOTOB AGAIN\nG0 X20 Z5\nMSG("A")\nM30'
+    assert run(text, of(control)).errors == []
+
+
+@pytest.mark.parametrize("control", ["828d", "840d"])
+def test_the_large_ones_lack_nothing(control: str) -> None:
+    assert run("R1=1\nWHILE R1<2\nR1=2\nENDWHILE\nDIAM90\nG0 X20", of(control)).errors == []
+
+
+def test_the_machine_file_says_it() -> None:
+    text = shipped_machine("sinumerik-modulo").text
+    machine = parse_machine(text.replace("[machine]", '[machine]\ncontrol = "802d"'), "t")
+    assert control_limits(machine).control == "802d"
+    assert shipped_machine("sinumerik-modulo").control == "840d"
+    with pytest.raises(MachineFileError, match=r"machine\.control"):
+        parse_machine(text.replace("[machine]", '[machine]\ncontrol = "810"'), "t")
+
+
+def test_the_page_names_everything_that_is_lacking() -> None:
+    page = PAGE.read_text(encoding="utf-8")
+    for control in CONTROLS:
+        assert f"`{control}`" in page
+        assert [name for name in LACKS[control] if f"`{name}`" not in page] == []
+
+
+def test_only_what_there_is_can_be_lacking() -> None:
+    heads = {entry.head for entry in BOOK.entries}
+    spoken = {name for lacks in LACKS.values() for name in lacks} - {'T="NAME"', "IF without a jump"}
+    assert spoken - heads == set()

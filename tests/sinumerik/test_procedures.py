@@ -1,0 +1,165 @@
+"""PROC with parameters, VAR, defaults, local DEF, SAVE, EXTERN, MCALL, REPEAT, CASE, arrays, MSG with <<."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.language.called_files import with_called_files
+from core.language.source import Dialect, Source
+from tests.sinumerik.lathe import good, refused, source
+
+
+def spf(name: str, text: str) -> Source:
+    """A subprogram file."""
+    return Source(f"{name}.spf", text, Dialect.SINUMERIK)
+
+
+def stops(text: str | Source) -> list[float]:
+    """Z of the ends of all moves."""
+    return [block.z for block in good(text)]
+
+
+STEP = spf("STEP", "PROC STEP(REAL DEPTH, INT TIMES=2, REAL MORE)\nG0 Z=DEPTH*TIMES+MORE\nRET\n")
+
+
+@pytest.mark.parametrize(
+    ("call", "z"),
+    [
+        ("STEP(-3,4,1)", -11),
+        ("STEP(-3,,1)", -5),  # TIMES is 2
+        ("STEP(-3)", -6),  # MORE is 0
+        ("step (R1+1, 3)", -12),  # R1 = -5
+        ("STEP(-1,2.6)", -3),  # an INT parameter is a whole number
+    ],
+)
+def test_parameters(call: str, z: float) -> None:
+    assert stops(source(f"EXTERN STEP(REAL, INT, REAL)\nR1=-5\n{call}", STEP)) == [z]
+
+
+@pytest.mark.parametrize(
+    ("call", "code"),
+    [
+        ("STEP(1,2,3,4)", "12330"),
+        ("STEP(1", "12080"),
+        ("STEP(1 2)", "12080"),
+        ("STEP(RESULT)", "12550"),
+        ("STEP(1) X5", "12080"),
+        ("G0 X5 STEP(1)", "12080"),
+    ],
+)
+def test_calls_that_do_not_fit(call: str, code: str) -> None:
+    error = refused(source(f"G0 Z0\nN20 {call}", STEP))
+    assert (error.code, error.line) == (code, 2)
+
+
+def test_var_writes_back_and_a_value_does_not() -> None:
+    twice = spf("TWICE", "PROC TWICE(VAR REAL AA, REAL BB)\nAA=AA*2\nBB=BB*2\nM17\n")
+    text = "DEF REAL LENGTH=3, OTHER=5\nR7=10\nTWICE(LENGTH,OTHER)\nTWICE(R7,1)\nG0 Z=LENGTH+OTHER+R7"
+    assert stops(source(text, twice)) == [31]  # 6 + 5 + 20
+    assert refused(source("TWICE(3,1)", twice)).code == "12330"
+
+
+def test_a_proc_that_cannot_be_read_is_told_itself() -> None:
+    error = refused(source("G0 Z1\nTWICE(3,1)", spf("TWICE", "PROC TWICE(REAL A)\nM17")))
+    assert (error.code, error.line) == ("12080", 2)
+    assert "TWICE.spf line 1" in error.message
+
+
+def test_variables_are_those_of_their_program() -> None:
+    inner = spf("INNER", "DEF REAL DEPTH=7\nG0 Z=DEPTH\nM17\n")
+    assert stops(source("DEF REAL DEPTH=1\nINNER\nG0 Z=DEPTH", inner)) == [7, 1]
+    blind = spf("BLIND", "G0 Z=DEPTH\nM17\n")
+    assert refused(source("DEF REAL DEPTH=1\nBLIND", blind)).code == "12550"
+
+
+def test_save_brings_back_g_functions_and_frame() -> None:
+    text = "G90 G94 DIAMON F100\nTRANS Z5\nINNER\nG1 X20 Z1"
+    loose = spf("INNER", "PROC INNER\nG91 DIAMOF\nTRANS\nM17\n")
+    kept = spf("INNER", "PROC INNER SAVE DISPLOF\nG91 DIAMOF\nTRANS\nM17\n")
+    assert [(b.mx, b.mz) for b in good(source(text, loose))] == [(30, 51)]  # by X20 Z1 from X10 Z50
+    assert [(b.mx, b.mz) for b in good(source(text, kept))] == [(10, 6)]
+
+
+def test_arrays_and_r_by_index() -> None:
+    text = "DEF REAL DEPTHS[3]=2\nDEPTHS[1]=-4\nR2=1\nR[R2+1]=8\nG0 Z=DEPTHS[2]\nZ=R[2]\nZ=R2\nZ=DEPTHS[R2/8]"
+    assert stops(text) == [2, 8, 8, -4]  # R2 is 8 from the fourth line on
+    assert refused("DEF REAL DD[2]\nDD[2]=1").code == "12550"
+    assert refused("DEF REAL DD[2]\nG0 Z=DD[2]").code == "array-index"
+    assert refused("R1=0.5\nG0 Z=R[R1]").code == "array-index"
+
+
+def test_mcall_acts_behind_each_move_until_mcall_alone() -> None:
+    hole = spf("HOLE", "PROC HOLE(REAL DEPTH)\nG0 Z=DEPTH\nZ2\nM17\n")
+    assert stops(source("MCALL HOLE(-5)\nR1=0\nG0 X10 Z2\nX20\nMCALL\nX30", hole)) == [2, -5, 2, 2, -5, 2, 2]
+
+
+@pytest.mark.parametrize(
+    ("text", "ends"),
+    [
+        ("AA:G0 Z=IC(1)\nZ=IC(1)\nREPEAT AA P=2\nZ99", [51, 52, 53, 54, 55, 56, 99]),
+        ("AA:G0 Z1\nBB:Z2\nZ3\nREPEAT AA BB\nZ4", [1, 2, 3, 1, 2, 4]),
+        ("AA:G0 Z1\nZ2\nENDLABEL:Z3\nZ4\nREPEAT AA", [1, 2, 3, 4, 1, 2, 3]),
+        ("AA:G0 Z1\nZ2\nREPEATB AA P=2\nZ3", [1, 2, 1, 1, 3]),
+        ("R1=0\nREPEAT\nR1=R1+1\nG0 Z=R1\nUNTIL R1==2", [1, 2]),
+    ],
+)
+def test_repeat(text: str, ends: list[float]) -> None:
+    assert stops(text) == ends
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("G0 Z1\nREPEAT NOWHERE", "14080"),
+        ("AA:G0 Z1\nREPEAT AA P=0", "passes"),
+        ("G0 Z1\nAA: REPEAT AA", "12640"),
+    ],
+)
+def test_repeat_refused(text: str, code: str) -> None:
+    assert refused(text).code == code
+
+
+@pytest.mark.parametrize(("value", "z"), [(1, 10), (2, 20), (3, 30)])
+def test_case_and_two_ifs_in_a_block(value: int, z: float) -> None:
+    ends = "AA:G0 Z10\nGOTOF QQ\nBB:G0 Z20\nGOTOF QQ\nCC:G0 Z30\nQQ:"
+    assert stops(f"R1={value}\nCASE R1 OF 1 GOTOF AA 2 GOTOF BB DEFAULT GOTOF CC\n{ends}") == [z]
+    assert stops(f"R1={value}\nIF R1==1 GOTOF AA IF R1==2 GOTOF BB\nGOTOF CC\n{ends}") == [z]
+
+
+def test_a_case_without_its_value_goes_on() -> None:
+    assert stops("R1=9\nCASE R1 OF 1 GOTOF AA\nG0 Z1\nAA:Z2") == [1, 2]
+    assert refused("CASE R1 1 GOTOF AA").code == "12080"
+
+
+def test_msg_joins_texts_and_numbers() -> None:
+    text = 'DEF STRING[20] PART="RING"\nR1=2.5\nMSG("Ø "<<R1*2<<" OF "<<PART)\nG0 Z1\nMSG()\nG0 Z2'
+    assert [block.modal.comment for block in good(text)] == ["Ø 5 OF RING", ""]
+
+
+def test_alarms_of_the_program_and_lines_without_effect() -> None:
+    assert refused("G0 Z1\nIF 1==1\nSETAL(65000)\nENDIF").code == "program-alarm"
+    assert stops('STOPRE\nSBLOF\nSBLON\nDISPLOF\nGROUP_BEGIN(0,"ROUGH",0,0)\nG0 Z1\nGROUP_END(0,0)') == [1]
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "word"),
+    [
+        ("CYCLE800(1)", "not-in-subset", "CYCLE800"),
+        ("POCKET3(5,0,1,-5,20,10)", "not-in-subset", "POCKET3"),
+        ("R1=$AA_IM[X]", "system-variable", "$AA_IM[X]"),
+        ("$TC_DP3[1,1]=5", "not-in-subset", "$TC_DP3"),
+        ("DEF FRAME SHIFT", "12080", "FRAME"),
+        ("CALL", "12080", "CALL"),
+    ],
+)
+def test_refused_by_name(text: str, code: str, word: str) -> None:
+    error = refused(f"G0 Z1\n{text}")
+    assert (error.code, error.line) == (code, 2)
+    assert word in error.message
+    assert error.hint
+
+
+def test_a_contour_that_a_cycle_names_is_read_with_the_program(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    (tmp_path / "kontur.spf").write_text("G1 X10 Z0\nM17\n")
+    found = with_called_files(source('CYCLE95("KONTUR",1)'), [tmp_path])
+    assert [each.name.lower() for each in found.subprograms] == ["kontur.spf"]

@@ -1,0 +1,75 @@
+"""The code book of SINUMERIK: each construct has an entry, each example proves, each refusal is told."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from app.compose.machine_files import shipped_machine
+from app.compose.machine_setup import setup_for
+from core.interpreter.code_book_page import page
+from core.interpreter.job_setup import ToolOffset
+from core.language.code_book import Entry
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.sinumerik import sinumerik_words
+from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE
+from core.language.sinumerik.program_jumps import Steering
+from core.language.sinumerik.sinumerik_book import BOOK
+from core.language.source import Dialect, Source
+from core.machine.machine_model import Machine
+from core.proving.prove_program import prove
+from core.tool_edges import edge_key
+from tests.sinumerik.lathe import MODULO
+
+LIVE = shipped_machine("sinumerik-live")
+"""Its spindle is C."""
+
+TOOLS = {1: ToolOffset(name="ROUGHER", quadrant=3), edge_key(1, 2): ToolOffset(z=-3.0)}
+
+
+def errors_of(entry: Entry, lines: str, machine: Machine = MODULO) -> list[Diagnostic]:
+    text = lines if entry.whole else f"{BOOK.head}{lines}\n{BOOK.tail}{entry.behind}"
+    files = tuple(Source(name, each) for name, each in entry.files)
+    setup = setup_for(machine, tools=TOOLS, secondary={})
+    report = prove(Source("EXAMPLE.MPF", text, subprograms=files), setup, machine)
+    return [each for each in report.diagnostics if each.severity is Severity.ERROR]
+
+
+@pytest.mark.parametrize(
+    "entry", [each for each in BOOK.entries if each.example], ids=lambda entry: entry.head
+)
+def test_the_example_proves(entry: Entry) -> None:
+    found = errors_of(entry, entry.example)
+    if any(each.code == "spindle-position" for each in found):
+        found = errors_of(entry, entry.example, LIVE)
+    assert [each.in_one_line("") for each in found] == []
+    assert entry.what.endswith(".")
+
+
+@pytest.mark.parametrize(
+    "entry", [each for each in BOOK.entries if each.refused], ids=lambda entry: entry.head
+)
+def test_what_is_no_program_is_refused(entry: Entry) -> None:
+    said = [f"{each.message} {each.hint}" for each in errors_of(entry, entry.refused)]
+    assert any(entry.why in each for each in said), said
+
+
+def test_every_construct_has_its_entry() -> None:
+    """What the reader knows, by its own tables."""
+    heads = {entry.head for entry in BOOK.entries}
+    codes = {f"G{number}" for number in sinumerik_words.G_GROUPS} | {f"M{n}" for n in sinumerik_words.M_CODES}
+    words = sinumerik_words.VOCABULARY - {"G", "M"}
+    assert (codes | words | {str(each) for each in Steering} | set(CYCLES)) - heads == set()
+    assert len(heads) == len(BOOK.entries)
+
+
+def test_every_construct_is_shown_in_use_and_refused() -> None:
+    """A cycle that is refused by its name has no example; everything else has both."""
+    assert [each.head for each in BOOK.entries if not each.example] == list(CYCLES_OUTSIDE)
+    assert [each.head for each in BOOK.entries if not (each.refused and each.why)] == []
+
+
+def test_the_page_is_that_of_the_book() -> None:
+    written = Path(__file__).parents[2] / "docs" / "sinumerik-codes.md"
+    assert written.read_text(encoding="utf-8") == page(Dialect.SINUMERIK), "print it anew: CONTRIBUTING.md"

@@ -1,0 +1,98 @@
+"""The third axis by the name of the machine file: Q1, B or Y in the place of C."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from app.compose.machine_files import parse_machine, shipped_machine
+from app.compose.machine_setup import control_limits
+from app.desk.readouts import Readout, position_figures
+from app.jog.jog_speeds import directions_of
+from core.executor.snapshot import Snapshot
+from core.interpreter.checkpoint import Begin, Checkpoint
+from core.interpreter.job_setup import Setup, ZeroOffset
+from core.language.sinumerik import lex_line
+from core.machine.machine_model import Machine
+from core.table_schema import MachineFileError
+from tests.sinumerik.lathe import good, refused, run, setup
+
+TEXT = shipped_machine("sinumerik-modulo").text
+
+
+def of(name: str) -> Machine:
+    return parse_machine(TEXT.replace("[axis.C]", f'[axis.C]\nname = "{name}"'), "t")
+
+
+def around(name: str) -> Setup:
+    return setup(of(name))
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("Q1", "G0 Q1=90 X30"), ("Q1", "G0 X30 Q1 = DC(90)"), ("Q1", "G0 X30Q1=AC(90)"),
+        ("B", "G0 X30 B90"), ("B", "G0 X30B90."), ("B", "G0 B=90 X30"), ("b1", "G0 X30 B1=90"),
+        ("Y", "G0 X30 Y90"), ("A", "G0 A=ACP(90) X30"),
+    ],
+)  # fmt: skip
+def test_its_words_turn_the_third_axis(name: str, words: str) -> None:
+    (block,) = good(words, around(name.upper()))
+    assert (block.c, block.mx) == (90.0, 15.0)
+    assert block.text == words
+
+
+def test_its_offsets_and_distances() -> None:
+    """G54 turns it by 15, TRANS by 30: position 10 of the program is 55; then 20 on."""
+    zero = replace(around("B"), zero={54: ZeroOffset(c=15.0)})
+    first, second = good("G54\nTRANS B30\nG0 B=DC(10)\nG91 B20", zero)
+    assert (first.machine_end[2], second.machine_end[2]) == pytest.approx((55.0, 75.0))
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "code", "said"),
+    [
+        ("Q1", "G0 C90", "not-in-subset", "no axis C; its third axis is Q1"),
+        ("Q1", "G0 X10 C=DC(90)", "not-in-subset", "no axis C; its third axis is Q1"),
+        ("Q1", "G0 B90", "not-in-subset", "no axis B"),
+        ("Q1", "G0 Q1=360", "16830", "axis Q1"),
+        ("B", "G0 B=DC(360)", "16830", "axis B"),
+        ("B", "G0 B10 B20", "12010", ""),
+        ("B", "G0 B=QC(1)", "12080", ""),
+        ("C", "G0 B90", "not-in-subset", "no axis B"),
+        ("Y", "M5\nTRANSMIT", "14401", "third axis of this machine is Y"),
+    ],
+)
+def test_what_is_refused(name: str, text: str, code: str, said: str) -> None:
+    error = refused(text, around(name))
+    assert error.code == code
+    assert said in error.message
+
+
+def test_texts_and_variables_stay_what_they_are() -> None:
+    passed = run('DEF REAL CB1=3\nMSG("C90 B90")\nG0 Z=CB1\nLABEL_B:\nR1=2', around("B"))
+    assert passed.errors == []
+    line = lex_line(1, 'N10 MSG("B90 C90")', "B")
+    assert line.errors == ()
+
+
+def test_a_line_of_mdi_knows_it_too() -> None:
+    begin = Begin(Checkpoint(run("G0 X20", around("Q1")).blocks[-1].modal), single=True)
+    blocks = run("G0 Q1=45", replace(around("Q1"), begin=begin)).moves
+    assert [block.c for block in blocks] == [45.0]
+
+
+def test_the_machine_file_says_it() -> None:
+    assert control_limits(of("Q1")).third_axis == "Q1"
+    assert shipped_machine("sinumerik-modulo").third_axis == "C"
+    for wrong in ("X", "Z", "Q", "SPINDLE", "Q10", ""):
+        with pytest.raises(MachineFileError, match=r"axis\.C\.name"):
+            of(wrong)
+
+
+def test_positions_and_keys_call_it_so() -> None:
+    machine = of("Q1")
+    assert [way.shown for way in directions_of(machine) if way.axis == "C"] == ["Q1", "Q1"]
+    shown = position_figures(Snapshot(), Readout.POSITION, True, True, machine.third_axis)
+    assert [axis.name for axis in shown.axes] == ["X", "Z", "Q1"]

@@ -1,0 +1,130 @@
+"""T and D: what they make of positions, by hand; the table that they read; and what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from core.interpreter.actions import ToolChange
+from core.interpreter.dialects import interpretation
+from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset
+from core.language.diagnostics import Severity
+from core.tool_edges import edge_key
+from tests.sinumerik.lathe import good, refused, run, setup, source
+
+TOOLS = {
+    1: ToolOffset(30.0, 40.0, 0.8, 3, "ROUGHER"),
+    edge_key(1, 2): ToolOffset(31.0, 36.0, 0.2, 4),
+    2: ToolOffset(-5.0, 12.5, 0.4, 2, "Bore 12"),
+}
+
+
+def around(zero: ZeroOffset | None = None) -> Setup:
+    return replace(setup(zero={54: zero or ZeroOffset(0.0, -200.0)}), tools=TOOLS, start=(100.0, 100.0, 0.0))
+
+
+def ends(text: str) -> list[tuple[float, float]]:
+    return [(block.mx, block.mz) for block in good(text, around())]
+
+
+def test_length_and_zero_offset_are_summed() -> None:
+    """X20 is a radius of 10; the slide stands 30 further, and Z -200 + 40 from where Z5 is."""
+    assert ends("G54 T1 D1\nG0 X20 Z5") == [(40.0, 5.0 - 200.0 + 40.0)]
+
+
+def test_t_takes_d1_and_d_another_edge() -> None:
+    assert ends("T1\nG0 X20 Z5\nD2\nX20 Z5\nD0\nX20 Z5") == [(40.0, 45.0), (41.0, 41.0), (10.0, 5.0)]
+
+
+def test_the_slides_stay_where_t_and_d_stand() -> None:
+    """Only the words behind it go to the new place: Z stays where it was."""
+    assert ends("T1\nG0 X20 Z5\nT2\nX20") == [(40.0, 45.0), (5.0, 45.0)]
+
+
+@pytest.mark.parametrize("word", ['T="ROUGHER"', 'T="rougher"', "T=1", "R1=1 T=R1", "T1 D1", "T01"])
+def test_one_tool_by_many_names(word: str) -> None:
+    assert ends(f"{word}\nG0 X20 Z5") == [(40.0, 45.0)]
+
+
+def test_g53_leaves_the_tool_and_d0_takes_it_away() -> None:
+    assert ends("G54 T1\nG53 G0 X20 Z5\nSUPA G0 X20 Z5 D0") == [(40.0, 45.0), (10.0, 5.0)]
+
+
+def test_t0_is_no_tool() -> None:
+    assert ends("T1\nT0\nG0 X20 Z5") == [(10.0, 5.0)]
+
+
+def test_the_edges_are_told_to_whoever_cuts() -> None:
+    passed = run("T1\nG0 X20\nD2\nX22\nT2 D1", around())
+    assert [block.action.tool for block in passed.blocks if isinstance(block.action, ToolChange)] == [
+        1, edge_key(1, 2), 2,
+    ]  # fmt: skip
+    program = interpretation(source("T1\nD2\nT2"), around())
+    list(program.blocks())
+    assert program.used_tools == [1, edge_key(1, 2), 2]
+
+
+@pytest.mark.parametrize("word", ["T7", 'T="NOBODY"'])
+def test_a_tool_that_nobody_has_measured_is_told_and_will_not_start(word: str) -> None:
+    program = interpretation(source(f"G0 X50\nN20 {word}\nG0 X20"), around())
+    list(program.blocks())
+    (found,) = program.diagnostics
+    assert (found.severity, found.code, found.line) == (Severity.WARNING, "tool-offset-missing", 2)
+    assert "will refuse to start" in found.message
+    assert "F8" in found.hint
+    assert len(program.missing_tools) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("T1\nN30 D3", "17180"),
+        ("T1\nD0\nN30 T2 D2", "17180"),
+        ("G0 X1\nN30 D1", "17180"),
+        ("G0 X1\nN30 T=1/2", "17190"),
+        ("T1\nN30 G91 X5", None),
+    ],
+)
+def test_refused(text: str, code: str | None) -> None:
+    if code is None:
+        assert refused(f"G0 {text}", around()).code == "distance-behind-tool"
+        return
+    error = refused(text, around())
+    assert (error.code, error.line) == (code, text.count("\n") + 1)
+    assert error.hint
+
+
+def test_a_distance_behind_a_position_is_fine() -> None:
+    assert ends("T1\nG0 X20 Z5\nG91 X2 Z1") == [(40.0, 45.0), (41.0, 46.0)]
+
+
+# --- what a program reads of its tool
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("T3 D2\nR1=$P_TOOLNO", 3.0),
+        ("T3 D2\nR1=$P_TOOL", 2.0),
+        ("T3 D2\nR1=$P_TOOLR", 0.8),
+        ("T3 D1\nR1=2*$P_TOOLR", 0.8),
+        ("T3 D2\nD0\nR1=$P_TOOLR+$P_TOOL", 0.0),
+        ("T3 D2\nT0\nR1=$P_TOOLNO", 0.0),
+        ("R1=$P_TOOLNO", 0.0),
+    ],
+)
+def test_a_program_reads_its_tool(text: str, value: float) -> None:
+    tools = {3: ToolOffset(nose_radius=0.4), edge_key(3, 2): ToolOffset(nose_radius=0.8)}
+    ran = run(f"{text}\nG0 Z=R1", replace(setup(), tools=tools))
+    assert ran.found == []
+    assert ran.moves[-1].z == value
+
+
+@pytest.mark.parametrize(
+    "text", ["R1=$P_TOOLL[1]", "R1=$AA_IM[X]", "R1=$P_AXN1", "G70\nR1=$P_TOOLR", 'T="SOME"\nR1=$P_TOOLNO']
+)
+def test_other_system_variables_are_refused_by_name(text: str) -> None:
+    error = refused(text)
+    assert error.code == "system-variable"
+    assert text.rpartition("=")[2] in error.message

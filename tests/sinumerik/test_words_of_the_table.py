@@ -1,0 +1,109 @@
+"""Every word of the table: its example runs, what is refused is refused by its name."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.compose.machine_files import shipped_machine
+from core.interpreter.elementary_blocks import Kind
+from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset
+from core.language.diagnostics import Severity
+from core.language.sinumerik.cycle_names import CYCLES_OUTSIDE
+from core.language.sinumerik.sinumerik_book import BOOK
+from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, OUTSIDE, WORDS
+from core.machine.machine_model import Machine
+from tests.sinumerik.lathe import MODULO, refused, run, setup
+
+EXAMPLES = {
+    **FUNCTIONS,
+    **WORDS,
+    **{f"M{code}": entry for code, entry in M_FUNCTIONS.items()},
+}
+
+
+LIVE = shipped_machine("sinumerik-live")
+"""Its spindle is C."""
+
+NEED_C = frozenset({"G331", "G332", "SPOS", "SPOSA", "M19", "M70"})
+
+
+def around(machine: Machine = MODULO) -> Setup:
+    tools = {1: ToolOffset(1.0, 2.0, 0.4, 3, "ROUGHER")}
+    return replace(setup(machine), tools=tools, start=(60.0, 80.0, 0.0))
+
+
+@pytest.mark.parametrize("name", [name for name, entry in EXAMPLES.items() if entry.example])
+def test_an_example_runs(name: str) -> None:
+    text = EXAMPLES[name].example.replace("|", "\n")
+    passed = run(text, around(LIVE if name in NEED_C else MODULO))
+    assert [each for each in passed.found if each.severity is not Severity.NOTE] == []
+    assert bool(EXAMPLES[name].idle) is any(each.code == "no-effect" for each in passed.found) or "M6" in text
+
+
+PATH = "G1 X40 Z-5 F200\n{}X30 Z-20\nX50"
+_TAKEN = """
+    G601 G602 G603 G641 G642 G643 G644 G645 COMPOF CFTCP CPRECOF CUT2D CUT2DF FNORM G71 G710 WALIMON WALIMOF
+    G40 NORM KONT G450 G451 G500 G290 TRAFOOF DISPLON DISPLOF SBLON SBLOF M7 M8 M9 M40 M41 M42 M43 M44 M45
+"""
+SWITCHES_NOTHING = (
+    *(name for name, entry in FUNCTIONS.items() if entry.idle),
+    *_TAKEN.split(),
+    *("ADIS=0.5", "ADISPOS=0.5", "DITS=2", "DITE=2"),
+    *("CYCLE832(0.01,1,1)", "CYCLE832()", "CYCLE800()"),
+)
+
+
+@pytest.mark.parametrize("name", SWITCHES_NOTHING)
+def test_what_switches_nothing_leaves_the_path_as_it_is(name: str) -> None:
+    """Where the word stands alone in a block, and where it is left out: the same ways at the same feeds."""
+    without = [(b.x, b.z, b.kind, b.feed) for b in run(PATH.format(""), around()).moves]
+    passed = run(PATH.format(f"{name}\n"), around())
+    assert passed.errors == []
+    assert [(b.x, b.z, b.kind, b.feed) for b in passed.moves] == without
+
+
+ROWS = {**{f"G{row}": row for row in range(54, 60)}, "G505": 58, "G506": 59}
+
+
+@pytest.mark.parametrize(("name", "row"), ROWS.items())
+def test_a_settable_offset_is_its_row(name: str, row: int) -> None:
+    """X as a radius: 40 across, 7 mm of the row; Z -5 and 30 of it."""
+    shifted = replace(around(), zero={row: ZeroOffset(7.0, 30.0, 0.0)})
+    assert [b.machine_end[:2] for b in run(f"{name} G0 X40 Z-5", shifted).moves] == [(27.0, 25.0)]
+    assert [b.machine_end[:2] for b in run(f"{name}\nG153 G0 X40 Z-5", shifted).moves] == [(20.0, -5.0)]
+
+
+def test_a_frame_scaled_further() -> None:
+    """Twice, then by half again: three times the Z of the program."""
+    assert [b.z for b in run("SCALE Z2\nASCALE Z1.5\nG0 X20 Z5", around()).moves] == [pytest.approx(15.0)]
+
+
+def test_to_the_first_block_and_on() -> None:
+    text = "IF $P_TOOLNO==1 GOTOF DONE\nG0 Z1\nT1\nGOTOS\nG0 Z9\nDONE: G0 Z=2"
+    ways = [(b.line, b.kind) for b in run(text, around()).moves]
+    assert ways == [(2, Kind.RAPID), (6, Kind.RAPID)]
+
+
+def test_boring_with_a_dwell_feeds_out() -> None:
+    passed = run("S1000 M3 G94 F120 G17\nG0 X0 Z5\nCYCLE89(4,0,1,-9,,1)", around())
+    assert [(b.z, b.kind) for b in passed.moves[2:]] == [(-9, Kind.FEED), (1, Kind.FEED), (4, Kind.RAPID)]
+
+
+def test_every_construct_has_a_golden() -> None:
+    """Some test of this room names it beside the book: what it does is worked out by hand there."""
+    said = "".join(path.read_text(encoding="utf-8") for path in Path(__file__).parent.glob("*.py"))
+    words = {match.upper() for match in re.findall(r"\$?[A-Za-z_]+[0-9]*", said.replace("\\n", " "))}
+    words |= {*re.findall(r"\b[A-Z](?=-?[0-9])", said)}  # J0 is J
+    taken = {re.split("[=(]", name)[0] for name in SWITCHES_NOTHING} | ROWS.keys() | {"R"}
+    assert sorted({entry.head for entry in BOOK.entries} - CYCLES_OUTSIDE.keys() - words - taken) == []
+
+
+@pytest.mark.parametrize("name", OUTSIDE)
+def test_what_is_not_executed_is_refused_by_its_name(name: str) -> None:
+    error = refused(f"N30 {name}", around())
+    assert error.code == "not-in-subset"
+    assert f"{name}: {OUTSIDE[name]}" in error.message
