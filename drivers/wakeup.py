@@ -4,10 +4,14 @@ looked at less often.
 
 from __future__ import annotations
 
+import select
+import socket
 import threading
-from collections.abc import Callable
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, suppress
 from types import TracebackType
+
+_CHUNK = 1 << 16
 
 
 class Wakeup:
@@ -29,6 +33,39 @@ class Wakeup:
         rung = self._rung.wait(seconds)
         self._rung.clear()
         return rung
+
+
+class Bell:
+    """The same between two processes: whoever has ``far`` rings, and so does this one from any thread."""
+
+    def __init__(self) -> None:
+        self._near, self.far = socket.socketpair()
+        self._near.setblocking(False)
+        self.far.setblocking(False)
+
+    def ring(self) -> None:
+        """One that is full rings already; one that is closed wakes nobody."""
+        with suppress(OSError):
+            self.far.send(b"!")
+
+    def wait(self, seconds: float, files: Sequence[int] = ()) -> bool:
+        """Until it rings or one of the files can be read, so long at most; whether it has or can. What rang
+        before counts.
+        """
+        try:
+            if not select.select([self._near.fileno(), *files], [], [], seconds)[0]:
+                return False
+        except (OSError, ValueError):  # closed meanwhile
+            return True
+        with suppress(OSError):
+            while self._near.recv(_CHUNK):
+                pass
+        return True
+
+    def close(self) -> None:
+        """It rings no more."""
+        self._near.close()
+        self.far.close()
 
 
 class Touch:

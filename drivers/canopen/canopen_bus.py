@@ -26,6 +26,7 @@ _GARBLED = 3  # frames of a wrong shape
 _BUS_OFF = 0x40  # class of an error frame: the controller has switched itself off
 _OPERATIONAL = 5
 _ROUNDS = 400  # looks at a bus whose clock stands, before nobody answers
+_EARLY = 0.005  # s by which our heartbeat may go out with something else
 _BEAT, _SYNC, _NMT = 0x700, 0x080, 0x000
 _ECHOING = ("udp_multicast",)  # hears itself: no other master can be told apart
 
@@ -41,7 +42,7 @@ class Bus(canopen.Network):
         self.trouble: Fault | str = ""  # why the bus cannot be trusted; stays until it is opened anew
         self._idle = idle
         self.meanwhile: Callable[[], float] | None = None  # goes on in every wait; s until it has to again
-        self._next_beat = clock.now()
+        self.next_beat = clock.now()  # when ours is due
         if config.interface not in _ECHOING:
             for cob in (_SYNC, _NMT, _BEAT + config.host_id):
                 self.subscribe(cob, self._another_master)
@@ -60,7 +61,7 @@ class Bus(canopen.Network):
         except DriverError as error:
             raise DriverError(f"{self.trouble}; {error}", "bus") from error
         self.trouble, self.garbled = "", 0
-        self._next_beat = self.clock.now()
+        self.next_beat = self.clock.now()
 
     def pump(self, wait: float = 0.0) -> None:
         """Take in what has come, waiting at most ``wait`` for the first; our heartbeat goes out from here.
@@ -83,8 +84,8 @@ class Bus(canopen.Network):
     def beat(self, *, at_once: bool = False) -> None:
         """Our heartbeat, when it is due. A node begins to watch it with the first that it hears."""
         now = self.clock.now()
-        if (at_once or now >= self._next_beat) and not self.trouble:
-            self._next_beat = now + self.config.heartbeat
+        if (at_once or now >= self.next_beat - _EARLY) and not self.trouble:
+            self.next_beat = now + self.config.heartbeat
             with contextlib.suppress(DriverError):  # kept as the bus's trouble
                 self.send_message(_BEAT + self.config.host_id, bytes([_OPERATIONAL]))
 

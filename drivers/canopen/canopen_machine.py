@@ -34,6 +34,9 @@ _UNTRACED = (
 )
 _BEFORE, _PART_BEFORE = 0.0004, 0.3  # s, and of a period: before a SYNC its answers are taken in
 _EPSILON = 1e-9
+_ANSWER = 0.01  # s in which they come
+_EARLY = 0.3  # of the time between two SYNCs, by which one may then go out with something else
+_RESTING = 0.1  # s between two answers of every node while the control sleeps
 _QUIET = 1.0  # s between two notes
 _FIRST = 0.5  # s in which everything must have answered a first SYNC
 
@@ -76,6 +79,10 @@ class CanopenMachine:
         self.bus = Bus(config.bus, clock, idle)
         self._next = clock.now()
         self._looked = self._feeding = False  # since the last SYNC; setpoints are being made
+        self._sent = self._next  # the last SYNC
+        self._early = _EPSILON
+        self.asked = False  # the last round has sent SYNC, and the next takes the answers in
+        self._waits = False  # for answers to it
         self._count = 0  # SYNCs
         self._told = -_QUIET
         try:
@@ -96,6 +103,8 @@ class CanopenMachine:
                 self.spindle.drive if self.spindle is not None else None,
             )
             self.axes.reconnect = self._reconnect
+            if self.axes.cyclic:
+                self.axes.queue.give_way = self._give_way
             self._connect()
         except DriverError:
             self.bus.close()
@@ -210,9 +219,17 @@ class CanopenMachine:
             self._cycle()
         return max(self.axes.schedule.due - self.clock.now(), 0.0)
 
+    def _give_way(self) -> None:
+        """While a long path is taken in: SYNC at its time, with the answers to the last before it."""
+        if self.clock.now() >= self.axes.schedule.due - _EPSILON and not self.bus.trouble:
+            self.bus.pump()
+            self._cycle()
+
     def _look(self, *, exchange: bool) -> None:
         """Take in and supervise; ``exchange``: feed, command and SYNC in one where it is time."""
+        before, self.asked = self.asked, False
         self.bus.pump()
+        self._waits = self._waits and not self._answered()
         now = self.clock.now()
         self.axes.tick(now)
         self.samples.note(now)
@@ -228,12 +245,30 @@ class CanopenMachine:
                 self.c.tick(now)
             if self.encoder is not None:
                 self.encoder.look()
-            if exchange and (now >= self._next or self.axes.follower.urgent):
+            early = _EPSILON if self._waits else self._early
+            if exchange and (now >= self._next - early or self.axes.follower.urgent):
                 self._next = max(self._next, now - self.config.bus.sync) + self.config.bus.sync
+                self._sent = now
                 self.axes.follower.urgent = False
                 self._exchange()
+                self._waits, self.asked = (
+                    True,
+                    not before,
+                )  # where SYNCs follow at once every other one counts
         except DriverError as error:
             self.bus.lost(str(error))
+
+    def idle(self, asleep: bool) -> float:
+        """Seconds until SYNC or heartbeat are due, or a SYNC is to have been answered; 0 where a drive is not
+        at rest. Where the control sleeps nothing needs to be heard more than ten times a second.
+        """
+        bus = self.config.bus
+        apart = max(bus.sync, _RESTING / bus.seldom if asleep else 0.0)
+        self._next, self._early = self._sent + apart, _EARLY * apart if asleep else _EPSILON
+        if not asleep or self.bus.trouble or self.axes.follower.urgent or self.axes.sample().moving:
+            return 0.0
+        next_ = min(self._next, self.bus.next_beat) - self.clock.now()
+        return max(min(next_, _ANSWER) if self._waits else next_, 0.0)
 
     def close(self) -> None:
         """Power off as far as the bus still works, and let it go."""

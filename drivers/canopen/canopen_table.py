@@ -45,6 +45,7 @@ _LEAST = 16  # counts a turn of an encoder
 
 MODES = ("pvt", "csp", "ip", "pp")
 CYCLIC = ("csp", "ip")  # a setpoint each SYNC
+EVENED_OUT = 0.25  # of a period that a SYNC may be late
 _BUS = (
     Field("interface", Kind.TEXT, default="socketcan"),
     Field("channel", Kind.TEXT),

@@ -157,6 +157,8 @@ class CanopenIO:
         if wheel is not None:
             self._module(wheel.terminal).counting.add(wheel.terminal.sub)
         self._written: dict[str, bool] = {}
+        self._heard: tuple[object, ...] = ()  # words of the inputs, as they were last read
+        self._inputs: Mapping[str, bool] = {}
         self._wheel: tuple[int, int] | None = None  # its counter at the last look, and what was counted
 
     def connect(self) -> None:
@@ -209,7 +211,14 @@ class CanopenIO:
 
     def inputs(self) -> Mapping[str, bool]:
         """All inputs by name; active is True."""
-        return {name: self._read(where) for name, where in self._config.inputs.items()}
+        heard = (
+            *(bytes(module.inputs) for module in self.modules.values()),
+            *(drive.inputs for drive in self._drives.values()),
+        )
+        if heard != self._heard:
+            self._heard = heard
+            self._inputs = {name: self._read(where) for name, where in self._config.inputs.items()}
+        return self._inputs
 
     def outputs(self) -> Mapping[str, bool]:
         """All outputs as last written."""

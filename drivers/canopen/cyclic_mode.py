@@ -7,16 +7,17 @@ faster by a fiftieth. More than 10 ms is a fault: the drives have stood still in
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from core.ports import Fault, at_rest
 from drivers.canopen.canopen_objects import BIT_12, IP, NEW
+from drivers.canopen.canopen_table import EVENED_OUT
 from drivers.canopen.cia402_drives import DrivenAxis
 from drivers.canopen.position_modes import Follower
 from drivers.setpoint_queue import SetpointQueue
 
 LONGEST = 0.01  # s without a setpoint in motion; more is a fault
-_EVENED_OUT = 0.25  # of a period that a SYNC may be late
 _MADE_GOOD = 0.02  # of a period, in each
 _BEGIN = 0.3  # s in which a drive must have begun to interpolate
 
@@ -37,7 +38,7 @@ class SyncSchedule:
         """
         late = max(now - self.due, 0.0)
         self.worst = max(self.worst, late)
-        longer = late - self._late if late > _EVENED_OUT * self.period else 0.0
+        longer = late - self._late if late > EVENED_OUT * self.period else 0.0
         missed = int(late / self.period + 1e-6)
         self._late = late - missed * self.period
         self.due += (missed + 1) * self.period
@@ -59,8 +60,10 @@ class CyclicFollower(Follower):
         self.mode = mode
         self.schedule = schedule
         self.lag = 0.0  # s that the path is behind the clock
+        self._fed = -math.inf  # the path up to which the drives have setpoints
         self.gaps = 0  # times that the drives stood at a setpoint in motion
         self._asked: float | None = None  # s, when the drives were told to interpolate
+        queue.handed_out = lambda: self._fed
 
     @property
     def playing(self) -> bool:
@@ -94,7 +97,8 @@ class CyclicFollower(Follower):
         """What the drives take at the next SYNC, and reach by the one behind it."""
         standing = at_rest(self._queue.horizon(-1e9), self.path_time(now))
         self.lag = 0.0 if standing else max(self.lag - _MADE_GOOD * self.schedule.period, 0.0)
-        p, _ = self._queue.demand_at(self.path_time(self.schedule.due + self.schedule.period))
+        self._fed = self.path_time(self.schedule.due + self.schedule.period)
+        p, _ = self._queue.demand_at(self._fed)
         for axis, index in zip(self._axes, self._indices, strict=True):
             axis.drive.target = round(p[index] / axis.config.count)
         if self.mode == IP:

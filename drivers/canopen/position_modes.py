@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
 import numpy as np
@@ -13,7 +14,7 @@ from drivers.canopen.cia402_drives import DrivenAxis
 from drivers.setpoint_queue import SetpointQueue
 
 
-class Follower:
+class Follower(ABC):
     """Keeps the drives on the queue; the drives begin where they stand."""
 
     mode: int  # of CiA 402
@@ -42,9 +43,9 @@ class Follower:
     def braked(self, at: float) -> None:
         """The queue brakes from ``at`` on, without anything spliced: most take that up by the next feed."""
 
+    @abstractmethod
     def feed(self, now: float) -> None:
         """Once a tick, before the commands go out."""
-        raise NotImplementedError
 
     def prepare(self) -> None:
         """Before the drives get power."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import queue
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -43,14 +43,19 @@ from drivers.feeder.feeder_messages import (
     texts,
 )
 from drivers.reopening import Opening
+from drivers.wakeup import Bell
 
 _log = logging.getLogger(__name__)
 _FRESH = 0.002  # s for which one look serves all ports
+_RESTS = 0.02  # s for which it does while the control sleeps: one tick, and what is new rings
 _BATCHES = 200  # of samples that wait for whoever records them
 
 
 class Link(Protocol):
-    """Carries a request to the feeder and its answer back."""
+    """Carries a request to the feeder and its answer back; ``files`` are what can be waited for."""
+
+    @property
+    def files(self) -> Sequence[int]: ...
 
     def ask(self, message: Message) -> Message:
         """Raises DriverError when there is no answer."""
@@ -75,13 +80,22 @@ class Line:
     """Requests in words, and the last look at everything.
 
     ``again`` begins to start another feeder in the place of one that is gone: there is no other way back.
+    ``bell`` is rung by the feeder too, while the control sleeps.
     """
 
-    def __init__(self, link: Link, clock: Clock, again: Callable[[], Opening[Link]] | None = None) -> None:
+    def __init__(
+        self,
+        link: Link,
+        clock: Clock,
+        again: Callable[[], Opening[Link]] | None = None,
+        bell: Bell | None = None,
+    ) -> None:
         self._link = link
         self._again = again
         self._opening: Opening[Link] | None = None
         self.clock = clock
+        self.bell = bell
+        self._asleep = self._sleeps = False  # as the feeder has been told, and as the next look says
         self.fault: Fault | str = ""  # why the feeder cannot be asked any more
         self._state: Mapping[str, object] = {}
         self._at = -1.0
@@ -94,6 +108,7 @@ class Line:
             raise DriverError(self.fault)
         if self._opening is not None:
             raise DriverError("the feeder is being started again", "feeder-gone")
+        self._asleep = False
         try:
             answer = self._link.ask(message)
         except DriverError as error:
@@ -113,17 +128,37 @@ class Line:
     def post(self, message: Message) -> None:
         """From any thread: goes out before the next look, unanswered."""
         self._posted.put(message)
+        if self.bell is not None:
+            self.bell.ring()
+
+    def sleep(self) -> None:
+        """Until anything but a look is asked for the feeder rings for what is new. Raises DriverError."""
+        if not self._asleep:
+            self.ask(Message({"do": "rest"}, NOTHING))
+        self._asleep = self._sleeps = True
+
+    def awake(self) -> None:
+        """Looks come as ever, and the next one is a new one."""
+        self._sleeps, self._at = False, -1.0
+
+    @property
+    def files(self) -> Sequence[int]:
+        """Of the link: nothing comes there that is not asked for, but its end."""
+        return self._link.files
 
     def look(self, *, anew: bool = False) -> Mapping[str, object]:
-        """Everything that can be seen, at most 2 ms old; the last known when the feeder is gone."""
+        """Everything that can be seen, of this tick; the last known when the feeder is gone."""
         if self._opening is not None:
             self._reopen(self._opening)
         now = self.clock.now()
-        if not self.lost and (anew or not 0.0 <= now - self._at < _FRESH):
+        fresh = _RESTS if self._asleep else _FRESH
+        if not self.lost and (anew or not 0.0 <= now - self._at < fresh):
             try:
                 while not self._posted.empty():
                     self.ask(self._posted.get())
-                answer = self.ask(Message({"do": "look"}, NOTHING))
+                sleeps, self._sleeps = self._sleeps, False
+                answer = self.ask(Message({"do": "look", "rests": sleeps}, NOTHING))
+                self._asleep = sleeps
                 self._state = answer.head
                 if len(answer.numbers):
                     self.sampled.append(answer.numbers)
@@ -297,6 +332,30 @@ class FeederSpindle(_OnLine):
         return self._line.fault or fault_of(self._line.look(), "spindle", "spindle")
 
 
+class FeederWakeup(_OnLine):
+    """``core.ports.Wakeup``: the feeder goes on looking, and rings."""
+
+    def __init__(self, line: Line, bell: Bell) -> None:
+        super().__init__(line)
+        self._bell = bell
+        self.ring = bell.ring
+
+    def settled(self) -> bool:
+        """Whatever changes there, it rings."""
+        return not self._line.lost
+
+    def wait(self, seconds: float) -> bool:
+        """Until it rings, so long at most; whether it has. A feeder that ends rings too."""
+        try:
+            self._line.sleep()
+        except DriverError:
+            return True  # the next look tells why
+        rung = self._bell.wait(seconds, self._line.files)
+        if rung:
+            self._line.awake()
+        return rung
+
+
 class FeederSamples(_OnLine):
     """``core.ports.SampleSource``: they have come with the looks."""
 
@@ -407,6 +466,7 @@ def feeder_ports(line: Line) -> MachinePorts:
         halt=line.hang_up,
         untraced=str(hello.get("untraced") or ""),
         samples=FeederSamples(line, hello) if hello.get("samples") else None,
+        wakeup=FeederWakeup(line, line.bell) if line.bell is not None else None,
         unknown=line.unknown,
         touch=FeederTouch(line) if hello.get("touch") is True else None,
     )

@@ -12,6 +12,7 @@ from drivers.feeder.feeder_messages import Inbox, Message, packed, text
 from drivers.feeder.feeder_server import Feeder
 
 _QUICK = 0.5  # s for an answer; the feeder's loop takes milliseconds
+_AT_ONCE = 0.05  # s that one look counts of it at most: who stood still himself blames nobody
 # s for orders that wait for a drive; a fault that is cleared may mean to configure all of a bus
 _SLOW = {"enable": 5.0, "home": 5.0, "clear_fault": 15.0}
 _CHUNK = 1 << 16
@@ -19,6 +20,8 @@ _CHUNK = 1 << 16
 
 class LoopLink:
     """The feeder in the same thread, by the same bytes as over the socket: for tests and headless runs."""
+
+    files = ()  # it cannot end unseen
 
     def __init__(self, feeder: Feeder) -> None:
         self._feeder = feeder
@@ -47,13 +50,18 @@ class SocketLink:
         self._socket.setblocking(True)
         self._inbox = Inbox()
 
+    @property
+    def files(self) -> tuple[int, ...]:
+        """Readable when the feeder has ended."""
+        return (self._socket.fileno(),)
+
     def ask(self, message: Message) -> Message:
         """Raises DriverError when the feeder has gone or does not answer in time."""
         limit = _SLOW.get(text(message.head, "what"), _QUICK)
         try:
             self._socket.settimeout(limit)
             self._socket.sendall(packed(message))
-            return self._answer(time.monotonic() + limit)
+            return self._answer(limit)
         except TimeoutError as error:
             raise DriverError(
                 f"the feeder has not answered for {limit:g} s; the slides stop on their path", "feeder-silent"
@@ -67,19 +75,20 @@ class SocketLink:
             self._socket.shutdown(socket.SHUT_RDWR)
 
     def close(self) -> None:
-        """The feeder sees the end and stops what is left."""
+        """The feeder sees the end and stops what is left; who waits for its answer waits no longer."""
+        self.hang_up()
         self._socket.close()
 
-    def _answer(self, deadline: float) -> Message:
-        while True:
-            left = deadline - time.monotonic()
-            if left <= 0.0:
-                raise TimeoutError
-            ready, _, _ = select.select([self._socket], [], [], left)
+    def _answer(self, left: float) -> Message:
+        while left > 0.0:
+            began = time.monotonic()
+            ready, _, _ = select.select([self._socket], [], [], min(left, _AT_ONCE))
+            left -= min(time.monotonic() - began, _AT_ONCE)
             if not ready:
-                raise TimeoutError
+                continue
             data = self._socket.recv(_CHUNK)
             if not data:
                 raise DriverError("the feeder process has ended", "feeder-gone")
             for message in self._inbox.feed(data):
                 return message
+        raise TimeoutError

@@ -5,19 +5,21 @@ from __future__ import annotations
 import ctypes
 import gc
 import os
-import resource
 import select
 import socket
 from collections.abc import Mapping
+from contextlib import suppress
+from functools import partial
 
-from core.ports import DriverError
+from core.ports import Clock, DriverError
+from drivers.clocks import RealClock
 from drivers.feeder.feeder_messages import Inbox, packed
 from drivers.feeder.feeder_server import Driven, Feeder
 
-PERIOD = 0.005  # s
 PRIORITY = 50
 _CURRENT, _FUTURE = 1, 2  # MCL_CURRENT and MCL_FUTURE of mlockall(2)
 _CHUNK = 1 << 16
+TRIAL = 0.3  # s
 _LAST = 30.0  # s that an orphaned feeder has to bring the slides to rest; no queue is longer
 
 
@@ -28,6 +30,17 @@ def real_time(priority: int = PRIORITY) -> list[str]:
     except (OSError, AttributeError) as error:
         return [f"the feeder runs without real-time priority ({_why(error)}); see docs/hardware.md"]
     return []
+
+
+def late_at_trial(period: float) -> float:
+    """Seconds by which a process that only waits, once each period, wakes up too late at most; takes .3 s."""
+    clock = RealClock()
+    due, most = 0.0, 0.0
+    while due < TRIAL:
+        due += period
+        clock.sleep_until(due)
+        most = max(most, clock.now() - due)
+    return most
 
 
 def keep_memory() -> list[str]:
@@ -51,46 +64,87 @@ def keep_memory() -> list[str]:
 
 def _memory_limit() -> int:
     """Bytes that may be locked; 0: as many as there are, which an administrator always may."""
-    if os.geteuid() == 0:
+    if not hasattr(os, "geteuid") or os.geteuid() == 0:
         return 0
+    import resource  # noqa: PLC0415  not on every system
+
     limit, _ = resource.getrlimit(resource.RLIMIT_MEMLOCK)
     return 0 if limit == resource.RLIM_INFINITY else limit
 
 
 def serve(
-    sock: socket.socket, driven: Driven, warnings: list[str], refresh: Mapping[str, float] | None = None
+    sock: socket.socket,
+    driven: Driven,
+    warnings: list[str],
+    refresh: Mapping[str, float] | None = None,
+    bell: socket.socket | None = None,
 ) -> None:
-    """Until the control has gone and the slides are at rest."""
-    feeder = Feeder(driven, warnings, refresh)
+    """Until the control has gone and the slides are at rest; ``bell`` wakes a control that sleeps."""
+    feeder = Feeder(driven, warnings, refresh, partial(_ring, bell))
     try:
         _rounds(sock, feeder, driven)
     finally:  # whatever happens here: slides stopped, power off, bus closed
         driven.close()
 
 
+def _ring(bell: socket.socket | None) -> None:
+    if bell is not None:
+        with suppress(OSError):
+            bell.send(b"!")
+
+
 def _rounds(sock: socket.socket, feeder: Feeder, driven: Driven) -> None:
     clock = driven.ports.clock
-    inbox = Inbox()
-    sock.setblocking(False)
+    ear = Ear(sock, feeder, clock)
     due = clock.now()
     gone: float | None = None  # since when the control has been
     while not feeder.done:
         feeder.late(clock.now() - due)
         feeder.tick()
-        set_by_driver = driven.wake()
-        due = max(due + PERIOD, clock.now()) if set_by_driver is None else set_by_driver
-        heard = False  # who is always late still listens, once a round
-        while (left := due - clock.now()) > 0.0 or not heard:
-            heard = True
-            if feeder.orphaned:
-                clock.sleep_until(due)
-            elif select.select([sock], [], [], max(left, 0.0))[0]:
-                feeder.orphaned = not _talk(sock, inbox, feeder)
+        due = ear.listen(feeder.next_round(due), punctual=driven.wake() is not None)
         if feeder.orphaned:
             sock.close()
             gone = clock.now() if gone is None else gone
             if clock.now() - gone > _LAST:
                 break
+
+
+_TALK = 0.0003  # s that an answer takes
+EARLY = 0.03  # s by which a round may come before its time with a look of a control that sleeps: one wake-up
+_DEAF = 0.005  # s after which a control is listened to, however late the drivers are
+
+
+class Ear:
+    """Listens to the control between two rounds."""
+
+    def __init__(self, sock: socket.socket, feeder: Feeder, clock: Clock) -> None:
+        self._sock, self._feeder, self._clock = sock, feeder, clock
+        self._inbox = Inbox()
+        self._listened = clock.now()
+        sock.setblocking(False)
+
+    def listen(self, due: float, *, punctual: bool) -> float:
+        """Answer until the next round is due, and say when that is: at once where a control wakes up.
+
+        ``punctual``: nothing is begun that would be over behind that time.
+        """
+        feeder, clock = self._feeder, self._clock
+        keep = _TALK if punctual else 0.0
+        while True:
+            now = clock.now()
+            left = due - now
+            if left <= keep and now - self._listened < _DEAF:
+                clock.sleep_until(due)
+                return due
+            slept, self._listened = feeder.asleep, now
+            if feeder.orphaned:
+                clock.sleep_until(due)
+            elif select.select([self._sock], [], [], max(left - keep, 0.0))[0]:
+                feeder.orphaned = not _talk(self._sock, self._inbox, feeder)
+                if feeder.asleep and not punctual and 0.0 < due - clock.now() < EARLY:
+                    return clock.now()
+            if slept and not feeder.asleep:
+                return clock.now()
 
 
 def _talk(sock: socket.socket, inbox: Inbox, feeder: Feeder) -> bool:

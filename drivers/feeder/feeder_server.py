@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
-from functools import partial
+from dataclasses import dataclass, fields
+from functools import cache, partial
 
 import numpy as np
 
-from core.ports import DriverError, MachinePorts, Stop, Trip, TrippedError, at_rest
+from core.ports import DriverError, MachinePorts, StationState, Stop, Trip, TrippedError, at_rest
 from drivers.feeder.feeder_messages import (
     NOTHING,
     VERSION,
@@ -129,12 +129,16 @@ class TripGuard:
         self.tripped = Trip(self._count, max(away, before.away), spindle or before.spindle, on)
 
 
+PERIOD = 0.005  # s between two rounds of the loop
+RESTS = 0.2  # s at most while the control sleeps
 AWAY = 0.25  # s without a round of its own: modules take their error values after three heartbeats
 LATE = 0.05  # s; the drives' queues hold twice this, and a splice of 6000 pieces takes 0.03
 SILENT = 0.2  # s without a word after which the control counts as stalled
+ASLEEP = 0.5  # s after which one that sleeps does: nothing is on then
 _NOTES = 50
 _ROWS = 400  # samples in one answer: what a late control has missed comes with its next looks
 _STANDS = 5.0  # rpm
+_STATION = tuple(field.name for field in fields(StationState))
 _RUNS_DOWN = 8.0  # s for a spindle to brake; one that has not by then is let go
 
 
@@ -142,7 +146,9 @@ _RUNS_DOWN = 8.0  # s for a spindle to brake; one that has not by then is let go
 class Driven:
     """A set of drivers that one loop owns; ``tick`` is called every few milliseconds and raises nothing.
 
-    ``hands`` is a simulated machine's handle, or the station on the screen.
+    ``hands`` is a simulated machine's handle, or the station on the screen. ``idle``: for how many seconds
+    they need no round, told whether the control sleeps and wants nothing; 0 where they cannot tell.
+    ``asked``: whether the last round has asked for what the next one takes in.
     """
 
     ports: MachinePorts
@@ -151,6 +157,8 @@ class Driven:
     hands: object | None = None
     wake: Callable[[], float | None] = lambda: None  # when the next tick is due; None: every few milliseconds
     notes: Callable[[], Sequence[str]] = tuple  # what the drivers have to tell the control
+    idle: Callable[[bool], float] = lambda _asleep: 0.0
+    asked: Callable[[], bool] = lambda: False
 
 
 class Feeder:
@@ -163,9 +171,21 @@ class Feeder:
     """
 
     def __init__(
-        self, driven: Driven, warnings: Sequence[str] = (), refresh: Mapping[str, float] | None = None
+        self,
+        driven: Driven,
+        warnings: Sequence[str] = (),
+        refresh: Mapping[str, float] | None = None,
+        ring: Callable[[], None] = lambda: None,
     ) -> None:
-        """``refresh``: outputs that fall after so many seconds without a word of the control."""
+        """``refresh``: outputs that fall after so many seconds without a word of the control.
+
+        ``ring`` wakes a control that sleeps.
+        """
+        self._ring = ring
+        self.asleep = False  # the control is, by its own word
+        self._slept = False  # and was at the last round
+        self._rung = False
+        self._told: Callable[[], object] | None = None  # with the last look
         self._driven = driven
         self._ports = driven.ports
         self._warnings = list(warnings)
@@ -174,6 +194,7 @@ class Feeder:
         self._parted = False
         self._parted_at = 0.0
         self._latest = 0.0  # s, the worst lateness so far
+        self._answering = 0.0  # s that orders have taken since the last round: some wait for a drive
         self._notes: list[str] = []
         self._guard = TripGuard()
         self.orphaned = False
@@ -187,12 +208,16 @@ class Feeder:
             "mesh": self._mesh,
             "do": self._act,
             "hand": self._hand,
+            "rest": lambda _: _value(0.0),
         }
 
     def handle(self, message: Message) -> Message:
         """The answer; what the drivers refuse comes back as ``error``."""
         self._hear()
-        answer = self._answers.get(text(message.head, "do"))
+        began = self._heard
+        what = text(message.head, "do")
+        self.asleep = what == "rest" or (what == "look" and message.head.get("rests") is True)
+        answer = self._answers.get(what)
         if answer is None:
             return _refused("the feeder does not know this request; are both of the same version?")
         try:
@@ -203,7 +228,8 @@ class Feeder:
         except DriverError as error:
             return _refused(error.fault)
         finally:
-            self._heard = self._ports.clock.now()  # some orders wait for a drive
+            self._heard = self._ports.clock.now()
+            self._answering += self._heard - began
 
     def tick(self) -> None:
         """Drivers first, then whether the control still speaks."""
@@ -212,14 +238,43 @@ class Feeder:
             self._note(note)
         silent = self._ports.clock.now() - self._heard
         self._let_fall(silent)
-        if self.orphaned or silent > SILENT:
+        if self.orphaned or silent > self._longest:
             self._without_control()
+        if self.asleep and not (self._rung or self._driven.asked()) and self._has_news():
+            self._rung = True
+            self._ring()
+
+    def _has_news(self) -> bool:
+        """Whether a look would tell anything else than the last one did, but for times."""
+        try:
+            return self._told is None or _timeless(self._state()) != self._told()
+        except DriverError:
+            return True
+
+    @property
+    def _longest(self) -> float:
+        return ASLEEP if self.asleep else SILENT
+
+    def next_round(self, last: float) -> float:
+        """When it is due, behind one that was due at ``last``: later where the control sleeps and the drivers
+        need none.
+        """
+        set_by_drivers = self._driven.wake()
+        if set_by_drivers is not None:
+            return set_by_drivers
+        now, asleep = self._ports.clock.now(), self.asleep and not self.orphaned
+        idle = self._driven.idle(asleep) if asleep or self._slept else 0.0
+        self._slept = asleep
+        if asleep and idle > 0.0:
+            return now + min(idle, RESTS)
+        return max(last + PERIOD, now)
 
     def late(self, seconds: float) -> None:
         """How late the loop has woken up; what is worth telling is told, each record once."""
-        if seconds > max(self._latest, LATE):
-            self._latest = seconds
-            self._note(f"the feeder woke up {1000 * seconds:.0f} ms late; has it real-time priority?")
+        slept, self._answering = seconds - self._answering, 0.0
+        if slept > max(self._latest, LATE):
+            self._latest = slept
+            self._note(f"the feeder woke up {1000 * slept:.0f} ms late; has it real-time priority?")
         if seconds > AWAY:
             self._trip(seconds, spindle=self._resting())
 
@@ -247,7 +302,7 @@ class Feeder:
 
     def _hear(self) -> None:
         now = self._ports.clock.now()
-        if now - self._heard > SILENT:
+        if now - self._heard > self._longest:
             self._note(f"the control was silent for {now - self._heard:.2f} s")
             self._guard.back_after(now - self._heard)
         self._heard = now
@@ -306,27 +361,33 @@ class Feeder:
         }
         return Message(head, NOTHING)
 
-    def _look(self, _message: Message) -> Message:
+    def _state(self) -> dict[str, object]:
+        """Everything that can be seen. Raises DriverError."""
         ports, sample = self._ports, self._ports.axes.sample()
-        geared = ports.gear.geared() if ports.gear is not None else None
-        head: dict[str, object] = {
+        station = ports.station.snapshot()
+        return {
             "sample": {**sample._asdict(), **with_code("fault", sample.fault, "axis")},
             "speed": ports.spindle.speed(),
             "angle": ports.spindle.angle(),
             **with_code("spindle", ports.spindle.fault(), "spindle"),
             "inputs": dict(ports.io.inputs()),
             "outputs": dict(ports.io.outputs()),
-            "station": asdict(ports.station.snapshot()),
-            "geared": geared,
+            "station": {name: getattr(station, name) for name in _STATION},
+            "geared": ports.gear.geared() if ports.gear is not None else None,
             "held": ports.lock is not None and ports.lock.held(),
             "trip": self._guard.tripped,
             "latch": ports.touch.latched() if ports.touch is not None else None,
             "notes": self._notes,
             "unknown": sorted(ports.unknown()),
         }
-        self._notes = []
-        sampled = ports.samples.take(_ROWS).ravel() if ports.samples is not None else NOTHING
-        return Message(head, sampled)
+
+    def _look(self, _message: Message) -> Message:
+        state = self._state()
+        self._notes, self._rung = [], False
+        self._told = cache(partial(_timeless, {**state, "notes": []}))
+        source = self._ports.samples
+        sampled = source.take(_ROWS).ravel() if source is not None else NOTHING
+        return Message(state, sampled)
 
     def _splice(self, message: Message) -> Message:
         self._driven.tick()  # a long one takes a while: the drives' queues are filled before
@@ -352,6 +413,19 @@ class Feeder:
 
     def _hand(self, message: Message) -> Message:
         return Message({"value": use_hand(self._driven.hands, message.head)}, NOTHING)
+
+
+def _timeless(state: Mapping[str, object]) -> Mapping[str, object]:
+    """A look without its times; of the station's age it is told whether that is silent."""
+    sample, angle, station = state.get("sample"), state.get("angle"), state.get("station")
+    assert isinstance(sample, dict)
+    assert isinstance(station, dict)
+    return {
+        **state,
+        "sample": {**sample, "t": 0.0},
+        "angle": angle[1:] if isinstance(angle, tuple) else None,
+        "station": {**station, "age": station["age"] > SILENT},
+    }
 
 
 def _value(value: float) -> Message:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from core.ports import BlockOp, BlockState, DriverError, ThreadOp, code_of
 from drivers.grblhal import grblhal_codes, grblhal_scripts
+from drivers.grblhal.grblhal_config import GrblAxis
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_feed_hold import Holds
 from drivers.grblhal.grblhal_gcode import line_number, line_of
@@ -35,9 +36,12 @@ class GrblBlocks:
         self._threads: set[int] = set()  # tickets of passes that are not done
         self._settled = False  # a report since the last line has said that all is done
         self._target: tuple[float, float] | None = None
+        self.highest = 0.0  # rpm that the spindle may have to follow the radius up to; 0: it is constant
+        self.reach = 0.0 if controller.config.own_spindle else math.inf  # and can; ``GrblSpindle`` knows
         self.rest: tuple[float, float] | None = None  # X and Z where the last block has exactly ended
         self.terminals: Callable[[], frozenset[str]] = frozenset  # what the inputs and outputs can do
         controller.on_report, controller.on_void = self._reported, self._voided
+        controller.settled = lambda: self._settled
 
     @property
     def listens(self) -> bool:
@@ -47,16 +51,21 @@ class GrblBlocks:
     @property
     def caps(self) -> frozenset[str]:
         """Threads need the controller's own encoder, which a third speed in its reports tells of; a surface
-        speed needs a spindle that is not the controller's, whose speed cannot follow a path.
+        speed needs a spindle of variable speed, or another than the controller's. A thread would put the
+        override of the controller's spindle, by which that follows the radius, to 100 %.
         """
-        report = self._c.report
+        report, own = self._c.report, self._c.config.own_spindle
         able = {"arc"} if report is None or report.measured is None else {"arc", "thread"}
-        return self.terminals() | able | (set() if self._c.config.own_spindle else {"surface-speed"})
+        able |= set() if own else {"surface-thread"}
+        return self.terminals() | able | ({"surface-speed"} if not own or self._c.varies else set())
 
-    @property
-    def fastest(self) -> float:
+    def fastest(self, dx: float, dz: float) -> float:
         """By the machine file, or by the controller's settings where these are less."""
-        return min(min(axis.vmax, self._c.speed_of(axis.name) or axis.vmax) for axis in self._c.wired)
+        return self._along(dx, dz, lambda axis: min(axis.vmax, self._c.speed_of(axis.name) or axis.vmax))
+
+    def lay_out(self, highest: float) -> None:
+        """The spindle reads it when it is told its speed."""
+        self.highest = highest
 
     @property
     def quiet(self) -> bool:
@@ -75,7 +84,7 @@ class GrblBlocks:
         if self.overrides.level and not self.overrides.true_to(c.overrides):
             return None
         ticket = self._last + 1
-        line = line_of(op, ticket, self._rapid(), self.overrides.commanded[0] / 100.0, c.origin)
+        line = line_of(op, ticket, self._rapid(op), self.overrides.commanded[0] / 100.0, c.origin)
         if not c.stream.fits(line):
             return None
         c.send(line, ticket)
@@ -163,15 +172,23 @@ class GrblBlocks:
 
     # --- inside -------------------------------------------------------------------------------------------
 
-    def _rapid(self) -> float:
-        """What G0 does, by the machine file; endless where the controller is set to more than that."""
-        slides = self._c.wired
-        if any(self._c.speed_of(axis.name) > 1.01 * axis.vmax for axis in slides):
-            return math.inf
-        return min(axis.vmax for axis in slides)
+    def _rapid(self, op: BlockOp) -> float:
+        """What G0 does on the way to there, mm/s: by the controller's limit of each slide (``planner.c``)."""
+        at = self._c.position
+        x, z = self._target or self.rest or (at.get("X", 0.0), at.get("Z", 0.0))
+        return self._along(op.x - x, op.z - z, lambda axis: self._c.speed_of(axis.name) or axis.vmax)
+
+    def _along(self, dx: float, dz: float, most: Callable[[GrblAxis], float]) -> float:
+        """mm/s of a way on which no slide exceeds its ``most``; endless on one without length."""
+        way = math.hypot(dx, dz)
+        shares = {"X": abs(dx), "Z": abs(dz)}
+        told = ((most(axis), shares.get(axis.name, 0.0)) for axis in self._c.wired)
+        return min((speed * way / share for speed, share in told if share), default=math.inf)
 
     def _demand_ready(self) -> None:
         why = self.hindrance()
+        if self._c.fault:
+            raise DriverError(why, code_of(why, "controller-refuses"))  # the cause, and no more than that
         if why:
             raise DriverError(f"the controller takes no block: {why}", code_of(why, "controller-refuses"))
         self.demand_power()

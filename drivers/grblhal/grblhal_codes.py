@@ -22,6 +22,7 @@ DOOR = "the controller's safety door is open"
 ESTOP, HOMING_REQUIRED = 10, 11
 LOCKED = 255  # ours: it is locked and tells no number
 LOST = frozenset((1, 3))  # alarms behind which nobody knows where the slides are
+TORN = frozenset((10, 17))  # and those that end the steps of a moving slide at once, and do not say so
 CRITICAL = frozenset((1, 2, 10, 17))  # only a reset ends them; settings cannot be written before
 ENDED = CRITICAL | {HOMING_REQUIRED}  # alarms behind which nothing turns or runs any more
 _ALARMS = {

@@ -19,7 +19,8 @@ from drivers.reopening import Opening
 
 _LINE = 1024  # bytes; the controller sends no longer line
 _RUNNING, _RESTING, _ASKING = 0.1, 0.2, 0.05  # s between two questions for a report
-_SILENT = 1.0  # s without a report
+_SILENT = 1.0  # s with a report owed in which nothing is heard
+_ASKED_AGAIN = 0.5  # s, where a question may have been lost
 _INDEX = 8.0  # s in which a thread may wait for its index: no report, no answer
 _UNANSWERED = 2.0  # s for the answer to a line while the controller does nothing
 _GARBAGE, _WITHIN = 3, 10.0  # unknown lines within s, while nothing is under way
@@ -32,6 +33,7 @@ _COALESCED = 0.5  # s; two questions so far apart are never answered by one repo
 _LISTENING = 0.1  # s; of a longer pause of this computer no more counts as the controller's silence
 _CONFIRMED = 0.25  # s at full speed, between a report that leaps and the one that confirms it
 _LEAP = 1.0  # mm beyond what the slides can do between two reports
+_VARIABLE = "V"  # among the letters of its build
 _HOMING, _HOMED = 22, 1  # setting, and the bit of it that switches homing on
 
 
@@ -47,6 +49,7 @@ class Controller:
         self.identity: Identity | None = None
         self.settings: dict[int, str] = {}  # as read at the connection
         self.report: Report | None = None  # the last one
+        self._before_alarm: Report | None = None  # the last one of a controller without an alarm
         self.reports = self.fulls = 0  # how many have come
         self.heard_at = clock.now()  # when the last one was read
         self._made_after = clock.now()  # and the earliest at which it can have been made
@@ -70,6 +73,7 @@ class Controller:
         self.index_wait = False  # a thread pass is under way: no report may come for seconds
         self.on_report: Callable[[Report], None] = lambda _: None
         self.on_void: Callable[[], None] = lambda: None
+        self.settled: Callable[[], bool] = lambda: True  # all that was handed over is known to be done
         self.runner = Runner()
         self.expected = False  # a reset of our own
         self.doubtful = False  # something damaged has been heard: look at all of it
@@ -81,13 +85,11 @@ class Controller:
         self._garbage: deque[float] = deque()
         self._wire = wire
         self._inbox = b""
-        self._next_question = 0.0
+        self._next_question = self._questioned_at = 0.0  # the latter by ``listened``
         self.hurry_until = 0.0  # somebody wants to know as often as it may be asked
         self._leapt: tuple[Report, str] | None = None  # a report that nothing has confirmed, and its line
-        self._sees_overrides = False
-        self._halted = False
+        self._sees_overrides = self._halted = self._asks_modes = False
         self._opening: Opening[Wire] | None = None  # of a wire that was lost
-        self._asks_modes = False
         self._then: Callable[[], Script] | None = None  # once it is open
         self.modes = ""  # as it has told them to a real-time question
         self.restarted = False  # while nothing was heard of it: what it only counts is not where it stands
@@ -122,9 +124,10 @@ class Controller:
         """Ask for a status report; a full one takes no turn of a plain one that is wanted."""
         self.realtime(grblhal_codes.FULL if full else grblhal_codes.STATUS)
         now = self.clock.now()
-        while self.asked and now - self.asked[0] > _COALESCED:
+        while self.asked and now - self.asked[0] > _COALESCED and self.asked[0] < self.heard_at:
             self.asked.popleft()
         self.asked.append(now)
+        self._questioned_at = self.listened
         self.owed_since = self.listened if self.owed_since is None else self.owed_since
         if not (full and self._sees_overrides):
             self._next_question = now + self._interval()
@@ -236,11 +239,17 @@ class Controller:
     def alarmed(self, number: int) -> None:
         """The controller has locked itself."""
         self.alarm = number
-        self.trusted = self.trusted and number not in grblhal_codes.LOST
+        lost = number in grblhal_codes.LOST or (number in grblhal_codes.TORN and self._may_move())
+        self.trusted = self.trusted and not lost
         self.void()
         if number != grblhal_codes.HOMING_REQUIRED:
             self.fail(grblhal_codes.alarm_text(number), grblhal_codes.alarm_code(number))
         self.ready = False
+
+    def _may_move(self) -> bool:
+        """Whether a slide may have been moving when the alarm came."""
+        last = self._before_alarm
+        return last is not None and (last.moves or (last.state == "Idle" and not self.settled()))
 
     def damaged(self, line: str) -> None:
         """A line that means nothing may have been an answer: counters are never set right by guessing."""
@@ -274,6 +283,7 @@ class Controller:
             self.position = self._places(report) or self.position
         self._made_after = self.asked.popleft() if self.asked else self.heard_at
         self.report, self.heard_at = report, self.clock.now()
+        self._before_alarm = self._before_alarm if report.state == "Alarm" else report
 
     def plausible(self, report: Report) -> bool:
         """No slide leaps further than it can have gone since the last report was made.
@@ -300,6 +310,11 @@ class Controller:
     def has_pin(self, letter: str) -> bool:
         """Whether its board has an input of this letter, as far as it tells."""
         return self.identity is None or self.identity.has_pin(letter)
+
+    @property
+    def varies(self) -> bool:
+        """Whether its firmware has a spindle of variable speed."""
+        return self.identity is not None and _VARIABLE in self.identity.letters
 
     @property
     def wired(self) -> tuple[GrblAxis, ...]:
@@ -346,6 +361,7 @@ class Controller:
 
     def _answer(self, error: int) -> None:
         self.answered_at = self.listened
+        self.owed_since = None if self.owed_since is None else self.listened
         if self.stream.stale:
             return
         first = self.fault == ""
@@ -487,12 +503,19 @@ class Controller:
         if self.doubtful:
             self.doubtful = False
             self.question(full=True)
-        elif self.clock.now() >= self._next_question:
+        elif self.clock.now() >= self._next_question and self._may_ask():
             resting = self.report is None or self.report.state in {"Idle", "Alarm"}
             self.question(full=resting and self.stream.quiet and not self._sees_overrides)
 
+    def _may_ask(self) -> bool:
+        """One question at a time: on a slow line each stands before the lines behind it."""
+        return self.owed_since is None or self.listened - self._questioned_at >= _ASKED_AGAIN
+
     def _watch(self) -> None:
-        """Silence is a fault, but not behind a thread, whose wait for the index answers nothing."""
+        """Silence is a fault, but not behind a thread, whose wait for the index answers nothing.
+
+        A controller that answers lines works: a question may lie behind these on the wire.
+        """
         if self.busy:
             return
         patience = _INDEX if self.index_wait else _SILENT

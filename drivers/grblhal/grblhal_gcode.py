@@ -9,6 +9,7 @@ from core.ports import ArcOp, BlockOp, LineOp, RapidOp, ThreadOp
 
 _LAST_NUMBER = 9_000_000
 _DOT = 0.002  # mm; see ``_arc``
+_SAME = 1.01  # rapids that differ by so much are one
 
 
 def number(value: float) -> str:
@@ -25,7 +26,7 @@ def line_number(ticket: int) -> int:
 def line_of(
     op: BlockOp, ticket: int, rapid: float, feed_override: float, origin: Mapping[str, float] | None = None
 ) -> str:
-    """The line of one block. ``rapid`` is the speed of G0 (mm/s), ``feed_override`` a fraction.
+    """The line of one block. ``rapid`` is what G0 does on this way (mm/s), ``feed_override`` a fraction.
 
     A rapid slower than G0 goes out as a feed: the controller's rapid override knows three steps only. A feed
     override above 1 speeds up no rapid. ``origin`` is where home lies in the controller's own frame.
@@ -34,7 +35,7 @@ def line_of(
     home = origin or {}
     to = f"X{number(op.x + home.get('X', 0.0))}Z{number(op.z + home.get('Z', 0.0))}"
     match op:
-        case RapidOp(rate=rate) if rate >= rapid * (1.0 - 1e-6):
+        case RapidOp(rate=rate) if _SAME * rate >= rapid:
             return f"{head}G0{to}"
         case RapidOp(rate=rate):
             return f"{head}G1{to}{_feed(rate / max(feed_override, 1.0))}"

@@ -55,7 +55,8 @@ class Overrides:
         self._fail = fail
         self._asked = [100, 100, 100]
         self._sent_at, self._seen = -1.0, 0
-        self._since: float | None = None  # it has not been true
+        self._since: float | None = None  # it has not been true, nor come nearer
+        self._last: tuple[int, ...] | None = None  # that was told
         self.level = False  # a thread: at 100 % whatever is asked, for it would run beside its lead
 
     @property
@@ -80,8 +81,10 @@ class Overrides:
 
         ``told`` counts these words. One that does not come is asked for, by sending again.
         """
+        if reported is None or self.true_to(reported) or reported != self._last:
+            self._since = None  # what follows the radius is on its way for as long as it does
+        self._last = reported
         if reported is None or self.true_to(reported):
-            self._since = None
             return
         fresh = told > self._seen and now - self._sent_at >= _APART
         if not fresh and now - self._sent_at < _AGAIN:

@@ -9,11 +9,14 @@ from core.ports import DriverError
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_controller import Controller
+from drivers.grblhal.grblhal_dialogue import Ask
 from drivers.grblhal.grblhal_gcode import number
 from drivers.grblhal.grblhal_overrides import LEAST, MOST
 
 _OBEYS = 1.0  # s for a spindle that is stopped in a hold to be told as off
+_CLIPS = 2.0  # s in which report, override and S word may tell of different moments
 _HIGHEST = 30  # setting
+_OVER, _UNDER = MOST / 100.0, LEAST / 100.0  # of an S word, by its override
 _STANDS = 30.0  # rpm, between two reports of a spindle that reverses
 
 
@@ -72,6 +75,8 @@ class GrblSpindle:
         self._runs = False  # in the controller: a stop or a reset ends that
         self._way = _Way()
         self._paused_at: float | None = None  # stopped in a feed hold, whose lines are not read
+        self._word: Ask | None = None  # the last M3 or M4
+        self._unlike_since: float | None = None  # it is commanded another speed than that
 
     def run(self, rpm: float) -> None:
         """Signed rpm, at most the machine's; 0 stops. Raises DriverError above the controller's own limit,
@@ -130,15 +135,72 @@ class GrblSpindle:
             self._after_hold()
         elif self._wanted == 0.0:
             self._stop()
-        elif self._blocks.quiet and self._blocks.listens and (not self._runs or self._wanted != self._said):
-            self._runs, self._said = True, self._wanted
-            self._blocks.overrides.want_spindle(100)
-            c.send(f"M{3 if self._wanted > 0.0 else 4}S{number(abs(self._wanted))}")
-        elif self._runs and not self._blocks.quiet and self._wanted * self._said > 0.0:
-            share = round(100.0 * self._wanted / self._said)
-            self._blocks.overrides.want_spindle(min(max(share, LEAST), MOST))
+        elif self._blocks.quiet and self._blocks.listens and (not self._runs or self._base != self._said):
+            self._start()
+        elif self._runs and not (self._blocks.quiet and not self._blocks.highest):
+            self._follow(self._said)
+        self._watch_clipping()
+        if c.config.own_spindle:
+            laid = self._blocks.highest and self._runs and self._base == self._said
+            self._blocks.reach = _OVER * abs(self._said) if laid else 0.0
 
     # --- inside -------------------------------------------------------------------------------------------
+
+    @property
+    def _base(self) -> float:
+        """The S word, signed. Where it follows the radius: half of the highest speed that it may come to, for
+        the override goes from a tenth to the double. So what puts the override back to 100 %, such as a
+        pendant's button, makes it no faster than the program allows.
+        """
+        highest, wanted = self._blocks.highest, abs(self._wanted)
+        if not highest:
+            return self._wanted
+        said = abs(self._said)
+        fits = highest <= 1.001 * _OVER * said and said <= 1.001 * highest and _UNDER * said <= 1.001 * wanted
+        if self._runs and self._wanted * self._said > 0.0 and fits:
+            return self._said
+        return math.copysign(max(min(highest / _OVER, wanted / _UNDER), wanted / _OVER), self._wanted)
+
+    def _start(self) -> None:
+        """By M3 or M4; one that follows the radius once its override is told, or it would leap."""
+        base = self._base
+        if self._blocks.highest:
+            self._follow(base)
+            if not self._blocks.overrides.true_to(self._c.overrides):
+                return
+        else:
+            self._blocks.overrides.want_spindle(100)
+        self._runs, self._said = True, base
+        self._word = self._c.send(f"M{3 if base > 0.0 else 4}S{number(abs(base))}")
+
+    def _watch_clipping(self) -> None:
+        """Firmware that limits a speed does so without a word, and a $30 that was written may count from its
+        next start only: what it reports as commanded is what it turns.
+        """
+        c = self._c
+        now, told = c.clock.now(), c.report.speeds if c.report is not None else None
+        share = c.overrides[2] / 100.0 if c.overrides is not None and len(c.overrides) > 2 else None
+        said = self._runs and self._word is not None and self._word.done and c.state != "Hold"
+        if not said or told is None or share is None or len(told) < 2:
+            self._unlike_since = None
+            return
+        expected = abs(self._said) * share
+        if abs(told[1] - expected) <= 0.02 * expected + 2.0:
+            self._unlike_since = None
+        elif self._unlike_since is None:
+            self._unlike_since = now
+        elif now - self._unlike_since > _CLIPS:
+            c.fail(
+                f"the controller turns its spindle at {told[1]:g} rpm where {expected:.0f} are asked: it"
+                " limits them ($30, $31; one that was changed may count from the controller's next start)",
+                "controller-refuses",
+            )
+
+    def _follow(self, base: float) -> None:
+        """By the override of the S word."""
+        if self._wanted * base > 0.0:
+            share = round(100.0 * self._wanted / base)
+            self._blocks.overrides.want_spindle(min(max(share, LEAST), MOST))
 
     def _stop(self) -> None:
         if not self._runs:

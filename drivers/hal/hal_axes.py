@@ -12,6 +12,7 @@ from drivers.hal.bridge.packets import pieces_of as pieces_told
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_homing import Homing
 from drivers.hal.hal_link import HalLink, told_fault
+from drivers.hal.hal_touch import HalTouch
 from drivers.setpoint_pieces import Piece
 from drivers.setpoint_queue import Tolerance, pieces_of
 from drivers.spindle_gear import GearedQueue, Motion, Phase, Slides
@@ -65,7 +66,14 @@ class HalAxes:
         self.homing: Homing | None = None
         self.fault: Fault | str = ""
         self.clearing: list[Callable[[], None]] = []  # who else has something to forget
+        self.connecting: list[Callable[[], None]] = []  # and when HAL has come up anew
         self.spindle_at: tuple[float, float] | None = None  # time and turns of the newest sample
+        self.index_at = 0.0  # turns at which the spindle's index was, as HAL counts
+        probe = config.probe
+        self.touch = HalTouch(config.period, active_low=probe.active_low) if probe is not None else None
+        # An axis that turns as the spindle: it stays at its count. None: it is held, or there is none.
+        self._lent = next((n for n, axis in enumerate(config.axes) if axis.is_spindle), None)
+        self.c_turns = False  # C has its count from the index, and is to turn to its place, or does
         self.rps = 0.0
         self._on = False
         self._order = 0  # the one after which the bridge's word on power counts
@@ -85,6 +93,8 @@ class HalAxes:
         self._homed = [axis.absolute or axis.pins is None for axis in self.config.axes]
         self._brakings = number(self._link.told, "brakings")
         self._on = False
+        for forget in self.connecting:
+            forget()
         self.take()
         self.queue.rest_at(self._actual)
 
@@ -96,7 +106,7 @@ class HalAxes:
         """The samples that have come."""
         axes, config = len(self._driven), self.config
         turning, telling = bool(config.spindle.pins.position), bool(config.spindle.pins.velocity)
-        width = 1 + 2 * axes + turning + telling + len(self._marks)
+        width = 1 + 2 * axes + turning + telling + len(self._marks) + (self.touch is not None)
         for told in self._link.take_rows():
             for at in range(0, len(told) - width + 1, width):
                 self._sample(told[at : at + width], axes, turning=turning, telling=telling)
@@ -113,7 +123,10 @@ class HalAxes:
         elif turning:
             self._speed_of_turns(t, row[1 + 2 * axes])
         self._t = t
-        for index, on in zip(self._marks, row[len(row) - len(self._marks) :], strict=True):
+        bits = row[1 + 2 * axes + turning + telling :]
+        if self.touch is not None:
+            self.touch.see(t, self._actual, bool(bits[-1]))
+        for index, on in zip(self._marks, bits[: len(self._marks)], strict=True):
             if self.homing is not None and self._homes(index):
                 self.homing.see(self.raw(index), bool(on))
         moved = zip(self._actual, self._still, self.config.axes, strict=True)
@@ -125,7 +138,7 @@ class HalAxes:
             *self._actual,
             *(_NAN,) * len(self.axes),
             60.0 * self.rps,
-            row[1 + 2 * axes] if turning else _NAN,
+            row[1 + 2 * axes] - self.index_at if turning else _NAN,
             _NAN,
             self.queue.horizon(t) - t,
         )
@@ -143,7 +156,8 @@ class HalAxes:
         """As the control counts; an axis without pins is where the queue has it."""
         place = list(self.queue.demand_at(t)[0])
         for value, index in zip(raw, self._driven, strict=True):
-            place[index] = value - self.zero[index]
+            if index != self._lent:
+                place[index] = value - self.zero[index]
         return tuple(place)
 
     def tick(self) -> None:
@@ -238,7 +252,8 @@ class HalAxes:
             following_error=tuple([d - a for d, a in zip(demand, actual, strict=True)]),
             enabled=powered,
             homed=tuple([on and not self._homes(n) for n, on in enumerate(self._homed)]),
-            moving=not self._link.trouble and (self.homing is not None or any(velocity) or self._rolls),
+            moving=not self._link.blind
+            and (self.homing is not None or self.c_turns or any(velocity) or self._rolls),
             fault=self.fault,
         )
 
@@ -305,6 +320,23 @@ class HalAxes:
             clear()
         self.fault = ""
 
+    # --- for C on the spindle's drive ----------------------------------------------------------------------
+
+    def lend(self, axis: int | None, raw: float = 0.0, count: float = 0.0) -> None:
+        """C is the spindle from here on, and keeps its count; ``axis`` None: it is held where HAL counts
+        ``raw``, and ``count`` is what that is to the control.
+        """
+        held, self._lent = self._lent, axis
+        place = list(self.queue.demand_at(self._now())[0])  # HAL goes on playing it, whatever is fed back
+        if held is not None and axis is None:
+            self.zero[held] = raw - count
+            place[held] = count
+            self._actual, self._still, self._command = (
+                tuple([count if n == held else p for n, p in enumerate(each)])
+                for each in (self._actual, self._actual, self._command)
+            )
+        self.queue.rest_at(place)
+
     # --- for homing ---------------------------------------------------------------------------------------
 
     def bit(self, name: str) -> bool:
@@ -345,7 +377,9 @@ class HalAxes:
             tuple([p + leap if n == index else p for n, p in enumerate(each)])
             for each in (self._actual, self._still, self._command)
         )
-        self.queue.rest_at(self._actual)
+        place = list(self.queue.demand_at(self._now())[0])
+        place[index] += leap
+        self.queue.rest_at(place)
 
     # --- inside -------------------------------------------------------------------------------------------
 
@@ -410,12 +444,6 @@ class HalAxes:
             return
         if homing.done:
             self.homing = None
-            self.queue.rest_at(self._actual)
-
-    @property
-    def index_at(self) -> float:
-        """Turns at which the spindle's index was, as HAL counts; 0 where nobody has asked for it."""
-        return self._link.figure("spindle-index-at")
 
     @property
     def resting(self) -> bool:

@@ -109,6 +109,8 @@ def border_of(config: HalConfig) -> Border:
         if switch := axis.switch:
             border.sample(BIT, f"td-{axis.name}-{switch}")
     _terminals(border, config)
+    if config.probe is not None:
+        border.sample(BIT, "td-in-probe")
     border.alone.append(f"loadrt sampler depth={_SAMPLES} cfg={border.columns}")
     border.calls.append("sampler.0")
     return border
@@ -227,7 +229,12 @@ def _slide(border: Border, axis: HalAxis) -> None:
         "mult2", f"td.{name}.gear", in0=f"{signal}-lead", in1="td-spindle-feedback", out=f"{signal}-geared"
     )
     border.add("sum2", f"td.{name}.sum", in0=f"{signal}-at", in1=f"{signal}-geared", out=f"{signal}-wanted")
-    limited = {"in_": f"{signal}-wanted", "load": "td-no-power", "out": f"{signal}-command"}
+    free = "td-no-power"
+    if axis.is_spindle:  # what C is sent while the spindle turns is where it stands when it is held
+        border.add("not", f"td.{name}.turns", in_="td-position_mode", out=f"{signal}-turns")
+        border.add("or2", f"td.{name}.free", in0=free, in1=f"{signal}-turns", out=f"{signal}-free")
+        free = f"{signal}-free"
+    limited = {"in_": f"{signal}-wanted", "load": free, "out": f"{signal}-command"}
     border.add("limit3", f"td.{name}.limit", **limited)
     border.values.append((f"td.{name}.limit.maxv", _FASTER * axis.vmax))
     border.values.append((f"td.{name}.limit.maxa", _ROOM * axis.amax))
@@ -306,12 +313,15 @@ def _spindle(border: Border, config: HalConfig) -> None:
             border.drives(f"{path}.{key}", getattr(pins, key), BIT, f"td-{key}")
 
 
-# --- Outputs are safe while the chain is open; inputs and pots go to the bridge as they are.
+# --- Outputs are safe while the chain is open, lamps of the signal tower while the bridge is silent.
+# Inputs and pots go to the bridge as they are.
 
 
 def _terminals(border: Border, config: HalConfig) -> None:
-    if any(output.safe for output in config.outputs.values()):
+    if any(output.safe and not output.lamp for output in config.outputs.values()):
         border.add("not", "td.open", in_="td-ok", out="td-open")
+    if any(output.safe and output.lamp for output in config.outputs.values()):
+        border.add("not", "td.silent", in_="td-alive", out="td-silent")
     for name, output in config.outputs.items():
         wanted, real = f"td-want-{name}", f"td-out-{name}"
         border.own(f"out.{name}", BIT, "out", wanted)
@@ -319,9 +329,11 @@ def _terminals(border: Border, config: HalConfig) -> None:
         if output.safe is None:
             border.add("and2", f"td.out-{name}", in0=wanted, in1=wanted, out=real)
         elif output.safe:
-            border.add("or2", f"td.out-{name}", in0=wanted, in1="td-open", out=real)
+            forced = "td-silent" if output.lamp else "td-open"
+            border.add("or2", f"td.out-{name}", in0=wanted, in1=forced, out=real)
         else:
-            border.add("and2", f"td.out-{name}", in0=wanted, in1="td-ok", out=real)
+            allows = "td-alive" if output.lamp else "td-ok"
+            border.add("and2", f"td.out-{name}", in0=wanted, in1=allows, out=real)
         border.drives(f"io.out.{name}", output.pin, BIT, real)
     for name, wired in config.inputs.items():
         if name != "estop":

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from core.ports import PROBE
 from drivers.hal.hal_table import NEEDS, HalAxisPins, HalSpindlePins
 from drivers.setpoint_queue import AxisFigures
 
@@ -18,6 +19,7 @@ class HalAxis(AxisFigures):
     home_method: int = 0
     home_latch: float = 0.0  # mm/s
     home_offset: float = 0.0
+    is_spindle: bool = False  # C on the spindle's own drive
 
     @property
     def switch(self) -> str:
@@ -40,10 +42,13 @@ class HalSpindle:
 
 @dataclass(frozen=True, slots=True)
 class HalOutput:
-    """An output's pin: ``safe`` None keeps its state."""
+    """An output's pin: ``safe`` None keeps its state. ``lamp``: of the signal tower, which tells of an open
+    E-stop chain and is safe only while the bridge is silent.
+    """
 
     pin: str
     safe: bool | None = False
+    lamp: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +86,11 @@ class HalConfig:
     outputs: Mapping[str, HalOutput] = field(default_factory=dict)
     inputs: Mapping[str, HalInput] = field(default_factory=dict)
     pots: Mapping[str, HalPot] = field(default_factory=dict)
+
+    @property
+    def probe(self) -> HalInput | None:
+        """The input of a probe or tool setter, which is sampled with the slides."""
+        return self.inputs.get(PROBE)
 
     @property
     def driven(self) -> tuple[HalAxis, ...]:

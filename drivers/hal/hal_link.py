@@ -14,7 +14,9 @@ from drivers.hal.hal_session import BridgeLink
 from drivers.setpoint_pieces import Piece
 
 _SILENT = 0.15  # s without a report
+_AT_ONCE = 0.05  # s of silence that one look counts at most: who stood still himself blames nobody
 _SETTLES = 0.5  # s after which debounced inputs tell the truth
+_DOWN = 4.0  # s in which HAL is taken down, what it goes on behind a bridge that has died among them
 _LOOK = 0.002  # s between two looks while something is waited for
 
 
@@ -37,7 +39,7 @@ class HalLink:
         self._link: BridgeLink | None = None
         self._sent = 0
         self._reports = 0  # of this bridge
-        self._heard = 0.0
+        self._looked, self._silent = 0.0, 0.0  # when, and how long it had told nothing then, s
         self.told: Head = {}
         self.rows: list[Sequence[float]] = []  # samples that nobody has taken
         self.lost: Fault | str = ""  # why nothing can be said to it any more
@@ -45,42 +47,52 @@ class HalLink:
 
     def connect(self) -> None:
         """Start it, and wait for its first report. Raises DriverError."""
-        if self._link is not None and not self._link.down:
+        if self._link is not None and not self._goes_down(self._link):
             raise DriverError(
-                "HAL is still being taken down: in some seconds press Reset again", "feeder-gone"
+                "HAL is still being taken down: in some seconds press Reset again", "hal-bridge"
             )
         self.close()
         self.lost, self.rows, self._reports = "", [], 0
         self._link = self._open()
-        self._heard = self._clock.now()
+        self._looked, self._silent = self._clock.now(), 0.0
         if not self.wait(lambda: self._reports > 0, 3.0):
             raise DriverError(
-                "the bridge to HAL does not tell anything; start the control again", "feeder-silent"
+                "the bridge to HAL does not tell anything; start the control again", "hal-silent"
             )
         self.wait(lambda: False, _SETTLES)
+
+    def _goes_down(self, link: BridgeLink) -> bool:
+        """Whether HAL is down behind a bridge that has ended, or will be in a moment."""
+        end = self._clock.now() + _DOWN
+        while not link.down and self._clock.now() < end:
+            if self._idle is not None:
+                self._idle()
+            self._clock.sleep_until(self._clock.now() + _LOOK)
+        return link.down
 
     def give_up(self) -> None:
         """A bridge to a HAL that stands is of no use any more: it ends, and HAL with it."""
         if self._link is not None and not self.lost:
             self._link.hang_up()
-            self.lost = Fault("HAL is taken down", "bus")
+            self.lost = Fault("HAL is taken down", "hal-thread")
 
     def pump(self) -> None:
         """Take in what has come. Raises nothing: a bridge that is gone is ``lost``."""
         if self._link is None or self.lost:
             return
+        self._silent, self._looked = self.age, self._clock.now()
         try:
             for head, numbers in self._link.receive():
                 self.told = head
                 self._reports += 1
-                self._heard = self._clock.now()
+                self._silent = 0.0
                 self.worst = max(self.worst, number(head, "late"))
                 if len(numbers):
                     self.rows.append(numbers)
         except DriverError as error:
             self.lost = error.fault
         except (ValueError, struct.error):
-            self.lost = Fault("the bridge to HAL tells something that is no packet", "feeder-silent")
+            self.lost = Fault("the bridge to HAL tells something that is no packet", "hal-silent")
             self._link.hang_up()
 
     @property
@@ -89,12 +101,17 @@ class HalLink:
         silent = self.age
         if self.lost or silent <= _SILENT:
             return self.lost
-        return Fault(f"the bridge to HAL has told nothing for {silent:.2f} s", "feeder-silent")
+        return Fault(f"the bridge to HAL has told nothing for {silent:.2f} s", "hal-silent")
+
+    @property
+    def blind(self) -> bool:
+        """Whether nothing is known of the machine: no word of the bridge, or of HAL's thread to it."""
+        return bool(self.trouble) or self.told.get("stands") is True
 
     @property
     def age(self) -> float:
-        """Since the bridge's last word, s."""
-        return float("inf") if self.lost else self._clock.now() - self._heard
+        """For how long the bridge has told nothing while this side was listening, s."""
+        return float("inf") if self.lost else self._silent + min(self._clock.now() - self._looked, _AT_ONCE)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -162,7 +179,7 @@ class HalLink:
         try:
             self._link.send(data)
         except DriverError as error:
-            if error.code != "feeder-silent":
+            if error.code != "hal-silent":
                 self.lost = error.fault
             raise
 

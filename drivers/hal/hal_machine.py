@@ -9,6 +9,7 @@ from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_link import HalLink
 from drivers.hal.hal_session import BridgeLink, bridge_config
+from drivers.hal.hal_spindle_c import HalSpindleC
 from drivers.hal.hal_terminals import HalSpindle, HalTerminals
 from drivers.sample_log import KEPT, SampleLog
 
@@ -41,6 +42,9 @@ class HalMachine:
         self.link = HalLink(open_link, clock, bridge_config(config), idle)
         self.axes = HalAxes(config, self.link, clock.now)
         self.spindle = HalSpindle(config, self.link, self.axes)
+        self.c = _spindle_as_c(config, self.axes, self.spindle, self.link)
+        self.axes.clearing.append(self.spindle.index.clear)
+        self.axes.connecting.append(self.spindle.index.forget)
         self.io = HalTerminals(config, self.link, clock.now)
         self.samples = HalSamples(self.axes, config.period)
         try:
@@ -61,6 +65,8 @@ class HalMachine:
             io=self.io,
             station=self.io,
             gear=self.axes if follows else None,
+            lock=self.c,
+            touch=self.axes.touch,
             samples=self.samples,
             unknown=self.unknown,
             warnings=self.link.warnings,
@@ -68,15 +74,26 @@ class HalMachine:
 
     def unknown(self) -> frozenset[Unknown]:
         """Without a word of the bridge, or of HAL to it, nothing is known."""
-        return ALL_UNKNOWN if self.link.trouble or self.link.told.get("stands") is True else frozenset()
+        return ALL_UNKNOWN if self.link.blind else frozenset()
 
     def tick(self) -> None:
         """One round: take in, supervise, say that this side lives. Call it every few milliseconds."""
         self.link.pump()
         self.axes.tick()
         self.spindle.tick()
+        if self.c is not None:
+            self.c.tick()
         self.link.beat()
 
     def close(self) -> None:
         """The bridge brakes, stops the spindle and takes the power; HAL is taken down."""
         self.link.close()
+
+
+def _spindle_as_c(config: HalConfig, axes: HalAxes, spindle: HalSpindle, link: HalLink) -> HalSpindleC | None:
+    """None where C has a drive of its own, or there is none."""
+    number = next((n for n, axis in enumerate(config.axes) if axis.is_spindle), None)
+    if number is None:
+        return None
+    told = "spindle.in_position_mode" if config.spindle.pins.in_position_mode else ""
+    return HalSpindleC(axes, spindle, link, number, told)

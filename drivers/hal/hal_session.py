@@ -8,7 +8,6 @@ import select
 import shutil
 import socket
 import subprocess
-import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -21,13 +20,17 @@ from drivers.hal.bridge.hal_bridge import BridgeAxis, BridgeConfig
 from drivers.hal.bridge.packets import Head, number, pack, text, unpack
 from drivers.hal.hal_border import BIT, BRIDGE, Border, border_of, bridge_nets, columns, session_text
 from drivers.hal.hal_config import HalConfig
+from drivers.hal.hal_leftovers import clear_away, new_folder
 
 PYTHON = "/usr/bin/python3"
 _SCRIPT = Path(__file__).parent / "bridge" / "bridge_process.py"
 _START = 30.0  # s for boards that are slow to be configured
 _END = 15.0
-_LINGER = 2  # s for which HAL goes on when the bridge has died: the slides brake
+_LINGER = 0.5  # s for which HAL goes on when the bridge has died, behind the end of what it has
+_LOOK = 0.05  # s between two looks whether another session is down
 _LARGEST = 1 << 17
+_ALIVE = "alive"  # a file that the bridge has locked while it lives
+_IN_ORDER = "ended"  # a file of the bridge's, when it has not died but ended
 
 # What halrun says, and what it means for whoever stands before the control.
 _PLAIN = {
@@ -36,7 +39,7 @@ _PLAIN = {
 }
 
 
-_ENDED = "the bridge to HAL has ended"
+_ENDED, _MUTE = "the bridge to HAL has ended", "it says nothing"
 
 
 class Verdict(NamedTuple):
@@ -81,19 +84,20 @@ def bridge_config(config: HalConfig) -> BridgeConfig:
     written = [pin.name for pin in pins if pin.way == "out"]
     return BridgeConfig(
         axes=tuple(
-            BridgeAxis(axis.name, axis.amax, axis.following_window, axis.following_time)
+            BridgeAxis(axis.name, axis.amax, axis.following_window, axis.following_time, axis.is_spindle)
             for axis in config.driven
         ),
         period=config.period,
         ahead=config.ahead,
         outputs={name: output.safe for name, output in config.outputs.items()},
+        lamps=tuple(name for name, output in config.outputs.items() if output.lamp),
         inputs=tuple(config.inputs),
         analog=tuple(config.pots),
         bits=tuple(pin.name for pin in read if pin.kind == BIT),
         spindle=tuple(name.removeprefix("spindle.") for name in written if name.startswith("spindle.")),
         turns=bool(config.spindle.pins.position),
         speed=bool(config.spindle.pins.velocity),
-        marks=sum(bool(axis.switch) for axis in config.driven),
+        marks=sum(bool(axis.switch) for axis in config.driven) + (config.probe is not None),
         figures=tuple(pin.name for pin in read if pin.kind != BIT),
     )
 
@@ -103,8 +107,8 @@ class HalSession:
 
     def __init__(self, config: HalConfig, zero: float, *, only_check: bool = False) -> None:
         _demand_halrun()
-        self._folder = Path(tempfile.mkdtemp(prefix="turndesk-hal-"))
-        self._ended = self._folder / "ended"
+        _clear_leftovers()
+        self._folder, self._lock = new_folder()
         self.warnings: tuple[str, ...] = ()
         self.verdicts: tuple[Verdict, ...] = ()
         try:
@@ -148,16 +152,18 @@ class HalSession:
         (folder / "bridge.json").write_text(
             json.dumps(_told(config, border, folder, fd, zero, only_check=only_check)), encoding="utf-8"
         )
-        # HAL goes on for a while behind a bridge that has died: what it has is played, and the limits brake.
-        linger = f'[ -e "{self._ended}" ] || sleep {_LINGER}\n'
+        # The bridge holds a lock as long as it lives: waitusr of HAL never sees that one has died.
+        # Behind such a one it goes on for a while: what it has is played, and the limits brake.
+        ramp = max((axis.vmax / axis.amax for axis in config.driven), default=0.0)
+        left = _LINGER + config.ahead + config.watchdog + ramp
+        linger = f'[ -e "{folder / _IN_ORDER}" ] || sleep {left:.2f}\n'
         (folder / "linger.sh").write_text(linger, encoding="utf-8")
         start = () if only_check else ("start",)
         lines = (
             session,
             f"loadusr -Wn {BRIDGE} {PYTHON} {_SCRIPT} {folder / 'bridge.json'}",
             *start,
-            f"waitusr {BRIDGE}",
-            f"loadusr -w /bin/sh {folder / 'linger.sh'}",
+            f"loadusr -w flock {folder / _ALIVE} /bin/sh {folder / 'linger.sh'}",
         )
         (folder / "session.hal").write_text("\n".join((*lines, "")), encoding="utf-8")
 
@@ -166,7 +172,7 @@ class HalSession:
         while True:
             head = self._first_words(deadline)
             if why := text(head, "error"):
-                raise DriverError(f"HAL: {why}", "drive-setup")
+                raise DriverError(f"HAL: {why}", "hal-setup")
             if isinstance(said := head.get("verdicts"), list):
                 self.verdicts = tuple(Verdict(*each) for each in said)
                 wrong = [each for each in self.verdicts if each.trouble]
@@ -175,7 +181,7 @@ class HalSession:
                 if wrong:
                     more = f" (and {len(wrong) - 1} more)" if len(wrong) > 1 else ""
                     raise DriverError(
-                        f"{wrong[0].path} = {wrong[0].pin}: {wrong[0].trouble}{more}", "drive-setup"
+                        f"{wrong[0].path} = {wrong[0].pin}: {wrong[0].trouble}{more}", "hal-setup"
                     )
             elif head.get("ready") is True:
                 with suppress(OSError, AttributeError):  # an old kernel: its silence tells, later
@@ -199,9 +205,9 @@ class HalSession:
             if not data:
                 with suppress(subprocess.TimeoutExpired):
                     self._halrun.wait(3.0)
-                raise DriverError(f"halrun has ended at its start: {self._said()}", "drive-setup")
+                raise DriverError(f"halrun has ended at its start: {self._said() or _MUTE}", "hal-setup")
             return unpack(data)[0]
-        raise DriverError(f"HAL does not come up within {_START:g} s: {self._said()}", "drive-setup")
+        raise DriverError(f"HAL does not come up within {_START:g} s: {self._said() or _MUTE}", "hal-setup")
 
     def _said(self) -> str:
         """What halrun has said last that is worth telling."""
@@ -213,7 +219,7 @@ class HalSession:
         for words, plain in _PLAIN.items():
             if any(words in line for line in told):
                 return plain
-        return " / ".join(told[-3:]).replace(f"{self._folder}/", "") or "it says nothing"
+        return " / ".join(told[-3:]).replace(f"{self._folder}/", "")
 
     # --- the link -----------------------------------------------------------------------------------------
 
@@ -223,9 +229,9 @@ class HalSession:
         try:
             self._socket.send(data)
         except BlockingIOError as error:
-            raise DriverError("the bridge to HAL takes nothing any more", "feeder-silent") from error
+            raise DriverError("the bridge to HAL takes nothing any more", "hal-silent") from error
         except OSError as error:
-            raise DriverError(f"the bridge to HAL has ended ({error.strerror})", "feeder-gone") from error
+            raise DriverError(f"the bridge to HAL has ended ({error.strerror})", "hal-bridge") from error
 
     def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:
         """Every packet that has come. Raises DriverError when the bridge has ended."""
@@ -238,10 +244,10 @@ class HalSession:
             except OSError:
                 data = b""
             if not data:
-                raise DriverError(_ENDED, "feeder-gone")
+                raise DriverError(_ENDED, "hal-bridge")
             yield unpack(data)
         if self._bridge is not None and select.select([self._bridge], [], [], 0.0)[0]:
-            raise DriverError(f"{_ENDED}: {self._said()}", "feeder-gone")
+            raise DriverError(": ".join(filter(None, (_ENDED, self._said()))), "hal-bridge")
 
     def hang_up(self) -> None:
         """The bridge brakes at once, and ends."""
@@ -259,7 +265,6 @@ class HalSession:
         """The bridge brakes what moves and ends; halrun takes HAL down."""
         if self._socket is not None:
             with suppress(OSError):
-                self._ended.touch()
                 self._socket.send(pack({"do": "end"}))
             self._socket.close()
         if self._bridge is not None:
@@ -275,13 +280,25 @@ class HalSession:
                 with suppress(OSError, subprocess.TimeoutExpired):
                     subprocess.run(["halrun", "-U"], capture_output=True, timeout=_END, check=False)
         shutil.rmtree(self._folder, ignore_errors=True)
+        os.close(self._lock)
+
+
+def _clear_leftovers() -> None:
+    """A control that was killed has left a HAL that is just being taken down: wait for that."""
+    deadline = time.monotonic() + _END
+
+    def goes_on() -> bool:
+        time.sleep(_LOOK)
+        return time.monotonic() < deadline
+
+    clear_away(goes_on)
 
 
 def _demand_halrun() -> None:
     """Raises DriverError where there is no LinuxCNC."""
     if shutil.which("halrun") is None:
         raise DriverError(
-            "there is no halrun: backend hal needs LinuxCNC (apt install linuxcnc-uspace)", "drive-setup"
+            "there is no halrun: backend hal needs LinuxCNC (apt install linuxcnc-uspace)", "hal-setup"
         )
 
 
@@ -298,6 +315,8 @@ def _told(
         "pins": [(pin.name, pin.kind, pin.way) for pin in border.pins],
         "own": dict(bridge_nets(border)),
         "nets": str(folder / "nets.hal"),
+        "alive": str(folder / _ALIVE),
+        "ended": str(folder / _IN_ORDER),
         "columns": "f" * columns(config),
         "sampled": border.columns,
         "bridge": asdict(bridge_config(config)),

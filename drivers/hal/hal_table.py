@@ -190,8 +190,26 @@ def _all_axes(file: FileReading) -> Iterator[Finding]:
     for axis in file.axes:
         on = axis != "C" or (values.has("axis.C.enabled") and values.flag("axis.C.enabled"))
         there = axis in file.names(_AXES) or f"{_AXES}.{axis}" in values.wrong
+        if on and axis == "C" and there:
+            yield from _spindle_as_c(file)
         if on and not there and not isinstance(file.raw(_AXES), str):
             yield Finding(f"{_AXES}.{axis}", "", f"missing; axis {axis} needs {{ command, feedback }}")
+
+
+def _spindle_as_c(file: FileReading) -> Iterator[Finding]:
+    """C on the spindle's own drive needs to change that over, and to know where it stands."""
+    values = file.values
+    own = values.has("axis.C.own_drive") and values.flag("axis.C.own_drive")
+    if own or not values.says("spindle.driver", "hal") or not values.has(f"{_SPINDLE}.position_mode"):
+        return
+    why = {
+        "position_mode": "C is the spindle's drive, which has to be changed over to positions",
+        "position": "C is the spindle, whose turns have to be told",
+    }
+    for key, words in why.items():
+        if not values.text(f"{_SPINDLE}.{key}"):
+            own_drive = "; or own_drive = true in [axis.C]"
+            yield Finding(f"{_SPINDLE}.{key}", "", f"missing; {words}{own_drive}")
 
 
 def _turns(file: FileReading) -> Iterator[Finding]:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from core.ports import DriverError, Fault, StationState
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_config import HalConfig
+from drivers.hal.hal_index import SpindleIndex
 from drivers.hal.hal_link import HalLink
 
 _TAKES = 0.3  # s in which HAL must have taken an order
@@ -20,12 +21,16 @@ class HalSpindle:
         self._config = config.spindle
         self._link = link
         self._axes = axes
-        self._ordered = 0.0  # rpm
+        self.ordered = 0.0  # rpm
+        self.lent = False  # its drive is C, or becomes it: what it turns then is not the spindle's speed
+        self.index = SpindleIndex(axes, link, wired=bool(config.spindle.pins.index_enable))
+        self._unknown: tuple[float, float] | None = None  # what is told of its angle before its index was
 
     def tick(self) -> None:
         """An open chain has switched it off."""
         if self._link.told.get("ok") is not True:
-            self._ordered = 0.0
+            self.ordered = 0.0
+        self.index.look()
 
     def run(self, rpm: float) -> None:
         """Turn at ``rpm``, signed. Raises DriverError with a fault or an open chain, unless asked to stop."""
@@ -34,9 +39,9 @@ class HalSpindle:
         if rpm and self._link.told.get("ok") is not True:
             raise DriverError("the spindle stays off: the E-stop chain is open; press Reset", "spindle-off")
         limit = self._config.rpm_max
-        self._ordered = min(max(rpm, -limit), limit)
+        self.ordered = min(max(rpm, -limit), limit)
         if not self._link.lost:
-            self._link.say("spindle", rpm=self._ordered, on=bool(self._ordered))
+            self._link.say("spindle", rpm=self.ordered, on=bool(self.ordered))
 
     def coast(self) -> None:
         """Speed 0, and off: what its drive makes of that is the drive's."""
@@ -44,15 +49,26 @@ class HalSpindle:
 
     def speed(self) -> float:
         """Measured rpm, signed; without turns or velocity, what it was told once it is at speed."""
+        return 0.0 if self.lent else self.measured()
+
+    def measured(self) -> float:
+        """The same, whatever its drive is."""
         pins = self._config.pins
         if pins.position or pins.velocity:
             return 60.0 * self._axes.rps
-        return self._ordered if self._link.bit("spindle.at_speed") else 0.0
+        return self.ordered if self._link.bit("spindle.at_speed") else 0.0
 
     def angle(self) -> tuple[float, float] | None:
-        """(time, turns) by the encoder, whole turns at its index where it has one; None without one."""
+        """(time, turns) by the encoder, whole turns at its index where it has one; None without one.
+
+        Before its index has come by it is an old reading: who needs the angle waits for a new one.
+        """
         if not self._config.encoder or self._axes.spindle_at is None:
             return None
+        if not self.index.known:
+            self._unknown = self._unknown or self._axes.spindle_at
+            return self._unknown
+        self._unknown = None
         t, turns = self._axes.spindle_at
         return t, turns - self._axes.index_at
 
@@ -60,6 +76,8 @@ class HalSpindle:
         """What is wrong with it; empty when well."""
         if why := self._link.trouble:
             return why
+        if self.index.trouble:
+            return self.index.trouble
         wrong = self._link.bit("spindle.fault")
         return Fault("the spindle's drive reports a fault", "spindle") if wrong else ""
 
@@ -99,7 +117,8 @@ class HalTerminals:
             raise DriverError(f"output {name!r} is not in the machine file; add it under [io.out]", "output")
         if on and self._link.trouble:
             raise DriverError(f"output {name} stays off: {self._link.trouble}", "output")
-        if output.safe is not None and on is not output.safe and self._link.told.get("ok") is not True:
+        chained = output.safe is not None and not output.lamp
+        if chained and on is not output.safe and self._link.told.get("ok") is not True:
             raise DriverError(
                 f"output {name} stays as it is: the E-stop chain is open; press Reset", "output"
             )

@@ -89,12 +89,18 @@ class DeviceNode:
         self._sync_at: float | None = None  # of the last SYNC, and of the last of its first PDO
         self._told_at: float | None = None
         self._waiting: dict[int, bytes] = {}  # RPDO number → data until the next SYNC
+        # What was read of the stored objects since one of them was written: COB-ID and number of each RPDO,
+        # the entries of each PDO, and numbers by their place.
+        self._rpdos: list[tuple[int, int]] | None = None
+        self._entries: dict[int, list[tuple[int, int, int]]] = {}
+        self._numbers: dict[tuple[int, int], int] = {}
         self.boot()
 
     def boot(self) -> None:
         """Say that it is there; everything volatile is gone."""
         self.state = _PRE_OPERATIONAL
         self.local.data_store.clear()
+        self._forget()
         self._waiting.clear()
         self._host_heard = self._sync_at = self._told_at = None
         self.device.reset()
@@ -159,8 +165,8 @@ class DeviceNode:
                 self._apply(number, waiting)
             self._waiting.clear()
             self._answer()
-        for number in range(4):
-            if can_id == self._stored(0x1400 + number, 1) and can_id:
+        for taken, number in self._taken():
+            if can_id == taken:
                 self._told_at = self._told_at if number else self.now
                 if self._stored(0x1400 + number, 2) <= _SYNCHRONOUS:
                     self._waiting[number] = data
@@ -183,16 +189,35 @@ class DeviceNode:
                 parts = [self.local.get_data(index, sub) for index, sub, _ in self._mapped(0x1A00 + number)]
                 self.network.send_message(cob & 0x7FF, b"".join(parts))
 
+    def _taken(self) -> list[tuple[int, int]]:
+        """COB-ID and number of each RPDO that has one."""
+        if self._rpdos is None:
+            told = [(self._stored(0x1400 + number, 1), number) for number in range(4)]
+            self._rpdos = [each for each in told if each[0]]
+        return self._rpdos
+
+    def _forget(self) -> None:
+        self._rpdos = None
+        self._entries.clear()
+        self._numbers.clear()
+
     def _mapped(self, index: int) -> list[tuple[int, int, int]]:
         """(index, sub-index, bytes) of each entry."""
-        found = []
+        if index in self._entries:
+            return self._entries[index]
+        found = self._entries[index] = []
         for sub in range(1, self._stored(index, 0) + 1):
             entry = self._stored(index, sub)
             found.append((entry >> 16, entry >> 8 & 0xFF, (entry & 0xFF) // 8))
         return found
 
     def _stored(self, index: int, sub: int) -> int:
-        return int.from_bytes(self.local.data_store.get(index, {}).get(sub, b""), "little")
+        """A number that is kept as it was written, such as those of communication; 0 where none is."""
+        known = self._numbers.get((index, sub))
+        if known is None:
+            kept = self.local.data_store.get(index, {}).get(sub, b"")
+            known = self._numbers[index, sub] = int.from_bytes(kept, "little")
+        return known
 
     def _watched(self) -> tuple[int, float]:
         """Node whose heartbeat is watched, and for how long it may be missing."""
@@ -203,4 +228,6 @@ class DeviceNode:
         return self.device.read(index, subindex)
 
     def _on_write(self, index: int, subindex: int, od: ODVariable, data: bytes) -> None:
+        if index < 0x2000:  # of CiA 301; the device's own are not asked here
+            self._forget()
         self.device.write(index, subindex, int(od.decode_raw(data)))

@@ -152,37 +152,39 @@ _BUSY = frozenset(("Run", "Hold", "Jog", "Home", "Door"))
 
 @dataclass(slots=True)
 class Reports:
-    """Offsets and overrides come every so often, and when they have changed.
+    """Offsets and overrides come every so often, and when they have changed; offsets wait where both would.
 
-    A report with offsets has no overrides: so a full one, which always has offsets, never tells them.
+    A full report has both. Firmware of 2023 let the overrides wait, and they were never in a full one.
     """
 
     offsets_in: int = 0
     overrides_in: int = 0
     offsets_due: bool = False
     overrides_due: bool = False
+    accessories_due: bool = False
 
     def text(self, m: Firmware, *, full: bool) -> str:
         """One report, without its end of line."""
         busy = m.state.partition(":")[0] in _BUSY
-        offsets, overrides = self._due(full, busy)
-        return f"<{m.told_state(full)}{_motion(m)}{_extras(m, offsets, overrides, full)}>"
+        overrides = self._overrides(full, busy)
+        offsets = self._offsets(full, overrides, busy)
+        text = f"<{m.told_state(full)}{_motion(m)}{_extras(m, offsets, overrides, full)}>"
+        self.accessories_due = False
+        return text
 
-    def _due(self, full: bool, busy: bool) -> tuple[bool, bool]:
-        offsets = full or self.offsets_due
-        if self.offsets_in > 0 and not offsets:
-            self.offsets_in -= 1
-        else:
-            self.offsets_in = (_OFFSETS_BUSY if busy else _OFFSETS_IDLE) - 1
-        overrides = False
-        if self.overrides_in > 0 and not (full or self.overrides_due):
-            self.overrides_in -= 1
-        elif not offsets:
-            overrides = True
-            self.overrides_in = (_OVERRIDES_BUSY if busy else _OVERRIDES_IDLE) - 1
+    def _overrides(self, full: bool, busy: bool) -> bool:
+        told = full or self.overrides_due or self.overrides_in == 0
+        self.overrides_in = (
+            (_OVERRIDES_BUSY if busy else _OVERRIDES_IDLE) - 1 if told else self.overrides_in - 1
+        )
         self.overrides_due = False
-        self.offsets_due = self.offsets_in == 0
-        return offsets, overrides
+        return told
+
+    def _offsets(self, full: bool, overrides: bool, busy: bool) -> bool:
+        wanted = full or self.offsets_due or self.offsets_in == 0
+        self.offsets_in = (_OFFSETS_BUSY if busy else _OFFSETS_IDLE) - 1 if wanted else self.offsets_in - 1
+        self.offsets_due = wanted and overrides and not full
+        return wanted and not self.offsets_due
 
 
 def _stepped(place: float, steps: float) -> float:
@@ -210,13 +212,14 @@ def _extras(m: Firmware, offsets: bool, overrides: bool, full: bool) -> str:
     text += f"|Ov:{m.feed_percent},{m.rapid_percent},{m.spindle_percent}" if overrides else ""
     accessories = "" if not m.commanded else "S" if m.commanded > 0.0 else "C"
     accessories += "F" * m.outputs.get("flood", False) + "M" * m.outputs.get("mist", False)
-    text += f"|A:{accessories}" if full or (overrides and accessories) else ""
+    told = full or m.reports.accessories_due or (overrides and accessories)
+    text += f"|A:{accessories}" if told else ""
     if not full:
         return text
     homed = f"|H:{int(m.homed & 5 == 5)}" + (f",{m.homed}" if int(m.registers[22]) & 2 else "")
     read = "" if m.read is None else f"|In:{m.read}"
     lathe = f"|D:{int(m.program.modes.radius == 'G7')}" if m.registers.lathe else ""
-    return f"{text}|Sc:{homed}{lathe}|T:0|TLR:0{read}|FW:grblHAL"
+    return f"{text}|Sc:|MPG:0{homed}{lathe}|T:0|P:0|TLR:0{read}|FW:grblHAL"
 
 
 _STEP = 0.001  # s
@@ -263,6 +266,7 @@ class Firmware:
         self.reports = Reports()
         self.program = Program(self)
         self._wire = bytearray()  # not yet taken from the socket
+        self._next_byte = 0.0
 
     # --- the wire -----------------------------------------------------------------------------------------
 
@@ -308,6 +312,9 @@ class Firmware:
 
     def _take_in(self) -> None:
         while self._wire and self.rx_free > _GATE and not (self.waits and self.quirks.mute):
+            if self.k < self._next_byte:
+                return
+            self._next_byte = self.k + self.quirks.drip if self.quirks.drip else 0.0
             byte = self._wire.pop(0)
             if byte >= 0x80 or byte in {0x18, 0x19}:
                 act(self, byte)
@@ -427,5 +434,8 @@ class Firmware:
 
     def turn(self, rpm: float) -> None:
         """Command the spindle."""
+        self.reports.accessories_due = self.reports.accessories_due or (rpm > 0.0) - (rpm < 0.0) != (
+            self.rpm > 0.0
+        ) - (self.rpm < 0.0)
         self.rpm = rpm
         self.spindle.order(self.k, self.commanded)

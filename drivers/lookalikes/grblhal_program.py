@@ -117,7 +117,7 @@ def identity(m: Controller) -> list[str]:
     ports = [f"[AUX IO:{quirks.inputs},{quirks.outputs},0,0]"] if quirks.inputs + quirks.outputs else []
     return [
         "[VER:1.1f.20260817:]",
-        "[OPT:VNML+,100,1024,3,16]",
+        f"[OPT:{quirks.build},100,1024,3,16]",
         "[AXS:3:XYZ]",
         f"[NEWOPT:ENUMS,RT+,{home}{lathe}EXPR,TC,SED]",
         "[FIRMWARE:grblHAL]",
@@ -180,6 +180,9 @@ def _home(m: Controller, letter: str) -> int | None:
 
 
 _WORD = re.compile(r"([A-Z])(-?\d*\.?\d+)")
+_WORDS = re.compile(
+    r"([A-Z] *[-+]?(\d+\.?\d*|\.\d+) *)*", re.IGNORECASE
+)  # a letter without its number is none
 _MOST_LINES = 10_000_000
 
 __all__ = ["Modes", "Program"]
@@ -266,6 +269,10 @@ class Program:
         found = _WORD.findall(line)
         codes = [f"{letter}{float(value):g}" for letter, value in found if letter in "GM"]
         words = {letter: float(value) for letter, value in found if letter not in "GM"}
+        if not _WORDS.fullmatch(line):
+            self.error = 2
+            self._m.answer(2)
+            return
         self.error = 27 if words.get("N", 0) > _MOST_LINES else self._obey(codes, words)
         if not self.error:
             self.executed.append(line)
@@ -273,6 +280,8 @@ class Program:
             self._m.answer(self.error)
 
     def _obey(self, codes: list[str], words: dict[str, float]) -> int:
+        if "G95" in codes and not self._m.quirks.encoder:
+            return 20
         for code in (code for code in codes if code[0] == "G"):
             error = self.modes.take(code, lathe=self._m.registers.lathe)
             if error:

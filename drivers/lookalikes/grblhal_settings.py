@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 
 # --- What the look-alike does like the real one, or is made to do; each can be switched.
@@ -16,11 +17,13 @@ class Quirks:
     index_missing: bool = False
     outputs: int = 16
     inputs: int = 8
+    build: str = "VNML+"  # letters of $I: V variable spindle, M mist
     signals: str | None = "RHSDLTEF"  # control inputs of its board; the simulator itself has a door alone, D
     lathe: bool = True
     built_for_lathes: bool = False  # always in lathe mode: there is no $32
     homing: int | bool = 0  # its $22; True: 3, axis by axis, and it does not insist
     mute: bool = True  # takes nothing from the wire while a thread waits for its index, as the simulator
+    drip: float = 0.0  # s from byte to byte that it takes: the simulator where a busy computer starves it
     deaf: bool = False  # answers nothing
     garble: list[bytes] = field(default_factory=list)  # instead of the next ``ok``s
     hold_broken: bool = False  # 0x82 does nothing
@@ -29,6 +32,7 @@ class Quirks:
     settings: dict[int, float] = field(default_factory=dict)  # other than the machine file's
 
 
+_NUMBER = re.compile(r"-?(\d+\.?\d*|\.\d+)")
 _MODE, _LATHE = 32, 2
 _DECIMALS = {11: 3, 12: 3, 24: 1, 25: 1, 27: 3, 30: 3, 31: 3}
 _AXES = {100: 5, 110: 3, 120: 3, 130: 3}  # first number of three, decimals
@@ -72,12 +76,10 @@ class Registers:
         """The error, 0 for none."""
         if number not in self._values:
             return 53
-        try:
-            value = float(text)
-        except ValueError:
+        begin = _NUMBER.match(text)  # what comes behind is not read: 1e3 is 1
+        if begin is None:
             return 2
-        if "e" in text.lower():
-            return 2  # it reads no exponents
+        value = float(begin[0])
         if number in {20, 40} and value and not int(self._values[22]) & 1:
             return 10
         self._values[number] = float(f"{value:.{self._decimals(number)}f}")

@@ -15,6 +15,7 @@ Shape = tuple[float, Callable[[float], Place]]  # length, and distance to place
 _NOTHING = 5e-7  # radians
 _CREEP = 1e-3  # mm/s: nothing stops a hair before its place
 _NEAR = 1e-3  # mm, over which a direction is taken
+_RATE, _ACCELERATION = 110, 120  # settings of the first axis
 _STRAIGHT = 0.999999  # cosine of a corner that is none, or that turns back
 
 
@@ -117,37 +118,42 @@ class Slides:
         if not self.queue:
             self.v = 0.0
             return
-        goal = 0.0 if self.held else self._speed(self.queue[0], turns_per_s)
-        change = self._accel * dt
+        goal = 0.0 if self.held else self._speed(self.queue[0], self._s, turns_per_s)
+        change = self._accel(self.queue[0], self._s) * dt
         self.v = min(self.v + change, goal) if self.v < goal else max(self.v - change, goal)
         self.v = min(self.v, self._allowed(turns_per_s))
         if self.held and self.v < 1.5 * change:
             self.v = 0.0
         self._go(self.v * dt)
 
-    def _speed(self, block: PlannedBlock, turns_per_s: float) -> float:
-        """A thread too is slowed by the feed override, beside its lead; a jog knows none."""
-        most = min(self._registers[110], self._registers[112]) / 60.0
+    def _speed(self, block: PlannedBlock, at: float, turns_per_s: float) -> float:
+        """mm/s, no slide faster than it may. A jog knows no override, a thread none either."""
+        most = self._along(_RATE, block.heading(at)) / 60.0
         speed = min(block.speed * turns_per_s if block.per_rev else block.speed, most)
         if block.rapid:
             return speed * self.rapid
-        return speed if block.jog else min(speed * self.feed, most)
+        return speed if block.jog or block.thread else min(speed * self.feed, most)
 
-    @property
-    def _accel(self) -> float:
-        return min(self._registers[120], self._registers[122])
+    def _accel(self, block: PlannedBlock, at: float) -> float:
+        return self._along(_ACCELERATION, block.heading(at))
+
+    def _along(self, first: int, heading: Place) -> float:
+        """The most on a way of this direction by the settings of X and Z, from ``first`` on (planner.c)."""
+        shares = ((self._registers[first], abs(heading[0])), (self._registers[first + 2], abs(heading[1])))
+        return min((most / share for most, share in shares if share), default=self._registers[first])
 
     def _allowed(self, turns_per_s: float) -> float:
         """Speed from which every corner ahead, and the end, can still be taken as slowly as it has to be."""
-        accel, before = self._accel, self.queue[0]
-        most, left = math.inf, before.length - self._s
+        before = self.queue[0]
+        left = max(before.length - self._s, 0.0)
+        most, brakes = math.inf, 2.0 * self._accel(before, self._s) * left
         for block in itertools.islice(self.queue, 1, None):
-            corner = min(self._corner(before, block), self._speed(block, turns_per_s))
-            most = min(most, math.sqrt(corner**2 + 2.0 * accel * max(left, 0.0)))
-            if 2.0 * accel * left > self.v**2:
+            corner = min(self._corner(before, block), self._speed(block, 0.0, turns_per_s))
+            most = min(most, math.sqrt(corner**2 + brakes))
+            if brakes > self.v**2:
                 return most + _CREEP
-            before, left = block, left + block.length
-        return min(most, math.sqrt(2.0 * accel * max(left, 0.0))) + _CREEP
+            before, brakes = block, brakes + 2.0 * self._accel(block, 0.0) * block.length
+        return min(most, math.sqrt(brakes)) + _CREEP
 
     def _corner(self, before: PlannedBlock, block: PlannedBlock) -> float:
         """The fastest through the joint of two blocks, by the deviation of ``$11``; turning back stops."""
@@ -156,7 +162,9 @@ class Slides:
         if abs(cosine) > _STRAIGHT:
             return math.inf if cosine > 0.0 else 0.0
         half = math.sqrt(0.5 * (1.0 + cosine))  # sine of half the angle between the two ways
-        return math.sqrt(self._accel * self._registers[11] * half / (1.0 - half))
+        turn = math.hypot(x1 - x0, z1 - z0)
+        accel = self._along(_ACCELERATION, ((x1 - x0) / turn, (z1 - z0) / turn))
+        return math.sqrt(accel * self._registers[11] * half / (1.0 - half))
 
     def _go(self, way: float) -> None:
         self._s, self.travelled = self._s + way, self.travelled + way

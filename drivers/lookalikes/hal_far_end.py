@@ -6,6 +6,7 @@ that becomes the HAL file, so what is wired wrong there is wrong here.
 
 from __future__ import annotations
 
+import math
 import re
 from collections import defaultdict, deque
 from collections.abc import Callable, Iterator, Sequence
@@ -24,6 +25,7 @@ from drivers.lookalikes.plant_hands import PlantHands
 _ROUND, _REPORT = 2, 4  # periods between two rounds of the bridge, between two reports
 _STATION = ("estop", "start", "hold", "spindle_auto")
 _HAIR = 1e-9
+_INDEX = 0.3  # turns, where the spindle's index is
 
 
 class HalThread:
@@ -130,10 +132,12 @@ class HalFarEnd:
         self.stopped = False  # it stands, and comes back
         self.stands = False  # the servo thread is gone
         self.garbled = False  # what is told is no packet
+        self.has_index = True  # phase Z of the spindle's encoder is wired
         self.late = 0  # reports that are held back
         self._outbox: deque[bytes] = deque()
         self._count = 0
         self._rpm = 0.0
+        self._turns = self._index_at = 0.0  # as its encoder counts, and where it has begun to count anew
         self._place = {axis.name: 0.0 for axis in config.driven}
         self.bridge = self._start()
 
@@ -160,14 +164,14 @@ class HalFarEnd:
     def send(self, data: bytes) -> None:
         """Raises DriverError when nobody is there."""
         if self.killed:
-            raise DriverError("the bridge to HAL has ended (broken pipe)", "feeder-gone")
+            raise DriverError("the bridge to HAL has ended (broken pipe)", "hal-bridge")
         self.bridge.handle(*unpack(data))
 
     def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:
         """Whatever it has told."""
         self.plant.advance()
         if self.killed:
-            raise DriverError("the bridge to HAL has ended", "feeder-gone")
+            raise DriverError("the bridge to HAL has ended", "hal-bridge")
         while len(self._outbox) > self.late:
             data = self._outbox.popleft()
             yield unpack(data[3:] if self.garbled else data)
@@ -215,7 +219,7 @@ class HalFarEnd:
             self._set(pins.feedback, servo.reading)
             self._set(pins.fault, axis.name in plant.faulty)
             self._set(pins.home, servo.p <= servo.switch)
-        self._set(config.spindle.pins.position, plant.spindle.counted)
+        self._encode(plant.spindle.counted)
         self._set(config.spindle.pins.velocity, plant.spindle.speed / 60.0)
         state = plant.panel.state(t)
         states = {**plant.terminals.read(t), **{name: getattr(state, name) for name in _STATION}}
@@ -226,6 +230,17 @@ class HalFarEnd:
                 self._set(pot.pin, state.handwheel)
             else:
                 self._set(pot.pin, (getattr(state, name) - pot.low) / (pot.high - pot.low))
+
+    def _encode(self, turns: float) -> None:
+        """The spindle's encoder: asked for its index it counts from there on anew."""
+        pins, last = self.config.spindle.pins, self._turns
+        self._turns = turns
+        if pins.index_enable and self._get(pins.index_enable):
+            passed = math.floor(turns - _INDEX), math.floor(last - _INDEX)
+            if passed[0] != passed[1] and self.has_index:
+                self._index_at = max(passed) + _INDEX
+                self._set(pins.index_enable, False)
+        self._set(pins.position, turns - self._index_at)
 
     def _drive(self, t: float, period: float) -> None:
         """What HAL drives; without power slides roll out. Boards of a thread that stands take the power."""

@@ -265,9 +265,27 @@ class Plant:
                 if self.log is not None:
                     self._sample_rest(until)
                 self._k = until
+            elif self._undisturbed():
+                self._follow(last)
             else:
                 self._step()
             self._reference()
+
+    def _undisturbed(self) -> bool:
+        """Whether the slides have nothing but setpoints in time to go by, and nobody looks at every step."""
+        ordered = self.enabled and self._off_at == _NEVER and self._homing is None and not self.fault
+        watched = self.log is not None or self.terminals.setter is not None or self.spindle.faults.belt
+        return ordered and not watched and not self.queue.meshed
+
+    def _follow(self, last: int) -> None:
+        """As one ``_step`` after the other, up to grid point ``last``, a trip or the end of the setpoints."""
+        dt, queue, ends = self.config.step, self.queue, self.queue.horizon(-_NEVER)
+        while True:
+            p, v = queue.demand_at(self._k * dt)
+            self._k += 1
+            if self._servos_follow(p, v, dt) or self._k >= last or self._k * dt >= ends:
+                break
+        self.spindle.cuts = self.cuts()
 
     def _resting(self) -> bool:
         if not self.enabled:
@@ -289,11 +307,7 @@ class Plant:
             p, v, demand = self._setpoint(t)
             self._sample(t, demand)
             self._k += 1
-            for servo, position, speed in zip(self.servos, p, v, strict=True):
-                if servo.follow(position, speed, dt) and not self.fault:
-                    self.fault = Fault(f"{servo.axis.name}: following error", "following")
-            if self.fault and self._off_at == _NEVER:
-                self._off_at = self.queue.brake(self.t, [axis.amax for axis in self.config.axes])
+            self._servos_follow(p, v, dt)
         if self.terminals.setter is not None:
             x, z = (self.servos[self.names.index(name)].where for name in "XZ")
             self.terminals.setter.look(self.t, x, z, self._readings())
@@ -301,6 +315,15 @@ class Plant:
         if self.spindle.faults.belt:
             self.spindle.cut_load(self.t, cutting=self.spindle.cuts)
         self._turn()
+
+    def _servos_follow(self, p: tuple[float, ...], v: tuple[float, ...], dt: float) -> bool:
+        """One step towards setpoint ``p`` ``v``; whether a drive has given up, now or before."""
+        for servo, position, speed in zip(self.servos, p, v, strict=True):
+            if servo.follow(position, speed, dt) and not self.fault:
+                self.fault = Fault(f"{servo.axis.name}: following error", "following")
+        if self.fault and self._off_at == _NEVER:
+            self._off_at = self.queue.brake(self.t, [axis.amax for axis in self.config.axes])
+        return bool(self.fault)
 
     def cuts(self) -> bool:
         """Whether a slide feeds: much slower than its rapid, which is as near to a cut as this gets."""

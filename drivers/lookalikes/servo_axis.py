@@ -59,10 +59,11 @@ class Servo:
         Second order, damping 1. Without the whole feed-forward the slide trails by 2(1 - ff)v/wn.
         """
         wn, axis = self._wn, self.axis
-        seen = self._seen()
+        seen = self.p if self.stuck is None and not self.worn.deceives else self._seen()
         limit = axis.amax * axis.reserve
         force = wn * (wn * (p - seen) + 2 * (axis.feed_forward * v - self.v))
-        force = min(max(force, -limit), limit)
+        if not -limit <= force <= limit:  # quicker than min and max: this is done three times a millisecond
+            force = math.copysign(limit, force)
         self.load = 100.0 * force / limit
         if self.jammed:
             self.v = 0.0
@@ -70,9 +71,8 @@ class Servo:
             self.v = self.runaway
             self.p += self.v * dt
         else:
-            speed = self.v + force * dt
-            top = axis.vmax * 1.1
-            self.v = min(max(speed, -top), top)
+            speed, top = self.v + force * dt, axis.vmax * 1.1
+            self.v = speed if -top <= speed <= top else math.copysign(top, speed)
             self.p += self.v * dt
         if self.worn.gib:
             self.worn.carry(self.p, self.v)

@@ -130,6 +130,7 @@ def _spindle(layout: Layout) -> Component:
         _rpm("Srpm", "ACTUAL"),
         _rpm("Scmd", "PROGRAMMED"),
         _percent("Sovr", "ROTARY_VELOCITY_OVERRIDE"),
+        DataItem("Sload", Category.SAMPLE, "LOAD", "ACTUAL", "PERCENT", digits=1, band=1.0),
         _event("rotmode", "ROTARY_MODE"),
         _condition("Sdrive", "ACTUATOR"),
     )

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import array
 import contextlib
-import fcntl
 import os
 import struct
 from collections.abc import Iterable, Mapping, Sequence
@@ -151,6 +150,13 @@ _MONOTONIC = 1
 _CHUNK = 64 * 24
 
 
+def _ioctl(device: int, request: int, value: int | bytes | bytearray | array.array[int]) -> None:
+    """One request to a device; only Linux has such devices, and the library for it."""
+    import fcntl  # noqa: PLC0415
+
+    fcntl.ioctl(device, request, value)
+
+
 class KernelDevice:
     """``EventSource`` on a device node, read by us alone: what it types must not reach the screen too.
 
@@ -167,8 +173,8 @@ class KernelDevice:
             raise DriverError(f"the pendant {entry.name} cannot be opened: {error.strerror}") from error
         self._able = entry.able
         try:
-            fcntl.ioctl(self._fd, _CLOCK, struct.pack("@i", _MONOTONIC))
-            fcntl.ioctl(self._fd, _GRAB, 1)
+            _ioctl(self._fd, _CLOCK, struct.pack("@i", _MONOTONIC))
+            _ioctl(self._fd, _GRAB, 1)
         except OSError as error:
             os.close(self._fd)
             raise DriverError(
@@ -189,7 +195,7 @@ class KernelDevice:
     def keys(self) -> frozenset[int]:
         """EVIOCGKEY: a bit for each key that is down."""
         bits = bytearray(KEYS // 8)
-        fcntl.ioctl(self._fd, _request(2, 0x18, len(bits)), bits)
+        _ioctl(self._fd, _request(2, 0x18, len(bits)), bits)
         return frozenset(i for i in range(KEYS) if bits[i // 8] >> (i % 8) & 1)
 
     def ranges(self) -> Mapping[int, AxisRange]:
@@ -198,7 +204,7 @@ class KernelDevice:
         for code in range(AXES):
             if (ABS, code) in self._able:
                 raw = array.array("B", bytes(_ABSINFO.size))
-                fcntl.ioctl(self._fd, _request(2, 0x40 + code, _ABSINFO.size), raw)
+                _ioctl(self._fd, _request(2, 0x40 + code, _ABSINFO.size), raw)
                 value, low, high, *_ = _ABSINFO.unpack(raw)
                 told[code] = AxisRange(low, high, value)
         return told

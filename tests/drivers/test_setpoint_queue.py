@@ -62,6 +62,38 @@ def test_refuses_what_starts_before_commit() -> None:
     assert q.horizon(0.0) == 0.0
 
 
+def in_slices(start: float, count: int) -> Segments:
+    """At rest in so many pieces of 2 ms."""
+    t, zero = start + 0.002 * np.arange(count), np.zeros((count, 3))
+    return Segments(t, np.full(count, 0.002), np.tile(REST, (count, 1)), zero, zero)
+
+
+def test_a_long_path_gives_way_to_what_has_to_go_on() -> None:
+    q = queue()
+    asked: list[float] = []
+    q.give_way = lambda: asked.append(q.horizon(0.0))
+    q.splice(in_slices(0.05, 1000), now=0.0)
+    assert len(asked) == 10
+    assert asked == [0.0] * 10  # nothing of it is played before all of it is there
+    assert q.horizon(0.0) == pytest.approx(2.05)
+
+
+def test_a_long_path_that_is_overtaken_by_its_own_start_is_refused() -> None:
+    q = queue()
+    fed = [0.0]
+
+    def go_on() -> None:
+        fed[0] += 0.01
+
+    q.give_way, q.handed_out = go_on, lambda: fed[0]
+    q.splice(in_slices(0.05, 400), now=0.0)
+    fed[0] = 0.0
+    with pytest.raises(DriverError, match=r"10\.0 ms too early") as error:
+        q.splice(in_slices(0.05, 600), now=0.0)
+    assert error.value.code == "late"
+    assert q.horizon(0.0) == pytest.approx(0.85)
+
+
 @pytest.mark.parametrize(("off", "axis"), [(0.0011, 0), (-0.0011, 1), (0.0011, 2)])
 def test_refuses_a_jump_in_position(off: float, axis: int) -> None:
     start = list(REST)

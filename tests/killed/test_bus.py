@@ -13,9 +13,12 @@ from core.store.store import Store
 from drivers.clocks import RealClock
 from drivers.lookalikes.canopen_devices import CanopenDevices
 from tests.drivers.feeder.bus import SteadyClock, bus_file, peers_on
-from tests.killed.bench import PATIENCE, Process, process
+from tests.killed.bench import Process, process
 
-pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks for processes in /proc")
+pytestmark = [
+    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks for processes in /proc"),
+    pytest.mark.real_time,
+]
 SCREEN = ("tests.killed.operator", "{machine}", "{program}")
 HEADLESS = ("app.cli.main", "run", "{program}", "--headless", "--json", "--machine", "{machine}")
 # X and Z together on a diagonal, out and back: wherever it is cut, both have gone as far.
@@ -34,7 +37,7 @@ class Shop:
         """Play the drives until it is so."""
         deadline = RealClock()
         while not ready():
-            assert deadline.now() < PATIENCE, what()
+            assert deadline.now() < self.clock.patience, what()
             while self.clock.step():
                 self.peers.pump()
             self.peers.pump(0.001)

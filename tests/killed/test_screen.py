@@ -16,10 +16,15 @@ from core.records.record import Record
 from core.records.ring_file import LAST, NOW, read_ring
 from core.store.store import Store
 from tests.killed.bench import Process, process, until
+from tests.late_computer import tell
 
-pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks for processes in /proc")
+pytestmark = [
+    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks for processes in /proc"),
+    pytest.mark.real_time,
+]
 PROGRAM = "G90G94\nM03S600\nM08\nG01X.2Z-.2F20\nX0.Z0.\nM30\n"  # 2 s of motion a part
 OPERATOR = "tests.killed.operator"
+_LATE = "CONTROL WAS SILENT", "SETPOINTS RAN LOW"
 
 
 @pytest.fixture
@@ -36,6 +41,11 @@ def cutting(desk: Process, parts: int) -> None:
     """At work on the part after so many."""
 
     def so() -> bool:
+        if desk.says("state", "FEED HOLD"):  # nobody here asks for one
+            held = str(desk.lines[-1]["prompt"])
+            if held.startswith(_LATE):
+                tell("late")
+            pytest.fail(held)
         return desk.says("state", "RUNNING") and int(str(desk.lines[-1]["parts"])) >= parts
 
     until(so, lambda: desk.lines[-3:])

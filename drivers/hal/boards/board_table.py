@@ -24,6 +24,7 @@ from core.table_schema import (
 SIM, PARPORT, MESA_STEP, MESA_SERVO, ETHERCAT = "sim", "parport", "mesa-7i76e", "mesa-7i97", "ethercat"
 KINDS = (SIM, PARPORT, MESA_STEP, MESA_SERVO, ETHERCAT)
 _AXES, _SPINDLE = "board.axis", "board.spindle"
+C = "C"
 _FIELDS = (
     Field("kind", Kind.CHOICE, choices=KINDS),
     Field("address", Kind.TEXT, default=""),
@@ -59,6 +60,7 @@ _AXIS = (
     Field("direction", Kind.TEXT, default=""),
     Field("fault_input", Kind.TEXT, default=""),
     Field("full_speed", Kind.NUMBER, Unit.FEED, 0.1, 10_000.0, default=0.0),
+    Field("full_rpm", Kind.NUMBER, Unit.RPM, 0.1, 100_000.0, default=0.0),  # of C's own drive
     *map(_gain, ("p", "i", "d", "ff2")),
     *_HEX,
 )
@@ -80,8 +82,8 @@ class BoardAxis:
     """One axis behind a board. Speeds in mm/s, pulse times in nanoseconds; gains by LinuxCNC's ``pid``.
 
     ``channel`` is the step generator, the encoder and analog output, or the drive's place on EtherCAT; -1:
-    not said. ``full_speed`` is what the drive makes of 10 V; ``step`` and ``direction`` are pins of a
-    parallel port.
+    not said. ``full_speed`` is what the drive makes of 10 V, ``full_rpm`` the same of C's own;
+    ``step`` and ``direction`` are pins of a parallel port.
     """
 
     channel: int
@@ -95,6 +97,7 @@ class BoardAxis:
     direction: str
     fault_input: str
     full_speed: float
+    full_rpm: float
     p: float
     i: float
     d: float
@@ -197,32 +200,70 @@ def _axis_rules(file: FileReading, kind: str, axis: str) -> Iterator[Finding]:
         if path not in values.wrong:
             yield Finding(path, "", f"missing; what of the board moves {axis}")
         return
+    if axis == C and _spindle_is_c(file):
+        yield from _spindle_as_c(file, kind, path)
+        return
+    yield from _channel_rules(file, kind, path)
+    yield from _stated(file, kind, path, _OWN_C if axis == C else _STATED)
+    if kind in (PARPORT, MESA_STEP):
+        yield from _step_rate(file, kind, axis)
+    if kind == MESA_SERVO and axis != C:
+        yield from _fast_enough(file, axis)
+
+
+def _channel_rules(file: FileReading, kind: str, path: str) -> Iterator[Finding]:
+    values = file.values
     if kind in _CHANNELS and values.has(f"{path}.channel"):
         channel = values.whole(f"{path}.channel")
         if channel not in _CHANNELS[kind]:
             said = "" if channel < 0 else str(channel)
             yield Finding(f"{path}.channel", said, f"{_missing(said)}expected {_WHAT[kind]}")
-    yield from _stated(file, kind, path)
+
+
+def _spindle_is_c(file: FileReading) -> bool:
+    """Whether C is the spindle's own drive, which HAL turns."""
+    values = file.values
+    own = values.has("axis.C.own_drive") and values.flag("axis.C.own_drive")
+    return not own and values.says("spindle.driver", "hal")
+
+
+def _spindle_as_c(file: FileReading, kind: str, path: str) -> Iterator[Finding]:
+    """It has the gain of its loop; what of the board turns it is the spindle's, but for steps of its own."""
+    values = file.values
+    yield from _stated(file, kind, path, _AS_C)
     if kind in (PARPORT, MESA_STEP):
-        yield from _step_rate(file, kind, axis)
-    if kind == MESA_SERVO:
-        yield from _fast_enough(file, axis)
+        yield from _channel_rules(file, kind, path)
+        yield from _step_rate(file, kind, C)
+        return
+    if values.has("hal.spindle.speed") and not values.text("hal.spindle.speed"):
+        why = "missing; C turns both ways, so its drive takes a signed speed"
+        yield Finding("hal.spindle.speed", "", why)
+    for key in ("channel", "full_speed", "full_rpm", "vendor", "product"):
+        place = f"{path}.{key}"
+        if values.has(place) and values.found[place] not in ("", 0.0, -1):
+            why = f"leave it out: C is the spindle's drive, which {_SPINDLE} describes"
+            yield Finding(place, str(values.found[place]), why)
 
 
 def _missing(said: str) -> str:
     return "" if said else "missing; "
 
 
-_STATED: Mapping[str, tuple[tuple[str, str], ...]] = {
-    PARPORT: (("step", "the pin of its steps"), ("direction", "the pin of its direction")),
-    MESA_SERVO: (("full_speed", "its speed at 10 V"), ("p", "the gain of its pid, 1/s: measure it")),
+_Stated = Mapping[str, tuple[tuple[str, str], ...]]
+_GAIN = ("p", "the gain of its pid, 1/s: measure it")
+_STEPS = (("step", "the pin of its steps"), ("direction", "the pin of its direction"))
+_STATED: _Stated = {
+    PARPORT: _STEPS,
+    MESA_SERVO: (("full_speed", "its speed at 10 V"), _GAIN),
     ETHERCAT: (("vendor", "the drive's vendor, 0x…"), ("product", "the drive's product code, 0x…")),
 }
+_OWN_C: _Stated = {**_STATED, MESA_SERVO: (("full_rpm", "its speed at 10 V, rpm"), _GAIN)}
+_AS_C: _Stated = {PARPORT: (*_STEPS, _GAIN), **dict.fromkeys((MESA_STEP, MESA_SERVO, ETHERCAT), (_GAIN,))}
 
 
-def _stated(file: FileReading, kind: str, path: str) -> Iterator[Finding]:
+def _stated(file: FileReading, kind: str, path: str, stated: _Stated = _STATED) -> Iterator[Finding]:
     """What this kind of board cannot do without."""
-    for key, what in _STATED.get(kind, ()):
+    for key, what in stated.get(kind, ()):
         place = f"{path}.{key}"
         if not file.values.has(place):
             continue
@@ -318,6 +359,11 @@ def _encoder_rules(file: FileReading, kind: str) -> Iterator[Finding]:
         )
     most = {MESA_STEP: 0, MESA_SERVO: 5}.get(kind)
     channel = values.whole(f"{_SPINDLE}.encoder")
+    for axis in file.names(_AXES) if kind == MESA_SERVO else ():
+        path = f"{_AXES}.{axis}.channel"
+        if values.has(path) and values.whole(path) == channel >= 0:
+            why = f"expected an encoder of its own; {path} has it"
+            yield Finding(f"{_SPINDLE}.encoder", str(channel), why)
     if read and has and most is not None and not 0 <= channel <= most:
         said = "" if channel < 0 else str(channel)
         what = "0, the one encoder of the 7I76E" if most == 0 else "an encoder of the 7I97, 0…5"

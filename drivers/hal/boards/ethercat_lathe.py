@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from drivers.hal.boards import spindle_as_c
 from drivers.hal.boards.hal_lines import HalFile, Lathe, LatheAxis, Terminal
 
 XML = "ethercat-conf.xml"
@@ -26,14 +27,14 @@ def ethercat_lathe(lathe: Lathe) -> HalFile:
         "following error window (6065) in the drive too; what it does when the bus falls silent: quick stop",
         "spindle: what 60FF counts for one rpm, and the sign; 6064 is 32 bits wide and goes round",
     ]
-    drives = [axis.name.lower() for axis in lathe.axes]
+    drives = [axis.name.lower() for axis in lathe.driven]
     if _turned(lathe):
         drives.append("spindle")
     _load(file, drives)
-    for axis in lathe.axes:
+    for axis in lathe.driven:
         _axis(file, axis)
     file.section("Power of the drives")
-    file.enable(*(f"cia402.{axis.name.lower()}.enable" for axis in lathe.axes))
+    file.enable(*(f"cia402.{axis.name.lower()}.enable" for axis in lathe.driven))
     if _turned(lathe):
         _spindle(file)
     file.rest()
@@ -55,6 +56,8 @@ def _load(file: HalFile, drives: list[str]) -> None:
         file.load("loadrt scale names=spindle-per-s")
     file.first += ["lcec.read-all", *(f"cia402.{name}.read-all" for name in drives)]
     file.first += ["spindle-per-s"] * ("spindle" in drives)
+    if lathe.c is not None:
+        spindle_as_c.load(file, chosen=True)
     file.last += [*(f"cia402.{name}.write-all" for name in drives), "lcec.write-all"]
 
 
@@ -84,9 +87,8 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
     place, pin = f"slave {board.channel}", f"cia402.{axis.name.lower()}"
     file.section(f"Axis {axis.name}: slave {board.channel}, cyclic synchronous position")
     file.setp(f"{pin}.csp-mode", 1)
-    file.setp(
-        f"{pin}.pos-scale", (-1.0 if board.reversed else 1.0) / axis.count, "increments a mm: 1 / count"
-    )
+    sign = -1.0 if board.reversed else 1.0
+    file.setp(f"{pin}.pos-scale", sign / axis.count, f"increments a {axis.unit}: 1 / count")
     file.setp(
         f"{pin}.auto-fault-reset", 1, "a fault is reset when power is asked for again, by Reset and DRIVES ON"
     )
@@ -106,13 +108,15 @@ def _spindle(file: HalFile) -> None:
         file.setp(
             f"{pin}.pos-scale", sign * 4 * file.lathe.encoder_lines, "increments of 6064 a turn: 4 x lines"
         )
-        file.role("hal.spindle.position", "spindle-turns", f"{pin}.pos-fb", place=place)
+        further = spindle_as_c.turns(file)
+        file.role("hal.spindle.position", "spindle-turns", f"{pin}.pos-fb", *further, place=place)
     _drive(file, "spindle")
     file.setp("spindle-per-s.gain", 1.0 / 60.0)
     file.net("spindle-rpm-fb", f"{pin}.velocity-fb", "spindle-per-s.in")
     file.role("hal.spindle.velocity", "spindle-rps", "spindle-per-s.out", place=place)
-    file.role("hal.spindle.speed", "spindle-rpm-cmd", f"{pin}.velocity-cmd", place=place, needed=True)
-    file.role("hal.spindle.on", "spindle-on", f"{pin}.enable", place=place, needed=True)
+    speed, on = spindle_as_c.chosen_speed(file, f"{pin}.velocity-cmd", f"{pin}.enable")
+    file.role("hal.spindle.speed", "spindle-rpm-cmd", speed, place=place, needed=True)
+    file.role("hal.spindle.on", "spindle-on", on, place=place, needed=True)
     file.role("hal.spindle.fault", "spindle-fault", f"{pin}.drv-fault", place=place)
 
 
@@ -125,7 +129,7 @@ def bus_xml(lathe: Lathe) -> str:
         "<masters>",
         f'  <master idx="0" appTimePeriod="{lathe.period * 1e9:.0f}" refClockSyncCycles="1">',
     ]
-    slaves = [(lathe.board.axes[axis.name], axis.name.lower()) for axis in lathe.axes]
+    slaves = [(lathe.board.axes[axis.name], axis.name.lower()) for axis in lathe.driven]
     drives = [(board.channel, board.vendor, board.product, name) for board, name in slaves]
     spindle = lathe.board.spindle
     if _turned(lathe):

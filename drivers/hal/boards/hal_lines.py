@@ -13,6 +13,7 @@ from core.table_schema import Finding, written
 from drivers.hal.boards.board_table import BoardTable
 
 MARK = "#turndesk"
+C = "C"
 _WIDTH = 110
 
 
@@ -24,6 +25,11 @@ class LatheAxis:
     count: float
     vmax: float
     amax: float
+
+    @property
+    def unit(self) -> str:
+        """What its places count in, as a person reads it."""
+        return "degree" if self.name == C else "mm"
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +50,17 @@ class Lathe:
     rpm_accel: float
     encoder_lines: int
     names: Mapping[str, str]
+    spindle_is_c: bool = False  # C is the spindle's own drive
+
+    @property
+    def c(self) -> LatheAxis | None:
+        """C where the spindle's drive is it."""
+        return next((axis for axis in self.axes if axis.name == C and self.spindle_is_c), None)
+
+    @property
+    def driven(self) -> tuple[LatheAxis, ...]:
+        """The axes that have a drive of their own."""
+        return tuple(axis for axis in self.axes if axis is not self.c)
 
 
 class Terminal(NamedTuple):
@@ -98,6 +115,14 @@ class HalFile:
     def load(self, line: str, why: str = "") -> None:
         """A component."""
         self.loads += [f"# {why}", line] if why else [line]
+
+    def instance(self, component: str, name: str) -> None:
+        """One more of a component: each is loaded once, with all of its instances."""
+        for index, line in enumerate(self.loads):
+            if line.startswith(f"loadrt {component} names="):
+                self.loads[index] = f"{line},{name}"
+                return
+        self.load(f"loadrt {component} names={name}")
 
     def section(self, title: str) -> None:
         """What follows belongs under this title."""

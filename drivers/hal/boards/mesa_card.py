@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from drivers.hal.boards.hal_lines import HalFile, LatheAxis
+from drivers.hal.boards.spindle_as_c import turns
 
 _WATCHDOG = 5_000_000  # ns without a word of this computer until the card lets everything fall
 NOTES = (
@@ -70,6 +71,6 @@ def spindle_encoder(file: HalFile, card: str, place: str) -> None:
     file.section(f"Spindle: encoder {board.encoder}")
     counts = 4 * file.lathe.encoder_lines * (-1 if board.reversed else 1)
     encoder(file, pin, counts, "counts a turn: 4 x lines; it rises with M03")
-    file.role("hal.spindle.position", "spindle-turns", f"{pin}.position", place=place)
+    file.role("hal.spindle.position", "spindle-turns", f"{pin}.position", *turns(file), place=place)
     file.role("hal.spindle.velocity", "spindle-rps", f"{pin}.velocity", place=place)
     file.role("hal.spindle.index_enable", "spindle-index", f"{pin}.index-enable", place=place)

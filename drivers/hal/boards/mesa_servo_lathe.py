@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 
-from drivers.hal.boards.hal_lines import HalFile, Lathe, LatheAxis, Terminal
+from drivers.hal.boards import spindle_as_c
+from drivers.hal.boards.hal_lines import C, HalFile, Lathe, LatheAxis, Terminal
 from drivers.hal.boards.mesa_card import NOTES, encoder, load_card, load_pid, spindle_encoder
 
 _CARD = "hm2_7i97.0"
@@ -14,6 +15,7 @@ _OUT = re.compile(re.escape(_CARD) + r"\.ssr\.00\.out-(\d\d)")
 _ANALOG = ("TB3-04", "TB3-08", "TB3-12", "TB3-16", "TB3-20", "TB3-24")
 _ENCODERS = ("TB1-01", "TB1-09", "TB1-17", "TB2-01", "TB2-09", "TB2-17")
 _RELAYS = ("TB5-13/14", "TB5-15/16", "TB5-17/18", "TB5-19/20", "TB5-21/22", "TB5-23/24")
+_DEGREES_RPM = 6.0  # degrees/s of one rpm
 _PWM_HZ = 48_000  # of the analog outputs, as the card's own samples have it
 
 
@@ -33,10 +35,12 @@ def mesa_servo_lathe(lathe: Lathe) -> HalFile:
     channels = [board.channel for board in lathe.board.axes.values()] + [spindle.channel]
     encoders = 1 + max((*channels[:-1], spindle.encoder if turns else -1))
     load_card(file, _CARD, f"num_encoders={encoders} num_pwmgens={1 + max(channels)} num_stepgens=0")
-    load_pid(file, lathe.axes)
+    load_pid(file, lathe.driven)
+    if lathe.c is not None:
+        spindle_as_c.load(file, chosen=True)
     file.section("Analog outputs")
     file.setp(f"{_CARD}.pwmgen.pwm_frequency", _PWM_HZ)
-    for axis in lathe.axes:
+    for axis in lathe.driven:
         _axis(file, axis)
     file.section("Power of the drives: the analog outputs 0…3 share one enable")
     file.enable(*_enables(lathe))
@@ -58,8 +62,8 @@ def _terminal(name: str) -> Terminal | None:
 
 
 def _enables(lathe: Lathe) -> list[str]:
-    pids = [f"pid.{axis.name.lower()}.enable" for axis in lathe.axes]
-    channels = sorted({0, *(lathe.board.axes[axis.name].channel for axis in lathe.axes)})  # 0 enables 0…3
+    pids = [f"pid.{axis.name.lower()}.enable" for axis in lathe.driven]
+    channels = sorted({0, *(lathe.board.axes[axis.name].channel for axis in lathe.driven)})  # 0 enables 0…3
     return pids + [f"{_CARD}.pwmgen.{channel:02d}.enable" for channel in channels]
 
 
@@ -78,13 +82,15 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
     )
     place = f"{_ANALOG[board.channel]}, encoder {board.channel} A at {_ENCODERS[board.channel]}"
     file.section(f"Axis {axis.name}: analog output and encoder {board.channel}")
-    _analog(file, out, board.full_speed, "mm/s at 10 V")
-    encoder(file, counter, (-1.0 if board.reversed else 1.0) / axis.count, "counts a mm: 1 / count")
+    full = _DEGREES_RPM * board.full_rpm if axis.name == C else board.full_speed
+    _analog(file, out, full, f"{axis.unit}/s at 10 V")
+    sign = -1.0 if board.reversed else 1.0
+    encoder(file, counter, sign / axis.count, f"counts a {axis.unit}: 1 / count")
     for key, value in (("Pgain", board.p), ("Igain", board.i), ("Dgain", board.d), ("FF0", 0.0)):
         file.setp(f"{pid}.{key}", value)
     file.setp(f"{pid}.FF1", 1.0, "the speed that is asked for goes out as it is")
     file.setp(f"{pid}.FF2", board.ff2)
-    file.setp(f"{pid}.maxoutput", board.full_speed, "mm/s: 10 V")
+    file.setp(f"{pid}.maxoutput", full, f"{axis.unit}/s: 10 V")
     file.setp(f"{pid}.error-previous-target", 1)
     file.role(f"{path}.command", f"{name}-pos-cmd", f"{pid}.command", place=place, needed=True)
     file.role(
@@ -106,5 +112,6 @@ def _speed(file: HalFile) -> None:
     file.section(f"Spindle: analog output {board.channel}")
     _analog(file, pin, board.full_speed, "rpm at 10 V")
     speed = "speed" if file.lathe.names.get("hal.spindle.speed") else "speed_abs"
-    file.role(f"hal.spindle.{speed}", "spindle-rpm-cmd", f"{pin}.value", place=place, needed=True)
-    file.role("hal.spindle.on", "spindle-on", f"{pin}.enable", place=f"enable of {place}", needed=True)
+    value, enable = spindle_as_c.chosen_speed(file, f"{pin}.value", f"{pin}.enable")
+    file.role(f"hal.spindle.{speed}", "spindle-rpm-cmd", value, place=place, needed=True)
+    file.role("hal.spindle.on", "spindle-on", enable, place=f"enable of {place}", needed=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from drivers.hal.boards import spindle_as_c
 from drivers.hal.boards.hal_lines import HalFile, Lathe, LatheAxis, Terminal
 from drivers.hal.boards.mesa_card import NOTES, load_card, load_pid, spindle_encoder
 
@@ -27,9 +28,11 @@ def mesa_step_lathe(lathe: Lathe) -> HalFile:
     load_card(
         file, _CARD, f"num_encoders={int(encoder)} num_pwmgens=0 num_stepgens={steps} sserial_port_0=0xxxxxxx"
     )
-    load_pid(file, tuple(axis for axis in lathe.axes if lathe.board.axes[axis.name].mode == "velocity"))
-    for axis in lathe.axes:
+    load_pid(file, tuple(axis for axis in lathe.driven if lathe.board.axes[axis.name].mode == "velocity"))
+    for axis in lathe.driven:
         _axis(file, axis)
+    if lathe.c is not None:
+        _spindle_c(file, lathe.c)
     file.section("Power of the drives")
     file.enable(*_enables(lathe))
     _speed(file)
@@ -55,19 +58,18 @@ def _enables(lathe: Lathe) -> list[str]:
     pins = []
     for axis in lathe.axes:
         board = lathe.board.axes[axis.name]
-        pins += [f"pid.{axis.name.lower()}.enable"] if board.mode == "velocity" else []
+        own = axis is not lathe.c and board.mode == "velocity"
+        pins += [f"pid.{axis.name.lower()}.enable"] if own else []
         pins.append(f"{_CARD}.stepgen.{board.channel:02d}.enable")
     return pins
 
 
-def _axis(file: HalFile, axis: LatheAxis) -> None:
-    board, name, path = file.lathe.board.axes[axis.name], axis.name.lower(), f"hal.axes.{axis.name}"
+def _steps(file: HalFile, axis: LatheAxis) -> str:
+    """The step generator of an axis, set up for its drive; its pin."""
+    board = file.lathe.board.axes[axis.name]
     pin = f"{_CARD}.stepgen.{board.channel:02d}"
-    place = f"STEP{board.channel} DIR{board.channel}"
-    file.section(f"Axis {axis.name}: step generator {board.channel}, {board.mode} mode")
-    file.setp(
-        f"{pin}.position-scale", (-1.0 if board.reversed else 1.0) / axis.count, "steps a mm: 1 / count"
-    )
+    sign = -1.0 if board.reversed else 1.0
+    file.setp(f"{pin}.position-scale", sign / axis.count, f"steps a {axis.unit}: 1 / count")
     for key, value in (
         ("steplen", "step"),
         ("stepspace", "space"),
@@ -78,6 +80,26 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
     file.setp(f"{pin}.step_type", 0, "step and direction")
     file.setp(f"{pin}.maxvel", 1.5 * axis.vmax, "above what is asked for: a limit here loses the place")
     file.setp(f"{pin}.maxaccel", 2.5 * axis.amax)
+    return pin
+
+
+def _spindle_c(file: HalFile, axis: LatheAxis) -> None:
+    """The same drive takes steps once it is changed over; its place is the spindle's encoder."""
+    spindle_as_c.load(file, chosen=False)
+    file.section(
+        f"C: steps {file.lathe.board.axes[axis.name].channel} of the spindle's drive, by its encoder"
+    )
+    pin = _steps(file, axis)
+    file.setp(f"{pin}.control-type", 1)
+    spindle_as_c.loop(file, axis, f"{pin}.velocity-cmd")
+    spindle_as_c.changed_over(file)
+
+
+def _axis(file: HalFile, axis: LatheAxis) -> None:
+    board, name, path = file.lathe.board.axes[axis.name], axis.name.lower(), f"hal.axes.{axis.name}"
+    place = f"STEP{board.channel} DIR{board.channel}"
+    file.section(f"Axis {axis.name}: step generator {board.channel}, {board.mode} mode")
+    pin = _steps(file, axis)
     if board.mode == "position":
         file.setp(f"{pin}.control-type", 0)
         file.role(f"{path}.command", f"{name}-pos-cmd", f"{pin}.position-cmd", place=place, needed=True)
@@ -95,8 +117,8 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
         ("FF2", board.ff2),
     ):
         file.setp(f"pid.{name}.{key}", gain)
-    file.setp(f"pid.{name}.maxerror", _MOST_ERROR, "mm")
-    file.setp(f"pid.{name}.maxoutput", 1.5 * axis.vmax, "mm/s")
+    file.setp(f"pid.{name}.maxerror", max(_MOST_ERROR, 2.0 * axis.count), axis.unit)
+    file.setp(f"pid.{name}.maxoutput", 1.5 * axis.vmax, f"{axis.unit}/s")
     file.setp(f"pid.{name}.error-previous-target", 1)
     file.role(f"{path}.command", f"{name}-pos-cmd", f"pid.{name}.command", place=place, needed=True)
     file.role(

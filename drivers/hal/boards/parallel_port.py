@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from drivers.hal.boards import spindle_as_c
 from drivers.hal.boards.hal_lines import HalFile, Lathe, LatheAxis, Terminal
 
 _PIN = re.compile(r"parport\.0\.pin-(\d\d)-(in|in-not|out)")
@@ -25,6 +26,8 @@ def parallel_port(lathe: Lathe) -> HalFile:
     _load(file, encoder=encoder)
     for channel, axis in enumerate(lathe.axes):
         _axis(file, channel, axis)
+    if lathe.c is not None:
+        spindle_as_c.changed_over(file)
     file.section("Power of the drives")
     file.enable(*(f"stepgen.{channel}.enable" for channel in range(len(lathe.axes))))
     if lathe.board.spindle.pwm:
@@ -36,12 +39,13 @@ def parallel_port(lathe: Lathe) -> HalFile:
 
 
 def _load(file: HalFile, *, encoder: bool) -> None:
-    lathe, axes = file.lathe, len(file.lathe.axes)
+    lathe, axes = file.lathe, file.lathe.axes
     pwm = bool(lathe.board.spindle.pwm)
     threads = f"name1=base-thread fp1=0 period1={lathe.board.base_us * 1000}"
     file.load(f"loadrt threads {threads} name2={lathe.thread} period2={lathe.period * 1e9:.0f}")
     file.load(f'loadrt hal_parport cfg="{lathe.board.address or "0x378"} out"', "pins 2…9 are outputs")
-    file.load(f"loadrt stepgen step_type={','.join('0' * axes)} ctrl_type={','.join('p' * axes)}")
+    kinds = ["v" if axis is lathe.c else "p" for axis in axes]
+    file.load(f"loadrt stepgen step_type={','.join('0' * len(axes))} ctrl_type={','.join(kinds)}")
     if encoder:
         file.load("loadrt encoder num_chan=1")
     if pwm:
@@ -50,6 +54,8 @@ def _load(file: HalFile, *, encoder: bool) -> None:
     file.base += ["encoder.update-counters"] * encoder + ["pwmgen.make-pulses"] * pwm
     file.base += ["parport.0.write", "parport.0.reset"]
     file.first += ["stepgen.capture-position", *["encoder.capture-position"] * encoder]
+    if lathe.c is not None:
+        spindle_as_c.load(file, chosen=False)
     file.last += ["stepgen.update-freq", *["pwmgen.update"] * pwm]
 
 
@@ -64,17 +70,20 @@ def _axis(file: HalFile, channel: int, axis: LatheAxis) -> None:
     board, name, path = file.lathe.board.axes[axis.name], axis.name.lower(), f"hal.axes.{axis.name}"
     pin = f"stepgen.{channel}"
     file.section(f"Axis {axis.name}: step generator {channel}")
-    file.setp(
-        f"{pin}.position-scale", (-1.0 if board.reversed else 1.0) / axis.count, "steps a mm: 1 / count"
-    )
+    sign = -1.0 if board.reversed else 1.0
+    file.setp(f"{pin}.position-scale", sign / axis.count, f"steps a {axis.unit}: 1 / count")
     file.setp(f"{pin}.maxvel", 1.5 * axis.vmax, "above what is asked for: a limit here loses the place")
     file.setp(f"{pin}.maxaccel", 2.5 * axis.amax)
     file.setp(f"{pin}.steplen", 1, "ns, rounded up to a base period: parport.reset ends the step")
     file.setp(f"{pin}.stepspace", 0)
     file.setp(f"{pin}.dirsetup", board.setup_ns)
     file.setp(f"{pin}.dirhold", board.hold_ns)
-    file.role(f"{path}.command", f"{name}-pos-cmd", f"{pin}.position-cmd", needed=True)
-    file.role(f"{path}.feedback", f"{name}-pos-fb", f"{pin}.position-fb", needed=True)
+    if axis is file.lathe.c:
+        file.say("the spindle's drive takes these steps once it is changed over; its place is its encoder")
+        spindle_as_c.loop(file, axis, f"{pin}.velocity-cmd")
+    else:
+        file.role(f"{path}.command", f"{name}-pos-cmd", f"{pin}.position-cmd", needed=True)
+        file.role(f"{path}.feedback", f"{name}-pos-fb", f"{pin}.position-fb", needed=True)
     for what, port in (("step", board.step), ("dir", board.direction)):
         file.at_terminal(
             f"board.axis.{axis.name}.{'step' if what == 'step' else 'direction'}",
@@ -106,7 +115,7 @@ def _encoder(file: HalFile) -> None:
         if port:
             key = f"board.spindle.phase_{phase.lower()}"
             file.at_terminal(key, f"spindle-{phase.lower()}", port, f"encoder.0.phase-{phase}", drives=False)
-    file.role("hal.spindle.position", "spindle-turns", "encoder.0.position")
+    file.role("hal.spindle.position", "spindle-turns", "encoder.0.position", *spindle_as_c.turns(file))
     file.role("hal.spindle.velocity", "spindle-rps", "encoder.0.velocity")
     if board.phase_z:
         file.role("hal.spindle.index_enable", "spindle-index", "encoder.0.index-enable")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from drivers.hal.boards import spindle_as_c
 from drivers.hal.boards.hal_lines import HalFile, Lathe, Terminal, signal_of
 
 _TRAILS = 0.67  # of the way to its setpoint that a slide makes in one period
@@ -13,7 +14,7 @@ def simulated_lathe(lathe: Lathe) -> HalFile:
     file = HalFile(
         lathe, "a lathe of stock simulation components, no hardware", _terminal, "the name of a signal"
     )
-    names = [axis.name.lower() for axis in lathe.axes]
+    names = [axis.name.lower() for axis in lathe.driven]
     file.load(f"loadrt threads name1={lathe.thread} period1={lathe.period * 1e9:.0f}")
     file.load(f"loadrt lowpass names={','.join(f'{name}-servo' for name in names)}")
     file.load(f"loadrt mux2 names={','.join(f'{name}-motor' for name in names)}")
@@ -23,10 +24,12 @@ def simulated_lathe(lathe: Lathe) -> HalFile:
     file.load("loadrt timedelay names=collet-switch")
     file.first += ["spindle-ramp", "spindle-rps", "spindle"]
     file.last += [f"{name}-{what}" for what in ("servo", "motor") for name in names] + ["collet-switch"]
+    if lathe.c is not None:
+        spindle_as_c.load_simulated(file)
     file.section(
         "Slides: each trails its setpoint by half a period's way; without power it stays where it is"
     )
-    for axis in lathe.axes:
+    for axis in lathe.driven:
         _slide(file, axis.name)
     file.enable(*(f"{name}-motor.sel" for name in names))
     _spindle(file)
@@ -53,8 +56,9 @@ def _spindle(file: HalFile) -> None:
     file.setp("spindle.scale", 1.0)
     file.role("hal.spindle.speed", "spindle-rpm-cmd", "spindle-ramp.in")
     file.net("spindle-rpm", "spindle-ramp.out", "spindle-rps.in")
-    file.role("hal.spindle.velocity", "spindle-rps", "spindle-rps.out", "spindle.velocity-cmd")
-    file.role("hal.spindle.position", "spindle-turns", "spindle.position-fb")
+    file.role("hal.spindle.velocity", "spindle-rps", spindle_as_c.simulated(file), "spindle.velocity-cmd")
+    further = spindle_as_c.turns(file)
+    file.role("hal.spindle.position", "spindle-turns", "spindle.position-fb", *further)
     file.role("hal.spindle.index_enable", "spindle-index", "spindle.index-enable")
 
 

@@ -6,6 +6,7 @@ driver has gone.
 
 from __future__ import annotations
 
+import fcntl
 import importlib
 import json
 import os
@@ -49,8 +50,12 @@ def main(arguments: list[str]) -> int:
         return 1
     bridge = _bridge(hal, component, said)
     sock.send(pack({"ready": True, "pid": os.getpid(), "warnings": _real_time()}))
-    component.ready()
-    return _serve(sock, bridge, lambda: time.monotonic() - said["zero"])
+    with Path(said["alive"]).open("wb") as alive:
+        fcntl.flock(alive, fcntl.LOCK_EX)
+        component.ready()
+        _serve(sock, bridge, lambda: time.monotonic() - said["zero"])
+        Path(said["ended"]).touch()  # HAL need not go on behind it, as it does behind one that has died
+    return 0
 
 
 def _component(hal: Any, said: Mapping[str, Any]) -> Any | None:
@@ -96,7 +101,7 @@ def _real_time() -> list[str]:
     return []
 
 
-def _serve(sock: socket.socket, bridge: Bridge, now: Callable[[], float]) -> int:
+def _serve(sock: socket.socket, bridge: Bridge, now: Callable[[], float]) -> None:
     sock.setblocking(False)
     due, count = now(), 0
     while not bridge.done:
@@ -113,7 +118,6 @@ def _serve(sock: socket.socket, bridge: Bridge, now: Callable[[], float]) -> int
         elif select.select([sock], [], [], left)[0]:  # what has come is carried out at once
             for head, numbers in _heard(sock, bridge):
                 bridge.handle(head, numbers)
-    return 0
 
 
 def _tell(sock: socket.socket, bridge: Bridge) -> None:

@@ -14,11 +14,12 @@ from typing import Protocol
 
 from drivers.hal.bridge.packets import Head, flat, number, pack, pieces_of, text
 from drivers.hal.bridge.row_streams import Pins, RowStreams, Stream
-from drivers.hal.bridge.setpoint_player import Player
+from drivers.hal.bridge.setpoint_player import Player, rows_of
 from drivers.setpoint_pieces import INF, Piece
 
 AWAY = 0.25  # s without a word of the driver
 _QUIET = 0.25  # s without a sample: the servo thread stands
+_AT_ONCE = 0.05  # s of it that one round counts at most: who stood still himself blames nobody
 _GRANT = 0.1  # s in which the chain must close
 _REARM = 0.006  # s for which the watchdog is off, so that it begins anew
 _PULSE = 0.05  # s of the reset
@@ -28,6 +29,7 @@ _SETTLES = 0.5  # s in which such a difference is made up
 _PAST = 0.5  # s of setpoints that may still be asked for
 _RUNS_DOWN = 8.0  # s for a spindle to brake
 _STANDS = 0.1  # turns/s
+_SURE = 0.9  # of the time until the spindle is somewhere, as it turns now
 _ROWS = 300  # samples in one report
 _STILL = 1e-3  # mm/s
 
@@ -40,6 +42,7 @@ class BridgeAxis:
     amax: float
     window: float
     time: float
+    is_spindle: bool = False  # it follows only while the spindle's drive is C
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,13 +56,14 @@ class BridgeConfig:
     period: float
     ahead: float
     outputs: Mapping[str, bool | None] = field(default_factory=dict)
+    lamps: tuple[str, ...] = ()  # of the outputs: they tell of an open chain
     inputs: tuple[str, ...] = ()
     analog: tuple[str, ...] = ()
     bits: tuple[str, ...] = ()
     spindle: tuple[str, ...] = ()  # pins that are written
     turns: bool = False
     speed: bool = False
-    marks: int = 0  # switches at the end of each sample, for homing
+    marks: int = 0  # bits at the end of each sample: switches for homing, the probe
     figures: tuple[str, ...] = ()  # pins with numbers
 
 
@@ -94,8 +98,9 @@ class Bridge:
         self._place: tuple[float, ...] = (0.0,) * len(config.axes)  # as fed back
         self._over = [0.0] * len(config.axes)  # s outside the window
         self._off_by = 0.0  # s between rows and this computer's clock
-        self._sampled = -INF  # when a sample was last read
-        self._heard = now()
+        self._sampled = False  # a sample has been read
+        self._quiet = 0.0  # s without one
+        self._heard = self._round_at = now()
         self._parted, self._left_at = False, 0.0
         self.gone = False  # the driver will never speak again
         self.done = False
@@ -113,6 +118,8 @@ class Bridge:
         self._latest = 0.0  # s
         self._dry = 0
         self._homing: set[str] = set()
+        self._c_at: float | None = None  # where C was when it began to be held, as HAL counts
+        self._c_from = INF  # when the drive is to change over
         self._close_chain()  # nothing is asked for yet: it lets through what the control will ask
         self._acts: Mapping[str, Callable[[Head, Sequence[float]], None]] = {
             "beat": lambda _head, _numbers: None,
@@ -128,6 +135,7 @@ class Bridge:
             "safe": lambda _head, _numbers: self._safe(),
             "homing": self._home,
             "index": self._index,
+            "c": self._hold_c,
             "end": self._end,
         }
 
@@ -143,6 +151,8 @@ class Bridge:
         now = self._now()
         self._latest = max(self._latest, late)
         self.pins["heartbeat"] = not self.pins["heartbeat"]
+        self._quiet += min(now - self._round_at, _AT_ONCE)
+        self._round_at = now
         self._take_samples(now)
         self._supervise(now)
         while self._orders and not self.rows.busy:
@@ -184,6 +194,7 @@ class Bridge:
             "dry": self._dry,
             "parted": self._parted,
             "stands": self._stands,
+            "c_at": self._c_at if self._c_from == INF else None,  # once the drive is changed over
         }
         self._latest, self._least = 0.0, INF
         return pack(head, rows)
@@ -210,7 +221,7 @@ class Bridge:
                 self.player.turns.note(t, sample[axes])
             self._follow(command, actual)
             self._samples += (t, *command, *actual, *sample[axes : self._width])
-            self._sampled = now
+            self._sampled, self._quiet = True, 0.0
         if self.rows.played != before:
             self._off_by += 0.05 * (self.rows.played_t - now - self._off_by)
         if len(self._samples) > 40 * _ROWS * self._width:  # nobody takes them
@@ -221,7 +232,8 @@ class Bridge:
         if not self._powered:
             return
         for index, axis in enumerate(self.config.axes):
-            if abs(command[index] - actual[index]) <= axis.window:
+            free = axis.is_spindle and not self.pins["spindle.position_mode"]
+            if free or abs(command[index] - actual[index]) <= axis.window:
                 self._over[index] = 0.0
                 continue
             self._over[index] += self.config.period
@@ -237,7 +249,7 @@ class Bridge:
         if not self.rows.settle(bool(pins["plays-b"])):
             self._trip("setpoints came too late to HAL, which played what was queued before", "late")
         if self._stands:
-            self._trip("HAL's servo thread stands: is rtapi_app still there?", "bus")
+            self._trip("HAL's servo thread stands: is rtapi_app still there?", "hal-thread")
         for name in self.config.bits:
             axis, _, what = name.partition(".")
             if what == "fault" and pins[name] and self._on:
@@ -265,19 +277,19 @@ class Bridge:
 
     def _lost_power(self) -> None:
         if not self.pins["alive"]:
-            self._trip("this computer was silent: HAL has taken the power", "feeder-silent")
+            self._trip("this computer was silent: HAL has taken the power", "hal-silent")
         self._power_off()
 
     @property
     def _stands(self) -> bool:
         """HAL's servo thread plays nothing any more: what its pins say is of before."""
-        return self._sampled > -INF and self._now() - self._sampled > _QUIET
+        return self._sampled and self._quiet > _QUIET
 
     def _open_chain(self) -> None:
         """What is off in HAL does not come back by itself when the chain is closed again."""
         self._spindle_off()
         for name, safe in self.config.outputs.items():
-            if safe is not None:
+            if safe is not None and name not in self.config.lamps:
                 self.pins[f"out.{name}"] = safe
 
     def _trip(self, fault: str, code: str) -> None:
@@ -291,7 +303,7 @@ class Bridge:
 
     def _fill(self, now: float) -> None:
         rows, config = self.rows, self.config
-        if self._sampled == -INF:
+        if not self._sampled:
             return
         if not self._on:
             self.player.rest_at(self._place)
@@ -306,8 +318,8 @@ class Bridge:
             if not rows.write(t, self.player.row(t)):
                 return
 
-    def _recall(self, t: float) -> bool:
-        return self.rows.recall(t, self.player.row)
+    def _recall(self, t: float, same_until: float = -INF) -> bool:
+        return self.rows.recall(t, self.player.row, same_until)
 
     # --- orders -------------------------------------------------------------------------------------------
 
@@ -318,11 +330,14 @@ class Bridge:
         pieces, self._parts = self._parts, []
         if not self._on or not pieces or self._off_at < INF:
             return
-        if self.rows.first_from(pieces[0].t) is None:
-            self._trip("setpoints came too late to be played", "late")
-            return
+        t = pieces[0].t
+        if self.rows.first_from(t) is None:
+            if not self.rows.plays_anyway(t, rows_of(pieces)):
+                self._trip("setpoints came too late to be played", "late")
+                return
+            t = self.rows.soonest()
         self.player.splice(pieces)
-        self._recall(pieces[0].t)
+        self._recall(t)
 
     def _mesh(self, head: Head, numbers: Sequence[float]) -> None:
         self._parts += pieces_of(numbers, len(self.config.axes))
@@ -332,13 +347,16 @@ class Bridge:
         if not self._on or self._off_at < INF:
             return
         zero, sign, t = number(head, "zero"), number(head, "sign", 1.0), self.rows.soonest()
-        if sign * (self.player.turns.at(t) - zero) > pieces[0].t:
+        left = pieces[0].t - sign * (self.player.turns.at(t) - zero)  # turns
+        if left < 0.0:
             if self.player.rests:
                 self._trip("the thread came too late to be played", "late")
             return  # what was handed over before is a whole pass too
         count = int(number(head, "way"))
         self.player.mesh(zero, sign, pieces[:count], pieces[count:])
-        self._recall(t)
+        # Until the spindle is there the way is what it was: the servo thread need not be met at once.
+        until = t + _SURE * left / max(sign * self.player.turns.speed, _STANDS)
+        self._recall(0.5 * (t + until), until)
 
     def _brake(self) -> float:
         """On the path to rest, as soon as rows can be recalled; when that is over."""
@@ -381,6 +399,9 @@ class Bridge:
         if self._grant_at <= now:
             self._grant_at, self._granted = INF, now
             self.pins["enable"] = 1
+        if self._c_from <= now:
+            self._c_from = INF
+            self.pins["spindle.position_mode"] = 1
         if self._off_at <= now:
             self._power_off()
 
@@ -390,6 +411,7 @@ class Bridge:
         self._grant_at = self._off_at = INF
         self._granted = -INF
         self._homing.clear()
+        self._release_c()
         self.player.rest_at(self._place)
 
     def _ramp_off(self) -> None:
@@ -407,11 +429,32 @@ class Bridge:
         if on and not self.pins["chain-ok"]:
             return
         said = {"speed": rpm, "on": on, "forward": on and rpm >= 0.0, "reverse": on and rpm < 0.0}
-        said["position_mode"] = head.get("c") is True
-        for name in self.config.spindle:
-            self.pins[f"spindle.{name}"] = said[name]
+        if on:
+            self._release_c()
+        for name, value in said.items():
+            if name in self.config.spindle:
+                self.pins[f"spindle.{name}"] = value
+
+    def _hold_c(self, head: Head, _numbers: Sequence[float]) -> None:
+        """C's setpoint goes where the spindle stands; once HAL plays that, the drive is changed over."""
+        if head.get("on") is not True:
+            self._release_c()
+        elif self._on:
+            place = list(self._target())
+            for index, axis in enumerate(self.config.axes):
+                if axis.is_spindle:
+                    place[index] = self._c_at = self._place[index]
+            self.player.rest_at(place)
+            self._recall(self.rows.soonest())
+            self._c_from = self.rows.last_t
+
+    def _release_c(self) -> None:
+        self._c_at, self._c_from = None, INF
+        if "position_mode" in self.config.spindle:
+            self.pins["spindle.position_mode"] = 0
 
     def _spindle_off(self) -> None:
+        self._release_c()
         for name in self.config.spindle:
             self.pins[f"spindle.{name}"] = 0
 
@@ -454,5 +497,6 @@ class Bridge:
             self._safe()
         if self.gone:
             self._power_off()
-            stands = not self.config.turns or abs(self.player.turns.speed) < _STANDS
+            blind = not self.config.turns or self._stands
+            stands = blind or abs(self.player.turns.speed) < _STANDS
             self.done = stands or now - self._left_at > _RUNS_DOWN

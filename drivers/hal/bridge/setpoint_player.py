@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from drivers.setpoint_pieces import INF, Piece, PieceQueue
@@ -12,6 +12,18 @@ _WINDOW = 0.06  # s of turns from which the speed is taken
 _STANDS = 1e-6  # turns/s
 Row = tuple[float, ...]
 State = tuple[tuple[float, ...], tuple[float, ...]]
+
+
+def rows_of(pieces: list[Piece]) -> Callable[[float], Row]:
+    """Rows of setpoints by time alone."""
+    queue = PieceQueue(pieces[0].p)
+    queue.replace(pieces[0].t, pieces)
+    return lambda t: _still_row(queue, t)
+
+
+def _still_row(queue: PieceQueue, t: float) -> Row:
+    """Each axis' place, and no way a turn."""
+    return tuple([each for p in queue.demand_at(t)[0] for each in (p, 0.0)])
 
 
 class TurnsAhead:
@@ -117,8 +129,7 @@ class Player:
                 return self._geared(cam, u)
             if self.left is None:
                 self._leave(cam, t)
-        place, _ = self.queue.demand_at(t)
-        return tuple([each for p in place for each in (p, 0.0)])
+        return _still_row(self.queue, t)
 
     def geared(self) -> tuple[float, float] | None:
         """Turns from zero at which the newest reading is, and turns/s; None where nothing follows."""

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import itertools
 from collections.abc import Callable
+
+import can
 
 import resources
 from app.compose.canopen_backend import canopen_machine, canopen_peers
@@ -16,6 +19,8 @@ from drivers.lookalikes.canopen_devices import CanopenDevices
 TICK = 0.005
 _channels = itertools.count()
 SHIPPED = resources.machine_file("gt75-canopen.toml")
+# The virtual bus copies a frame byte by byte for each who listens. Nobody here writes into one.
+setattr(can.Message, "__deepcopy__", lambda frame, _memo: copy.copy(frame))  # noqa: B010
 
 
 def can_machine(*changes: tuple[str, str], absolute: bool = True) -> Machine:

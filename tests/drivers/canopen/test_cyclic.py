@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
 import pytest
 
-from core.ports import Stop
+from core.ports import Segments, Stop
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.cyclic_mode import SyncSchedule
 from tests.drivers.canopen.bench import CanBench, cyclic
@@ -49,6 +50,38 @@ def test_a_path_is_followed_to_a_count_and_arrives(bench: CanBench) -> None:
     assert not sample.moving
     assert sample.actual[0] == pytest.approx(60.0 * 0.32, abs=0.0013)
     assert abs(sample.following_error[0]) < 0.0013
+
+
+def test_sync_goes_on_while_a_long_path_is_taken_in(bench: CanBench, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tenth of a second of work, in hundreds of pieces: without a SYNC the drives would stop."""
+    axes, bus = bench.machine.axes, bench.machine.bus
+    axes.enable(True)
+    run(bench, 0.2)
+    syncs: list[float] = []
+    sent, go_on = bus.synchronise, axes.queue.give_way
+
+    def noted() -> None:
+        syncs.append(bench.clock.now())
+        sent()
+
+    def slowly() -> None:
+        for _ in range(5):
+            bench.clock.advance(0.001)
+            bench.peers.pump()
+            go_on()
+
+    monkeypatch.setattr(bus, "synchronise", noted)
+    axes.queue.give_way = slowly
+    count, rest = 2000, np.array([axes.demand_at(axes.horizon())[0]])
+    zero = np.zeros((count, rest.shape[1]))
+    start = bench.clock.now() + 0.2
+    t = start + 0.002 * np.arange(count)
+    axes.splice(Segments(t, np.full(count, 0.002), np.repeat(rest, count, 0), zero, zero))
+    assert len(syncs) == pytest.approx(25, abs=1)
+    assert np.diff(syncs) == pytest.approx(0.004, abs=1e-6)
+    run(bench, 0.1)
+    assert axes.sample().fault == ""
+    assert axes.horizon() == pytest.approx(start + 4.0)
 
 
 def test_following_error_is_the_lag_of_the_slide_alone(bench: CanBench) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pytest
 
@@ -253,13 +253,28 @@ def test_hold_and_reset_in_a_turn(rig: BusRig) -> None:
     assert rig.shot.alarms == ()
 
 
+def once_in(rig: BusRig, c: SpindleC, step: Step, do: Callable[[], None]) -> None:
+    """Do this as the step begins: between two ticks it may have begun and ended."""
+    begun: list[Step] = []
+    enter = c._enter
+
+    def entered(new: Step, now: float) -> None:
+        enter(new, now)
+        if new is step and not begun:
+            begun.append(new)
+            do()
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(c, "_enter", entered)
+        rig.until_true(lambda _: bool(begun), limit=60.0)
+
+
 @pytest.mark.parametrize("step", [Step.INDEX, Step.HERE, Step.TURN])
 def test_a_hold_in_the_change_over_stops_it_and_cycle_start_does_it_anew(rig: BusRig, step: Step) -> None:
     c = rig.bench.machine.c
     assert c is not None
     rig.start("G90G94F300\nM03S777\nG04F1\nM05\nM19\nC90S60\nG04F2\nM05\nM30")
-    rig.until_true(lambda _: c.step is step, limit=60.0)
-    rig.post(FeedHold())
+    once_in(rig, c, step, lambda: rig.post(FeedHold()))
     rig.until(State.HOLD, limit=1.0)
     rig.run(0.3)
     at = degrees(rig)
@@ -390,8 +405,7 @@ def test_estop_in_every_step_of_the_change_over(rig: BusRig, step: Step) -> None
     assert drive is not None
     rig.start("G90G94F300\nM03S777\nG04F1\nM05\nM19\nG04F60\nM05\nM30")
     rig.watch.append(lambda _shot: None)
-    rig.until_true(lambda _: c.step is step, limit=60.0)
-    rig.bench.peers.machine.press_estop()
+    once_in(rig, c, step, rig.bench.peers.machine.press_estop)
     rig.until(State.ESTOP, limit=0.2)
     rig.run(3.0)
     assert not drive.power.powered

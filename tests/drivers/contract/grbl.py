@@ -126,7 +126,7 @@ class Grblhal(Rig):
     """On an in-memory wire."""
 
     faults: ClassVar[Mapping[str, Fault]] = {
-        "drive fault": Fault(told=0.02, rests=0.02, says="ALARM:17, motor fault"),
+        "drive fault": Fault(told=0.02, rests=0.02, says="ALARM:17, motor fault", homeless=True),
         "alarm": Fault(told=0.02, rests=0.02, says="ALARM:14"),
         "cable out": Fault(
             0.02,

@@ -26,6 +26,7 @@ _HANDS = """
 start = { at = "in-start" }
 hold = { at = "in-hold", active = "low" }
 spindle_auto = { at = "in-auto" }
+probe = { at = "in-probe" }
 
 [io.analog]
 feed_pot = { at = "pot-feed", range = [0, 1.5] }
@@ -35,14 +36,18 @@ spindle_pot = { at = "pot-spindle", switch = "spindle_auto" }
 _HOMED = "absolute = false\nhome = { method = 21, speed = 20, latch = 6, order = 1 }\n"
 
 
-def hal_machine(*, homing: bool = False) -> Machine:
-    """The shipped lathe with an operator station of its own; with ``homing`` its Z only counts."""
+def hal_machine(*, homing: bool = False, lamps: str = "") -> Machine:
+    """The shipped lathe with an operator station of its own; with ``homing`` its Z only counts.
+
+    ``lamps``: lines of [io.out] besides its own.
+    """
     text = resources.machine_file("gt75-hal.toml").replace("\n[m_codes]", _HANDS, 1)
     text = text.replace('enable = "x-motor.sel"', 'enable = "x-motor.sel"\nfault = "x-fault"')
     text = text.replace(
         'enable = "z-motor.sel"', 'enable = "z-motor.sel"\nfault = "z-fault"\nhome = "z-home"'
     )
     text = text.replace("two_hand_start = false", "two_hand_start = true")
+    text = text.replace("\ncoolant = ", f"\n{lamps}coolant = ", 1)
     if homing:
         head, z = text.split("[axis.Z]")
         text = f"{head}[axis.Z]{z.replace('absolute = true', _HOMED, 1)}"
@@ -74,8 +79,8 @@ class Hal(Rig):
     }
     hold = 0.15
 
-    def __init__(self, *, homing: bool = False) -> None:
-        self.machine = hal_machine(homing=homing)
+    def __init__(self, *, homing: bool = False, lamps: str = "") -> None:
+        self.machine = hal_machine(homing=homing, lamps=lamps)
         self.clock = StepClock()
         config = hal_config(self.machine)
         self.far = HalFarEnd(config, sim_config(self.machine), self.clock)

@@ -131,6 +131,10 @@ class SimDriven:
     def notes(self) -> tuple[str, ...]:
         return ()
 
+    def idle(self, _asleep: bool) -> float:
+        """It cannot tell."""
+        return 0.0
+
     def close(self) -> None:
         """Nothing to let go."""
 

@@ -80,6 +80,7 @@ def test_a_slide_that_does_not_follow_brakes_all_axes(control: Control) -> None:
     assert control.clock.now() - struck <= window / speed + patience + 0.03 + speed / AMAX + 2 * TICK
     assert "X" in control.shot.alarms[0].cause
     assert not control.rig.ports.axes.sample().enabled
+    assert not control.shot.powered
 
 
 def test_estop_at_any_moment_leaves_all_off_and_its_release_starts_nothing(control: Control) -> None:

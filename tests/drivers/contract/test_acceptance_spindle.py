@@ -8,6 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from core.executor.snapshot import State
+from core.ports import DriverError
 from tests.drivers.contract.can import Canopen
 from tests.drivers.contract.control import INCH, Control
 from tests.drivers.contract.grbl import Grblhal
@@ -103,3 +104,68 @@ def test_a_spindle_that_ignores_its_stop_is_told_within_a_second_and_asks_for_th
     alarm = control.shot.alarms[0]
     assert alarm.code in {"spindle", "ignores-stop"}
     assert "PRESS E-STOP" in alarm.cause + alarm.remedy
+
+
+@pytest.mark.parametrize("name", [name for name in THREADING if name != "grblhal"])
+def test_a_pass_that_came_too_late_to_be_queued_is_cut_when_it_goes_on(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing of it is passed over: what stands next would begin elsewhere."""
+    rig = THREADING[name]()
+    control = Control(rig)
+
+    def too_late(*_: object) -> None:
+        raise DriverError("it comes too late", "late")
+
+    ports = rig.ports
+    sink, way = (ports.axes, "splice") if ports.gear is None else (ports.gear, "mesh")
+    control.start(THREAD)
+    control.until_true(lambda shot: shot.waiting_for == "AT SPEED")
+    with monkeypatch.context() as patch:
+        patch.setattr(sink, way, too_late)
+        control.until(State.HOLD, limit=10.0)
+    assert control.shot.stop is not None
+    assert control.shot.stop.code == "late"
+    control.press()
+    control.until_true(lambda _: control.world.place()[1] < -0.2 * INCH)  # the thread itself
+    assert control.shot.alarms == ()
+    rig.close()
+
+
+def test_a_pass_that_comes_too_late_again_and_again_begins_at_a_later_index(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """At rest a computer that was away for .3 s costs a turn, not a hold: the sixth try is .32 s ahead."""
+    rig = Simulated()
+    control = Control(rig)
+    assert rig.ports.gear is not None
+    mesh, late = rig.ports.gear.mesh, [True] * 5
+
+    def at_times(*asked: object) -> None:
+        if late:
+            late.pop()
+            raise DriverError("it comes too late", "late")
+        mesh(*asked)  # type: ignore[arg-type]  # as it was asked
+
+    control.start(THREAD)
+    control.until_true(lambda shot: shot.waiting_for == "AT SPEED")
+    monkeypatch.setattr(rig.ports.gear, "mesh", at_times)
+    control.until_true(lambda _: control.world.place()[1] < -0.2 * INCH)
+    assert control.shot.stop is None
+    assert not late
+    rig.close()
+
+
+def test_an_encoder_that_is_read_too_seldom_is_no_fault_of_the_spindle(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rig = Simulated()
+    monkeypatch.setattr(rig.ports.spindle, "angle", lambda: (0.0, 0.0))  # never a new reading
+    control = Control(rig)
+    control.start(THREAD)
+    control.until(State.HOLD)
+    assert control.shot.stop is not None
+    assert control.shot.stop.code == "late"
+    assert control.shot.alarms == ()
+    assert control.world.place()[1] > 0.0
+    rig.close()

@@ -14,6 +14,7 @@ from app.compose.machine_files import load_machine
 from core.ports import DriverError
 from drivers.clocks import StepClock
 from drivers.lookalikes.canopen_devices import CanopenDevices
+from tests.late_computer import tell
 
 # A bus whose times a loaded computer can keep: nothing here is about how fast Python is.
 TIMES = (
@@ -27,12 +28,25 @@ TIMES = (
 )
 
 
+PATIENCE = 60.0  # s of a loaded computer
+STALL = 0.08  # s; the drives hold not much more of setpoints
+
+
 class SteadyClock(StepClock):
-    """Goes with the day, but never more than 5 ms at once: after a stall it catches up step by step."""
+    """Goes with the day, but never more than 5 ms at once: after a stall it catches up step by step.
+
+    A stall in which drives may run dry is told: a test that fails then is played again.
+    """
 
     def __init__(self) -> None:
         super().__init__()
         self._zero, self._epoch = time.monotonic(), time.time()
+        self.stalled = False
+
+    @property
+    def patience(self) -> float:
+        """How long to wait for anything, s: behind a stall what does not come will not come."""
+        return 0.5 * PATIENCE if self.stalled else PATIENCE
 
     def arrival(self, stamp: float) -> float:
         """When a frame came, by this clock."""
@@ -41,6 +55,9 @@ class SteadyClock(StepClock):
     def step(self) -> bool:
         """On by one step; False when it has caught up."""
         late = time.monotonic() - self._zero - self.now()
+        if late > STALL and not self.stalled:
+            self.stalled = True
+            tell("late")
         self.advance(min(max(late, 0.0), 0.005))
         return late > 0.005
 

@@ -12,6 +12,7 @@ from drivers.feeder.feeder_server import Feeder
 from drivers.simulated.simulated_machine import Simulation
 from tests.drivers.contract.simulated import BrokenLink, SimDriven
 from tests.executor.rig import Rig
+from tests.executor.test_signal_lamps import tower, with_lamps
 from tests.executor.test_threads import EXTERNAL
 
 TURN = "G90G94F300\nT1\nM03S1000\nM08\nX.5Z0\nG95F.005\nG01X.4Z-.2\nX.5\nM09\nM05\nG94F300\nZ0\nM30\n"
@@ -91,3 +92,57 @@ def test_coolant_that_nobody_renewed_in_a_cut_holds_and_comes_on_with_the_start(
     rig.until(State.IDLE)
     assert rig.shot.alarms == ()
     assert rig.shot.parts == 0
+
+
+DWELL = "G90G94F300\nT1\n{on}\nX.5Z.1\nG01F30Z-.2\nG04F3\nG01Z-.3\nG00Z.1\nM30\n"
+
+
+def silent(rig: FedRig, seconds: float) -> None:
+    """The control is away; the feeder goes on."""
+    for _ in range(round(seconds / 0.01)):
+        rig.clock.advance(0.01)
+        rig.feeder.tick()
+
+
+def in_dwell_away(on: str) -> FedRig:
+    """A lathe with a signal tower whose control was away for .3 s while its slides rested in a dwell."""
+    rig = FedRig(with_lamps())
+    rig.start(DWELL.format(on=on), TOOLS)
+    rig.until_true(lambda shot: abs(shot.actual[1] + 5.08) < 0.01)
+    rig.run(0.5)
+    assert tower(rig) == {"green"}
+    silent(rig, 0.3)
+    assert tower(rig) == {"red"}  # as the file calls it safe: nobody drives it
+    return rig
+
+
+def test_a_lamp_that_the_feeder_switched_off_costs_no_part() -> None:
+    rig = in_dwell_away("")
+    rig.run(1.2)
+    assert tower(rig) == {"green"}
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+    assert rig.said("disturbed") == []
+
+
+@pytest.mark.parametrize(
+    ("on", "names"), [("M08", "COOLANT"), ("M03S600", "SPINDLE"), ("M03S600\nM08", "SPINDLE, COOLANT")]
+)
+def test_what_else_it_switched_off_holds_and_is_named_without_the_lamp(on: str, names: str) -> None:
+    rig = in_dwell_away(on)
+    rig.tick()
+    rig.until(State.HOLD, limit=0.5)
+    assert rig.shot.waiting_for == f"CONTROL WAS SILENT FOR 0.3 S, SWITCHED OFF: {names}"
+
+
+def test_at_rest_nothing_is_told_of_a_lamp() -> None:
+    rig = FedRig(with_lamps())
+    rig.start("G90G94F300\nX1Z.1\nG00Z.2\nM30\n")
+    rig.until(State.IDLE)
+    rig.run(1.0)
+    assert tower(rig) == {"amber"}
+    silent(rig, 0.8)
+    assert tower(rig) == {"red"}
+    rig.run(1.2)
+    assert tower(rig) == {"amber"}
+    assert rig.said("disturbed") == []

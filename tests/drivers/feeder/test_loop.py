@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import resource
+import signal
 import socket
 import threading
 from collections.abc import Iterator
 
 import pytest
 
-from core.ports import DriverError
-from drivers.clocks import RealClock
+import resources
+from app.compose.feeder_process import NO_PRIORITY, FeederProcess, beat, without_priority
+from app.compose.machine_files import parse_machine
+from core.ports import DriverError, MachinePorts
+from drivers.clocks import RealClock, StepClock
 from drivers.feeder import feeder_loop
 from drivers.feeder.feeder_client import Line, feeder_ports
 from drivers.feeder.feeder_links import SocketLink
-from drivers.feeder.feeder_loop import serve
+from drivers.feeder.feeder_loop import Ear, serve
+from drivers.feeder.feeder_messages import NOTHING, Message, packed
+from drivers.feeder.feeder_server import Driven, Feeder
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from tests.drivers.contract.simulated import SimDriven
 from tests.drivers.machines import CONFIG
@@ -112,7 +118,7 @@ def test_memory_is_locked_as_far_as_it_cannot_run_out(
 
     monkeypatch.setattr(feeder_loop.ctypes, "CDLL", lambda *_a, **_k: Library())
     monkeypatch.setattr(feeder_loop.os, "geteuid", lambda: user)
-    monkeypatch.setattr(feeder_loop.resource, "getrlimit", lambda _which: (limit, limit))
+    monkeypatch.setattr(resource, "getrlimit", lambda _which: (limit, limit))
     monkeypatch.setattr(feeder_loop.gc, "freeze", lambda: None)
     assert feeder_loop.keep_memory() == told
     assert asked == [flags]
@@ -127,8 +133,156 @@ def test_what_the_system_refuses_is_told(monkeypatch: pytest.MonkeyPatch) -> Non
     assert "without real-time priority (Operation not permitted)" in told
 
 
+def test_nothing_is_answered_that_would_be_over_behind_a_sync() -> None:
+    ours, theirs = socket.socketpair()
+    clock = StepClock()
+    sim = build_simulation(CONFIG, clock)
+    feeder = Feeder(Driven(sim.ports, sim.ports.axes.sample, lambda: None))
+    ear = Ear(theirs, feeder, clock)
+    ours.sendall(packed(Message({"do": "horizon"}, NOTHING)))
+    ours.setblocking(False)
+    due = clock.now() + 0.0002
+    assert ear.listen(due, punctual=True) == due
+    with pytest.raises(BlockingIOError):
+        ours.recv(1000)
+    clock.advance(0.005)  # a control is not left alone for longer
+    assert ear.listen(clock.now(), punctual=True) == clock.now()
+    assert ours.recv(1000)
+    ours.close()
+    theirs.close()
+
+
+@pytest.mark.parametrize(
+    ("shipped", "expected"),
+    [("gt75-epos4.toml", 0.002), ("gt75-canopen.toml", 0.0), ("gt75.toml", 0.0)],
+)
+def test_a_setpoint_at_each_sync_needs_its_time(shipped: str, expected: float) -> None:
+    assert beat(parse_machine(resources.machine_file(shipped), shipped)) == expected
+
+
+@pytest.mark.parametrize(
+    ("late", "expected"),
+    [
+        (0.0005, "0.3 s it was kept, at most 0.5 ms late"),
+        (0.0071, "0.3 s it was not kept, at most 7.1 ms late"),
+    ],
+)
+def test_what_is_lost_without_priority_is_said_with_what_a_trial_has_found(
+    late: float, expected: str
+) -> None:
+    told = without_priority(0.002, late)
+    assert told.startswith(f"{NO_PRIORITY} a SYNC each 2 ms cannot be relied on")  # the desk looks for that
+    assert expected in told
+
+
+def test_a_trial_finds_a_process_that_wakes_up_late(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Stalled(StepClock):
+        def sleep_until(self, t: float) -> None:
+            super().sleep_until(t + (0.02 if 0.1 < t < 0.103 else 0.0001))
+
+    monkeypatch.setattr(feeder_loop, "RealClock", Stalled)
+    assert feeder_loop.late_at_trial(0.002) == pytest.approx(0.02)
+
+
 def test_a_feeder_that_does_not_answer_is_a_fault_and_no_hang() -> None:
     ours, theirs = socket.socketpair()
     line = Line(SocketLink(ours), RealClock())
     with ours, theirs, pytest.raises(DriverError, match="has not answered"):
         feeder_ports(line)
+
+
+# --- a control that sleeps, and the process of its feeder
+
+
+@pytest.fixture
+def asleep() -> Iterator[tuple[FeederProcess, MachinePorts]]:
+    """The simulated lathe in a feeder of its own, whose control is about to sleep."""
+    text = resources.machine_file("gt75.toml").replace("[machine]\n", "[machine]\nfeeder = true\n", 1)
+    process = FeederProcess(parse_machine(text, "gt75.toml"), RealClock())
+    ports = feeder_ports(process.line)
+    ports.axes.sample()
+    assert ports.wakeup is not None
+    assert ports.wakeup.settled()
+    yield process, ports
+    if process.process.poll() is None:
+        process.process.send_signal(signal.SIGCONT)
+    process.close()
+
+
+def test_a_feeder_that_is_killed_wakes_its_control_and_the_next_one_rings_too(
+    asleep: tuple[FeederProcess, MachinePorts],
+) -> None:
+    process, ports = asleep
+    assert ports.wakeup is not None
+    process.process.kill()
+    assert ports.wakeup.wait(60.0)
+    assert "feeder process has ended" in ports.axes.sample().fault
+    assert not ports.wakeup.settled()
+    ports.axes.clear_fault()
+    while process.line.lost and not process.line.fault:
+        ports.axes.sample()
+        ports.clock.sleep_until(ports.clock.now() + 0.01)
+    assert ports.axes.sample().fault == ""
+    while ports.wakeup.wait(0.0):
+        ports.axes.sample()
+    process.line.ask(Message({"do": "hand", "name": "press_estop", "values": []}, NOTHING))
+    at_once = ports.wakeup.wait(0.0)  # tells it that nobody looks
+    assert at_once or ports.wakeup.wait(60.0)
+    assert ports.station.snapshot().estop
+
+
+def test_a_feeder_that_stands_while_its_control_sleeps_is_told_with_the_next_look(
+    asleep: tuple[FeederProcess, MachinePorts],
+) -> None:
+    process, ports = asleep
+    assert ports.wakeup is not None
+    ports.wakeup.wait(0.0)
+    process.process.send_signal(signal.SIGSTOP)
+    assert not ports.wakeup.wait(0.1)
+    sample = ports.axes.sample()
+    assert "has not answered" in sample.fault
+    assert not sample.enabled
+    assert not ports.wakeup.settled()
+
+
+class Asleep:
+    """Stands for a feeder whose control sleeps, or not."""
+
+    def __init__(self, asleep: bool) -> None:
+        self.asleep, self.orphaned = asleep, False
+
+    def handle(self, _message: Message) -> Message:
+        """As a look is answered."""
+        return Message({}, NOTHING)
+
+
+@pytest.mark.parametrize(
+    ("asleep", "punctual", "left", "early"),
+    [
+        (True, False, 0.02, True),
+        (True, False, 0.06, False),  # it is not due for long
+        (False, False, 0.02, False),
+        (True, True, 0.02, False),  # setpoints at their time
+    ],
+)
+def test_a_round_that_is_soon_due_comes_with_the_look_of_a_control_that_sleeps(
+    asleep: bool, punctual: bool, left: float, early: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ours, theirs = socket.socketpair()
+    with ours, theirs:
+        clock = StepClock()
+        ear = Ear(theirs, Asleep(asleep), clock)  # type: ignore[arg-type]  # all that it asks of it
+
+        def waited(_files: list[socket.socket], _w: object, _x: object, seconds: float) -> tuple[object, ...]:
+            """What has been sent is there at once; else the time goes by."""
+            if not said:
+                clock.advance(seconds + 1e-6)
+                return ([], [], [])
+            said.pop()
+            return ([theirs], [], [])
+
+        said = [True]
+        monkeypatch.setattr(feeder_loop.select, "select", waited)
+        ours.sendall(packed(Message({"do": "look"}, NOTHING)))
+        due = ear.listen(left, punctual=punctual)
+        assert due == pytest.approx(0.0 if early else left, abs=1e-5)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
@@ -12,8 +13,9 @@ from drivers.clocks import StepClock
 from drivers.feeder.feeder_client import FeederHands, Line, feeder_ports
 from drivers.feeder.feeder_links import LoopLink
 from drivers.feeder.feeder_messages import LARGEST, NOTHING, Inbox, Message, packed
-from drivers.feeder.feeder_server import Feeder
+from drivers.feeder.feeder_server import PERIOD, RESTS, Driven, Feeder
 from drivers.simulated.simulated_machine import Simulation, build_simulation
+from drivers.wakeup import Bell
 from tests.drivers.contract.simulated import SimDriven
 from tests.drivers.machines import CONFIG, ramp
 from tests.drivers.test_gear import cam
@@ -225,7 +227,7 @@ def test_a_feeder_of_another_version_is_not_driven(bench: Bench) -> None:
             answer = super().ask(message)
             return Message({k: v for k, v in answer.head.items() if k != "version"}, answer.numbers)
 
-    with pytest.raises(DriverError, match="speaks version None, this control 3"):
+    with pytest.raises(DriverError, match="speaks version None, this control 4"):
         feeder_ports(Line(Older(bench.feeder), bench.clock))
 
 
@@ -309,3 +311,193 @@ def test_a_thread_whose_spindle_stands_does_not_keep_an_orphan_for_ever(bench: B
     assert not bench.sim.ports.axes.sample().moving
     bench.alone(9.0)
     assert bench.feeder.done
+
+
+# --- a control that sleeps ----------------------------------------------------------------------------------
+
+
+class Sleeper:
+    """A control whose machine rests, and what rings it."""
+
+    def __init__(self) -> None:
+        self.clock = StepClock()
+        self.sim = build_simulation(CONFIG, self.clock)
+        self.rung = 0
+        axes = self.sim.ports.axes
+        self.asked = False
+        driven = Driven(self.sim.ports, axes.sample, lambda: None, self.sim.machine, asked=lambda: self.asked)
+        self.feeder = Feeder(driven, ring=self._ring)
+        self.bell = Bell()
+        self.line = Line(LoopLink(self.feeder), self.clock, bell=self.bell)
+        self.ports = feeder_ports(self.line)
+        self.ports.axes.enable(True)
+        self.look()
+
+    def _ring(self) -> None:
+        self.rung += 1
+        self.bell.ring()
+
+    def look(self) -> None:
+        """As a tick of the control does."""
+        self.clock.advance(0.1)
+        self.ports.axes.sample()
+
+    def pause(self) -> float:
+        """Seconds to the feeder's next round."""
+        now = self.clock.now()
+        return self.feeder.next_round(now) - now
+
+    def sleeps(self) -> bool:
+        """Whether something has rung by the time the feeder has gone round once more."""
+        assert self.ports.wakeup is not None
+        assert self.ports.wakeup.settled()
+        self.ports.wakeup.wait(0.0)
+        self.clock.advance(0.005)
+        self.feeder.tick()
+        return self.rung > 0
+
+
+@pytest.fixture
+def sleeper() -> Iterator[Sleeper]:
+    made = Sleeper()
+    yield made
+    made.bell.close()
+
+
+def test_what_a_round_has_asked_for_is_looked_at_with_the_next_one(sleeper: Sleeper) -> None:
+    sleeper.asked = True
+    sleeper.sim.machine.press_estop()
+    assert not sleeper.sleeps()
+    sleeper.asked = False
+    assert sleeper.sleeps()
+
+
+def test_one_look_serves_a_tick_of_a_control_that_sleeps(sleeper: Sleeper) -> None:
+    assert not sleeper.sleeps()
+    sleeper.look()
+    sleeper.sim.machine.press_estop()
+    sleeper.clock.advance(0.01)
+    assert not sleeper.ports.station.snapshot().estop, "of this tick; what is new rings"
+    assert sleeper.sleeps()
+    assert sleeper.ports.wakeup is not None
+    assert sleeper.ports.wakeup.wait(0.0)
+    assert sleeper.ports.station.snapshot().estop
+
+
+def test_nothing_rings_where_nothing_happens(sleeper: Sleeper) -> None:
+    for _ in range(5):
+        assert not sleeper.sleeps()
+        sleeper.look()
+        assert sleeper.feeder.asleep
+    assert not sleeper.bell.wait(0.0)
+
+
+@pytest.mark.parametrize(
+    "happens",
+    [
+        lambda sim: sim.machine.press_estop(),
+        lambda sim: sim.machine.press_hold(),
+        lambda sim: sim.machine.set_input("TB2-5", True),
+        lambda sim: sim.machine.set_feed_pot(0.5),
+        lambda sim: sim.machine.turn_handwheel(1),
+        lambda sim: sim.machine.push("X", 0.1),
+        lambda sim: sim.machine.drive_fault("Z"),
+        lambda sim: sim.machine.spindle_fault("tripped"),
+        lambda sim: sim.machine.switch_output("coolant", True),
+        lambda sim: sim.machine.station_silent(),
+    ],
+)
+def test_whatever_happens_rings_once_and_again_after_the_next_look(
+    sleeper: Sleeper, happens: Callable[[Simulation], None]
+) -> None:
+    assert not sleeper.sleeps()
+    happens(sleeper.sim)
+    for _ in range(50):  # a silent station is one after .2 s
+        sleeper.clock.advance(0.005)
+        sleeper.feeder.tick()
+    assert sleeper.rung == 1
+    assert sleeper.bell.wait(0.0)
+    sleeper.feeder.tick()
+    assert sleeper.rung == 1
+
+
+def test_what_has_changed_between_the_last_look_and_falling_asleep_rings(sleeper: Sleeper) -> None:
+    sleeper.sim.machine.set_input("TB2-5", True)
+    assert sleeper.sleeps()
+
+
+def test_a_control_that_looks_as_ever_is_not_rung(sleeper: Sleeper) -> None:
+    sleeper.sleeps()
+    assert sleeper.ports.wakeup is not None
+    sleeper.bell.ring()
+    assert sleeper.ports.wakeup.wait(0.0)  # something was asked for: it is awake
+    sleeper.look()
+    assert not sleeper.feeder.asleep
+    sleeper.sim.machine.set_input("TB2-5", True)
+    sleeper.feeder.tick()
+    assert sleeper.rung == 0
+
+
+def test_an_order_ends_its_sleep(sleeper: Sleeper) -> None:
+    sleeper.sleeps()
+    assert sleeper.feeder.asleep
+    sleeper.ports.io.write("coolant", True)
+    assert not sleeper.feeder.asleep
+    assert sleeper.pause() == pytest.approx(PERIOD)
+
+
+def test_a_hand_at_the_screen_wakes_its_own_control(sleeper: Sleeper) -> None:
+    FeederHands(sleeper.line).press_hold()
+    assert sleeper.bell.wait(0.0)
+
+
+def test_one_that_sleeps_is_missed_after_half_a_second(sleeper: Sleeper) -> None:
+    sleeper.sleeps()
+    for _ in range(9):
+        sleeper.clock.advance(0.05)
+        sleeper.feeder.tick()
+    assert sleeper.feeder._notes == []
+    for _ in range(3):
+        sleeper.clock.advance(0.05)
+        sleeper.feeder.tick()
+    assert sleeper.feeder._notes == ["the control is silent: spindle stopped, outputs safe"]
+
+
+def test_drivers_that_cannot_tell_how_long_they_need_nothing_go_round_as_ever(sleeper: Sleeper) -> None:
+    sleeper.sleeps()
+    assert sleeper.pause() == pytest.approx(PERIOD)
+
+
+def test_drivers_are_told_that_the_control_sleeps_and_that_it_has_woken_up(sleeper: Sleeper) -> None:
+    told: list[bool] = []
+
+    def idle(asleep: bool) -> float:
+        told.append(asleep)
+        return 9.0
+
+    sleeper.feeder._driven = dataclasses.replace(sleeper.feeder._driven, idle=idle)
+    assert sleeper.pause() == pytest.approx(PERIOD)
+    sleeper.sleeps()
+    assert sleeper.pause() == pytest.approx(RESTS)
+    sleeper.ports.io.write("coolant", True)
+    assert sleeper.pause() == pytest.approx(PERIOD)
+    assert sleeper.pause() == pytest.approx(PERIOD)
+    assert told == [True, False]
+
+
+def test_an_orphan_does_not_go_on_sleeping(sleeper: Sleeper) -> None:
+    sleeper.feeder._driven = dataclasses.replace(sleeper.feeder._driven, idle=lambda _: 9.0)
+    sleeper.sleeps()
+    assert sleeper.pause() == pytest.approx(RESTS)
+    sleeper.feeder.orphaned = True
+    assert sleeper.pause() == pytest.approx(PERIOD)
+
+
+def test_a_bell_that_is_full_or_closed_is_no_error() -> None:
+    bell = Bell()
+    for _ in range(3000):
+        bell.ring()
+    assert bell.wait(0.0)
+    assert not bell.wait(0.0)
+    bell.close()
+    bell.ring()

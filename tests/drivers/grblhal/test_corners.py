@@ -14,9 +14,9 @@ ACCEL = 3000.0  # $120 and $122 of the look-alike, mm/s²
 SPEED = 100.0  # mm/s
 
 
-def way(*places: Place, speed: float = SPEED) -> Slides:
+def way(*places: Place, speed: float = SPEED, registers: Registers | None = None) -> Slides:
     """Slides that are to go through these places from (0, 0)."""
-    slides = Slides(Registers(Quirks()), 100)
+    slides = Slides(registers or Registers(Quirks()), 100)
     for start, end in zip(((0.0, 0.0), *places), places, strict=False):
         length, shape = straight(start, end)
         slides.queue.append(PlannedBlock(0, length, speed, shape))
@@ -47,12 +47,25 @@ def test_a_straight_joint_is_none() -> None:
 
 def test_a_right_angle_is_taken_by_the_deviation() -> None:
     seen = run(way((0.0, 20.0), (20.0, 20.0)))
-    # Grbl's junction: v² = a · δ · sin(θ/2) / (1 − sin(θ/2)), δ = .01 mm, θ = 90°.
+    # Grbl's junction: v² = a · δ · sin(θ/2) / (1 − sin(θ/2)), δ = .01 mm, θ = 90°; a is what both slides
+    # together have along the change of direction, √2 of one of them: 10.2 mm/s.
     half = math.sqrt(0.5)
-    corner = math.sqrt(ACCEL * 0.01 * half / (1.0 - half))
+    corner = math.sqrt(math.sqrt(2.0) * ACCEL * 0.01 * half / (1.0 - half))
     near = [v for (x, z), v in seen if z > 19.99 and x < 0.01]
     assert near
     assert max(near) <= corner + 2.0 * ACCEL * STEP
+
+
+def test_each_slide_has_its_own_limits() -> None:
+    """Along Z as Z may, along X as X may, at 45 degrees √2 of the slower."""
+    registers = Registers(Quirks(settings={112: 9000.0}))  # Z 150 mm/s, X 127
+
+    def top(corner: Place) -> float:
+        return max(v for _, v in run(way(corner, speed=1e9, registers=registers)))
+
+    assert top((0.0, 40.0)) == pytest.approx(150.0, abs=0.1)
+    assert top((40.0, 0.0)) == pytest.approx(127.0, abs=0.1)
+    assert top((40.0, 40.0)) == pytest.approx(127.0 * math.sqrt(2.0), abs=0.1)
 
 
 def test_a_slower_block_begins_at_its_own_speed() -> None:

@@ -149,6 +149,47 @@ def test_estop_at_the_controller() -> None:
     assert bench.peer.rpm == 0.0
 
 
+@pytest.mark.parametrize("alarm", [10, 17])
+def test_an_alarm_that_ends_the_steps_of_a_moving_slide_has_lost_its_place(alarm: int) -> None:
+    """The firmware says ALARM:3 for a reset in motion, and of E-stop and motor fault nothing of the place."""
+    bench = cutting(GrblBench())
+    bench.peer.raise_alarm(alarm)
+    bench.until(State.FAULT, limit=1.0)
+    clear(bench)
+    assert not any(bench.shot.homed[:2])
+    bench.load(LONG)
+    bench.press()
+    assert "homed" in bench.shot.start_refused
+    for axis in "XZ":
+        bench.post(Home(axis))
+        bench.until(State.IDLE)
+    assert all(bench.shot.homed[:2])
+
+
+@pytest.mark.parametrize("alarm", [10, 17])
+def test_the_same_at_rest_has_lost_nothing(alarm: int) -> None:
+    bench = GrblBench()
+    bench.start("G90G94F300\nX.5\nM30\n")
+    bench.until(State.IDLE)
+    bench.peer.raise_alarm(alarm)
+    bench.until(State.FAULT, limit=1.0)
+    clear(bench)
+    assert all(bench.shot.homed[:2])
+
+
+def test_what_an_estop_switches_off_is_no_output_that_has_gone_off_by_itself() -> None:
+    bench = GrblBench()
+    bench.start("G90G94F300\nM08\nG01X1F30\nM30\n")
+    bench.until_true(lambda shot: shot.line == 3)
+    bench.run(1.5)
+    bench.peer.pins = "E"
+    bench.peer.outputs["flood"] = False
+    bench.peer.raise_alarm(10)
+    bench.until(State.ESTOP, limit=1.0)
+    assert not bench.said("disturbed")
+    assert not bench.said("stop")
+
+
 def test_a_feed_per_turn_with_a_standing_spindle_stays_in_the_planner_until_a_reset() -> None:
     """The look-alike's own habit, and that the recovery gets rid of it."""
     bench = GrblBench()

@@ -126,14 +126,26 @@ def test_with_e_stop_pressed_it_does_not_come_back() -> None:
     assert desk.say(RESET) == []
 
 
-def test_a_full_report_tells_offsets_and_no_overrides_which_come_with_a_plain_one() -> None:
+def test_a_full_report_tells_offsets_overrides_and_what_is_on() -> None:
+    """``report.c`` of 2026; that of 2023 left the overrides out."""
     desk = Desk()
     desk.say(b"\x92")
     (full,) = desk.say(FULL)
-    assert "|WCO:" in full
-    assert "|Ov:" not in full
+    assert "|WCO:0.000,0.000,0.000|WCS:G54|Ov:90,100,100|A:|" in full
     assert "|FW:grblHAL" in full
-    assert any("|Ov:90,100,100" in line for _ in range(20) for line in desk.say(STATUS))
+
+
+def test_what_has_changed_is_in_the_next_report_and_offsets_wait() -> None:
+    desk = Desk()
+    desk.say(FULL)
+    desk.say(b"\x92")
+    (plain,) = desk.say(STATUS)
+    assert "|Ov:90,100,100" in plain
+    desk.say(b"M3S500\n")
+    assert desk.say(STATUS)[0].endswith("|A:S>")
+    told = [line for _ in range(40) for line in desk.say(STATUS)]
+    assert any("|WCO:" in line for line in told)
+    assert not any("|WCO:" in line and "|Ov:" in line for line in told)
 
 
 def test_what_it_is_set_to_is_told_with_decimals_of_its_own() -> None:
@@ -144,7 +156,9 @@ def test_what_it_is_set_to_is_told_with_decimals_of_its_own() -> None:
     assert "$110=7620.000" in lines
     assert "$32=2" in lines
     assert desk.say(b"$999=1\n") == ["error:53"]
-    assert desk.say(b"$110=1e3\n") == ["error:2"]
+    assert desk.say(b"$110=fast\n") == ["error:2"]
+    assert desk.say(b"$110=1e3\n") == ["ok"]  # and reads 1: what is written has to be read back
+    assert "$110=1.000" in desk.say(b"$$\n")
 
 
 def test_homing_is_refused_where_it_is_off_and_for_one_axis_where_that_is() -> None:

@@ -80,7 +80,7 @@ def both(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Both]:
         path.write_text(text.replace('driver = "grblhal"', _VFD.format(cable.near)), encoding="utf-8")
         yield Both(path, one, firmware, belt)
         over.set()
-        peer.join(5.0)
+        peer.join(60.0)
 
 
 def test_it_turns_both_ways_and_says_so_only_when_it_does(both: Both) -> None:

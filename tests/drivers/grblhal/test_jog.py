@@ -55,6 +55,54 @@ def test_letting_go_stops_at_once() -> None:
     assert not bench.shot.alarms
 
 
+def let_go_on_a_slow_line() -> GrblBench:
+    """A line of the jog is still unanswered: the modes are looked at, which takes half a second there."""
+    bench = ready()
+    bench.peer.quirks.drip = 0.012
+    hold_key(bench, 1.2)
+    while bench.machine.controller.stream.quiet:
+        hold_key(bench, 0.04)
+    bench.post(JogStop())
+    assert bench.machine.controller.busy
+    return bench
+
+
+def jogs(bench: GrblBench) -> int:
+    """How many have gone out."""
+    return sum(line.startswith("$J") for line in bench.wire.lines())
+
+
+def test_a_key_pressed_again_waits_for_the_jog_before_and_goes_on() -> None:
+    bench = let_go_on_a_slow_line()
+    before = jogs(bench)
+    hold_key(bench, 0.1)
+    assert bench.state is State.JOG
+    assert jogs(bench) == before
+    at = bench.peer.slides.place[0]
+    hold_key(bench, 2.0)
+    assert not bench.alarms()
+    assert bench.peer.slides.place[0] > at + 0.5 * V
+
+
+def test_a_key_that_is_let_go_before_the_jog_before_is_over_moves_nothing() -> None:
+    bench = let_go_on_a_slow_line()
+    before = jogs(bench)
+    hold_key(bench, 0.1)
+    bench.post(JogStop())
+    bench.until(State.IDLE, limit=3.0)
+    bench.run(1.0)
+    assert jogs(bench) == before
+    assert not bench.alarms()
+
+
+def test_a_screen_that_dies_while_its_key_waits_moves_nothing() -> None:
+    bench = let_go_on_a_slow_line()
+    before = jogs(bench)
+    hold_key(bench, 0.05)
+    bench.until(State.IDLE, limit=3.0)
+    assert jogs(bench) == before
+
+
 def test_a_killed_host_stops_within_its_lease() -> None:
     bench = ready()
     hold_key(bench, 0.5)

@@ -37,7 +37,7 @@ def machine_file(tmp_path: Path) -> Iterator[Path]:
     file.write_text(text, encoding="utf-8")
     yield file
     over.set()
-    peer.join(5.0)
+    peer.join(60.0)
     assert not peer.is_alive()
 
 

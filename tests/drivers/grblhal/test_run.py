@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from core.executor.commands import FeedOverride, SetSwitch
@@ -16,9 +18,10 @@ def test_the_lines_of_a_small_program() -> None:
     bench.start("G90G94F300\nX.5Z.2\nG01X.25F60\nG03X.5Z-.05I.5K.2F60\nM08\nX.6F300\nM30\n")
     bench.until(State.IDLE)
     # .25 in at 60 in/min take .25 s: two pieces. The arc is 90 degrees about (12.7, 5.08), from X- to Z-,
-    # which in the controller's plane is clockwise; its middle lies 6.35/√2 off the centre.
+    # which in the controller's plane is clockwise; its middle lies 6.35/√2 off the centre. G0 would go the
+    # first way at 127·√(12.7² + 5.08²)/12.7 = 136.8 mm/s, faster than its rate.
     assert bench.wire.lines() == [
-        "N1G0X12.7Z5.08",
+        "N1G1X12.7Z5.08F7620",
         "N2G1X9.525Z5.08F1524",
         "N3G1X6.35Z5.08F1524",
         "N4G2X8.20987Z0.58987I6.35K0F1524",
@@ -27,6 +30,53 @@ def test_the_lines_of_a_small_program() -> None:
         "N6G0X15.24Z-1.27",
         "M9",
     ]
+
+
+@pytest.mark.parametrize(
+    ("target", "speed"),
+    [
+        ("Z3", 127.0),
+        ("X3Z3", 127.0),  # F300 counts along the way: G0 would go at 127·√2
+        ("X3Z1", 127.0),
+    ],
+)
+def test_a_rapid_takes_the_time_that_was_proved(target: str, speed: float) -> None:
+    """Way / speed + speed / acceleration, X and Z 127 mm/s and 3000 mm/s²; 40 ms to see that it is over."""
+    bench = GrblBench()
+    bench.start(f"G90G94F300\n{target}\nM30\n")
+    took = bench.until(State.IDLE)
+    x, z = bench.peer.slides.place
+    assert took + 0.2 == pytest.approx(math.hypot(x, z) / speed + speed / 3000.0, abs=0.15)  # 0.2 s: press()
+    assert all("G0" not in line for line in bench.wire.lines() if "X" in line and target != "Z3")
+
+
+def test_an_axis_that_is_slow_holds_back_its_own_way_alone() -> None:
+    """X 1 in/s by $110, Z 5: along Z at Z's speed, up and across at X's times the way over X's part of it."""
+    bench = GrblBench(quirks=quirky(settings={110: 1524.0}))
+    bench.start("G90G94F300\nZ3\nX1Z4\nX0Z4\nM30\n")
+    bench.until(State.IDLE)
+    lines = bench.wire.lines()
+    assert lines[0].startswith("N1G0X0Z")
+    assert all("G0" in line for line in lines[:4])
+    assert bench.machine.blocks.fastest(0.0, 1.0) == pytest.approx(127.0)
+    assert bench.machine.blocks.fastest(1.0, 1.0) == pytest.approx(25.4 * math.sqrt(2.0))
+
+
+def test_a_controller_that_may_more_does_no_more_than_was_proved() -> None:
+    bench = GrblBench(quirks=quirky(settings={110: 12000.0, 112: 12000.0}))
+    bench.start("G90G94F300\nZ3\nX1Z1\nM30\n")
+    bench.until(State.IDLE)
+    assert all(line.endswith("F7620") for line in bench.wire.lines() if "Z" in line)
+
+
+def test_an_arc_is_no_faster_than_its_acceleration_allows() -> None:
+    """R 2 mm: √(0.8 · 3048 · 2) = 69.8 mm/s, though 127 are programmed and the firmware would take them."""
+    bench = GrblBench()
+    bench.start("G90G94F300\nX.07874Z0\nG03X0Z-.07874I0K0\nM30\n")
+    bench.until(State.IDLE)
+    arcs = [line for line in bench.wire.lines() if "I" in line]
+    assert arcs
+    assert {round(float(arc.partition("F")[2]) / 60.0, 1) for arc in arcs} == {69.8}
 
 
 def test_a_program_ends_where_it_says_and_counts_a_part() -> None:
@@ -112,7 +162,6 @@ def test_overrides_are_reset_and_steps_and_read_back(fraction: float) -> None:
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("M03S1000\nG96S300\nG01X.2F10", "constant surface speed"),
         ("M19\nC90", "the C axis"),
         ("M25", "output catcher"),
         ("M13\nM12", "output collet"),
@@ -132,7 +181,7 @@ def test_what_the_controller_cannot_do_is_refused_before_the_start(text: str, ex
 
 def test_a_feed_per_turn_goes_out_as_a_feed_of_the_commanded_speed() -> None:
     bench = GrblBench()
-    bench.start("G90G94F300\nM03S600\nX.5Z.2\nG01G95F.005X.45\nM30\n")
+    bench.start("G90G94F300\nM03S600\nX.5\nG01G95F.005X.45\nM30\n")
     bench.until(State.IDLE)
     # .005 in a turn at 600 rpm are 3 in/min, 76.2 mm/min
     assert all(line.endswith("F76.2") for line in bench.wire.lines() if "G1" in line)

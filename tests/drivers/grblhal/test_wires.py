@@ -36,7 +36,7 @@ def machine_file(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Pat
     file.write_text(SHIPPED.replace("/dev/ttyACM0", end.name), encoding="utf-8")
     yield file
     over.set()
-    peer.join(5.0)
+    peer.join(60.0)
     assert not peer.is_alive()
 
 

@@ -100,11 +100,22 @@ def _hal_is_up() -> bool:
     return any(not each.startswith("Z") for each in shown.split())
 
 
-@pytest.fixture
-def halrun(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """halrun on PATH, for this test alone; skipped with the reason where HAL cannot be run."""
+@contextmanager
+def halrun_on_path() -> Iterator[None]:
+    """halrun on PATH, for one session alone; skipped with the reason where HAL cannot be run."""
     if why := why_not():
         pytest.skip(why)
-    with tempfile.TemporaryDirectory(prefix="turndesk-halrun-") as name, one_session():
-        monkeypatch.setenv("PATH", f"{folder_with_halrun(Path(name))}:{os.environ['PATH']}")
+    with (
+        pytest.MonkeyPatch.context() as patch,
+        tempfile.TemporaryDirectory(prefix="turndesk-halrun-") as name,
+        one_session(),
+    ):
+        patch.setenv("PATH", f"{folder_with_halrun(Path(name))}:{os.environ['PATH']}")
+        yield
+
+
+@pytest.fixture
+def halrun() -> Iterator[None]:
+    """halrun on PATH, for this test alone."""
+    with halrun_on_path():
         yield

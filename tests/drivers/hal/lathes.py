@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 import resources
+from tests.late_computer import command_was_late, played_again
 
 Changes = Sequence[tuple[str, str]]
+# The longest that a machine file may say of setpoints ahead, and of patience with a computer that is late.
+PATIENT: Changes = (
+    ("commit_ms = 50", "commit_ms = 200"),
+    ("lookahead_ms = 1000", "lookahead_ms = 2000"),
+    ("low_water_ms = 120", "low_water_ms = 250"),
+    ("ahead_ms = 100 ", "ahead_ms = 500 "),
+    ("watchdog_ms = 250", "watchdog_ms = 1000"),
+)
 OFFSETS = "[tool.1]\nx = 0.0\nz = 0.0\n"
 # The spindle's speed swings by 2 % three times a second.
 WANDER_HAL: Changes = (
@@ -38,22 +48,30 @@ def changed(text: str, changes: Changes) -> str:
     return text
 
 
-def lathe(folder: Path, machine: Changes = (), hal: Changes = ()) -> Path:
-    """Its machine file, the HAL file beside it."""
-    hal_text = resources.hal_file("gt75-hal.hal").read_text(encoding="utf-8")
-    (folder / "gt75-hal.hal").write_text(changed(hal_text, hal), encoding="utf-8")
+def lathe(folder: Path, machine: Changes = (), hal: Changes = (), text: str = "") -> Path:
+    """Its machine file, the HAL file beside it: ``text``, or the shipped one."""
+    text = text or resources.hal_file("gt75-hal.hal").read_text(encoding="utf-8")
+    (folder / "gt75-hal.hal").write_text(changed(text, hal), encoding="utf-8")
     file = folder / "lathe.toml"
     file.write_text(changed(resources.machine_file("gt75-hal.toml"), machine), encoding="utf-8")
     return file
 
 
-def run(folder: Path, program: str, machine: str = "gt75-hal") -> subprocess.CompletedProcess[str]:
-    """``turndesk run`` of a program, in a folder of its own."""
-    file, offsets = folder / "PIECE.nc", folder / "offsets.toml"
+def run(folder: Path, program: str, machine: Path) -> subprocess.CompletedProcess[str]:
+    """``turndesk run`` of a program, in a folder of its own: again, where the computer was late."""
+    file, offsets, home = folder / "PIECE.nc", folder / "offsets.toml", folder / "home"
     file.write_text(program, encoding="utf-8")
-    command = [sys.executable, "-m", "app.cli.main", "run", str(file), "--headless", "--machine", machine]
+    command = [sys.executable, "-m", "app.cli.main", "run", str(file), "--headless"]
+    command += ["--machine", str(machine)]
     if "T1" in program:
         offsets.write_text(OFFSETS, encoding="utf-8")
         command += ["--offsets", str(offsets)]
-    environment = {**os.environ, "TURNDESK_HOME": str(folder / "home")}
-    return subprocess.run(command, env=environment, capture_output=True, text=True, check=False, timeout=150)
+    environment = {**os.environ, "TURNDESK_HOME": str(home)}
+
+    def play() -> subprocess.CompletedProcess[str]:
+        shutil.rmtree(home, ignore_errors=True)
+        return subprocess.run(
+            command, env=environment, capture_output=True, text=True, check=False, timeout=150
+        )
+
+    return played_again(play, lambda: command_was_late(home))

@@ -7,11 +7,9 @@ spindle of its command; the parallel port's steps are made as on a machine. Homi
 from __future__ import annotations
 
 import json
-import os
 import re
 import shutil
-import subprocess
-import sys
+import signal
 from pathlib import Path
 
 import pytest
@@ -19,6 +17,8 @@ import pytest
 import resources
 from tests.drivers.hal.board_pins import PINS, without_board
 from tests.drivers.hal.halrun import opened_for_all
+from tests.drivers.hal.lathes import PATIENT, changed
+from tests.drivers.hal.live import LiveLathe, live
 from tests.drivers.hal.test_hal_files import STAND_IN
 from tests.drivers.hal.test_programs import PIECE
 
@@ -33,7 +33,8 @@ MOVED = {
         "st-z.out": f"{CARD}.stepgen.01.position-fb",
         "st-ramp.in": f"{FIELD}.spinout",
         "st-rps.out": f"{CARD}.encoder.00.velocity",
-        "st-turns.out": f"{CARD}.encoder.00.position",
+        "st-turns.position-fb": f"{CARD}.encoder.00.position",
+        "st-turns.index-enable": f"{CARD}.encoder.00.index-enable",
     },
     "mesa-7i97": {
         "st-x.in": f"{SERVO}.pwmgen.00.value",
@@ -42,7 +43,8 @@ MOVED = {
         "st-z.out": f"{SERVO}.encoder.01.position",
         "st-ramp.in": f"{SERVO}.pwmgen.04.value",
         "st-rps.out": f"{SERVO}.encoder.02.velocity",
-        "st-turns.out": f"{SERVO}.encoder.02.position",
+        "st-turns.position-fb": f"{SERVO}.encoder.02.position",
+        "st-turns.index-enable": f"{SERVO}.encoder.02.index-enable",
     },
     "ethercat": {
         "st-x.in1": "cia402.x.pos-cmd",
@@ -62,7 +64,6 @@ ON = {
     "mesa-7i97": [f"{SERVO}.inmux.00.input-{n}" for n in ("00", "01", "02")],
     "ethercat": [f"lcec.0.DI.din-{n}" for n in (0, 1, 2)],
 }
-LATE = ("servo thread stands", "too late to HAL", "has told nothing", "woke up", "within 30 s")
 SLIDES = {"mesa-7i76e": "integ", "mesa-7i97": "integ", "ethercat": "mux2"}
 
 
@@ -70,9 +71,11 @@ def moving(board: str) -> list[str]:
     """Lines of HAL: slides and spindle under the board's names."""
     if board == "parport":
         return [""]
-    turns = ",st-turns" if SLIDES[board] == "integ" else ""
-    lines = [f"loadrt {SLIDES[board]} names=st-x,st-z{turns}", "loadrt limit2 names=st-ramp"]
-    lines += ["loadrt scale names=st-rps"] if board != "ethercat" else ["loadrt integ names=st-turns"]
+    lines = [f"loadrt {SLIDES[board]} names=st-x,st-z", "loadrt limit2 names=st-ramp"]
+    if board == "ethercat":
+        lines += ["loadrt integ names=st-turns"]
+    else:
+        lines += ["loadrt scale names=st-rps", "loadrt sim_spindle names=st-turns"]
     return [*lines, *(f"alias pin {pin} {name}" for pin, name in MOVED[board].items())]
 
 
@@ -90,43 +93,50 @@ def called(board: str) -> list[str]:
             "setp st-rps.gain 0.0166666667",
             "net st-rpm st-ramp.out st-rps.in",
         ]
-    return [*lines, "addf st-turns servo-thread", "net spindle-rps st-turns.in", ""]
+    speed = "in" if board == "ethercat" else "velocity-cmd"
+    return [*lines, "addf st-turns servo-thread", f"net spindle-rps st-turns.{speed}", ""]
 
 
 @pytest.mark.long
+@pytest.mark.real_time
 @pytest.mark.usefixtures("halrun")
 @pytest.mark.parametrize("board", list(MOVED))
 def test_a_program_runs_to_its_end_through_the_shipped_hal_file(board: str, tmp_path: Path) -> None:
-    lathe = lathe_without_board(board, tmp_path, ON.get(board, []))
-    program = tmp_path / "PIECE.nc"
-    program.write_text(PIECE.replace("F100", "F40") if board == "parport" else PROGRAM, encoding="utf-8")
-    words = ["run", str(program), "--headless", "--anew", "--machine", lathe]
-    for before in (["machine", "accept", lathe], ["machine", "check", lathe], words):
-        said = turndesk(before, tmp_path)
-    assert "complete" in said
-    place = re.search(r"X radius (\S+)  Z (\S+) in", said)
-    assert place
-    assert [float(each) for each in place.groups()] == pytest.approx([0.6, 0.3], abs=1e-4)  # one step
+    program = PIECE.replace("F100", "F40") if board == "parport" else PROGRAM
+    with live(lathe_without_board(board, tmp_path, ON.get(board, []))) as lathe:
+        lathe.ready()
+        lathe.run(program)
+        assert lathe.shot.actual[:2] == pytest.approx([0.6 * 25.4, 0.3 * 25.4], abs=0.003)  # one step
 
 
 @pytest.mark.long
+@pytest.mark.real_time
 @pytest.mark.usefixtures("halrun")
-@pytest.mark.parametrize("pin", [f"{SERVO}.watchdog.has_bit", f"{SERVO}.inmux.00.input-10-not"])
-def test_a_card_that_has_let_go_and_a_drive_that_is_not_ready_are_faults(pin: str, tmp_path: Path) -> None:
-    lathe = lathe_without_board("mesa-7i97", tmp_path, [*ON["mesa-7i97"], pin])
-    (tmp_path / "PIECE.nc").write_text(PIECE, encoding="utf-8")
-    turndesk(["machine", "accept", lathe], tmp_path)
-    words = ["run", str(tmp_path / "PIECE.nc"), "--headless", "--anew", "--machine", lathe]
-    assert "the drive reports a fault" in turndesk(words, tmp_path, fails="the drive reports a fault")
+def test_a_card_that_has_let_go_and_a_drive_that_is_not_ready_are_faults(tmp_path: Path) -> None:
+    pins = f"{SERVO}.watchdog.has_bit", f"{SERVO}.inmux.00.input-10-not"
+    with live(lathe_without_board("mesa-7i97", tmp_path, ON["mesa-7i97"])) as lathe:
+        for pin in pins:
+            lathe.ready()
+            switch(lathe, tmp_path, [*ON["mesa-7i97"], pin])
+            lathe.until(lambda shot: bool(shot.alarms))
+            assert "the drive reports a fault" in lathe.events[-1].alarm.detail
+            switch(lathe, tmp_path, ON["mesa-7i97"])
 
 
-def lathe_without_board(board: str, folder: Path, on: list[str]) -> str:
+def switch(lathe: LiveLathe, folder: Path, on: list[str]) -> None:
+    """What is on at the card."""
+    file = folder / "pins.json"
+    file.write_text(json.dumps({**json.loads(file.read_text(encoding="utf-8")), "on": on}), encoding="utf-8")
+    lathe.kill("hm2_7i97", signal.SIGUSR1)
+
+
+def lathe_without_board(board: str, folder: Path, on: list[str]) -> Path:
     """The machine file beside its HAL file, both as shipped but for homing and the board."""
     opened_for_all(folder)
     name = f"gt75-{board}"
     machine = resources.machine_file(f"{name}.toml")
     machine = re.sub(r"absolute = false\nhome = .*", "absolute = true", machine)
-    (folder / f"{name}.toml").write_text(machine, encoding="utf-8")
+    (folder / f"{name}.toml").write_text(changed(machine, PATIENT), encoding="utf-8")
     moved = set(MOVED[board].values())
     pins = [pin for pin in PINS.get(board, tuple)() if pin.name not in moved]
     (folder / "pins.json").write_text(json.dumps({"pins": pins, "on": on}), encoding="utf-8")
@@ -137,23 +147,4 @@ def lathe_without_board(board: str, folder: Path, on: list[str]) -> str:
     text = resources.hal_file(f"{name}.hal").read_text(encoding="utf-8")
     whole = without_board(text, "\n".join((*loads, *moving(board)))) + "\n".join(called(board))
     (folder / f"{name}.hal").write_text(whole, encoding="utf-8")
-    return str(folder / f"{name}.toml")
-
-
-def turndesk(words: list[str], folder: Path, fails: str = "") -> str:
-    """What the command says. A computer without real-time priority may be late for HAL: it is asked again."""
-    environment = {**os.environ, "TURNDESK_HOME": str(folder / "home")}
-    for _ in range(3):
-        done = subprocess.run(
-            [sys.executable, "-m", "app.cli.main", *words],
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=False,
-            timeout=120,
-        )
-        said = done.stdout + done.stderr
-        if fails in said if fails else done.returncode == 0:
-            return said
-        assert any(late in said for late in LATE), said
-    pytest.skip(f"this computer is too busy for HAL without real-time priority: {said[-200:]}")
+    return folder / f"{name}.toml"

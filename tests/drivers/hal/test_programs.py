@@ -8,7 +8,7 @@ import pytest
 
 from app.compose.machine_answers import check_ports
 from app.compose.machine_files import load_machine, shipped_machine
-from tests.drivers.hal.lathes import lathe, run
+from tests.drivers.hal.lathes import PATIENT, lathe, run
 
 PIECE = """\
 G90G94F100
@@ -26,7 +26,7 @@ M30
 @pytest.mark.long
 @pytest.mark.usefixtures("halrun")
 def test_a_program_runs_to_its_end_where_it_was_proved_to(tmp_path: Path) -> None:
-    done = run(tmp_path, PIECE)
+    done = run(tmp_path, PIECE, lathe(tmp_path, PATIENT))
     assert "complete" in done.stdout, done.stdout + done.stderr
     assert "at X radius 0.60000  Z 0.30000 in" in done.stdout
     assert "0 underruns" in done.stdout

@@ -10,10 +10,10 @@ import pytest
 
 from core.records.record import FloatArray
 from core.records.record_file import open_record
-from tests.drivers.hal.lathes import WANDER, WANDER_HAL, lathe, run
+from tests.drivers.hal.lathes import PATIENT, WANDER, WANDER_HAL, lathe, run
 
 LEAD = 1.27  # mm
-THREAD = "G90G94F100\nT1\nM03S800\nX.25Z.2\nG33X.23Z-.5I.015K.05\nX.3\nZ.2\nM30\n"
+THREAD = "G90G94F100\nT1\nM03S800\nX.25Z.2\nG33X.24Z-.3I.01K.05\nX.3\nZ.2\nM30\n"
 _CUTS = 0.5  # mm behind the running up, and before the pull-out
 
 
@@ -30,7 +30,7 @@ def passes_of(z: FloatArray, turns: FloatArray) -> list[FloatArray]:
 @pytest.mark.long
 @pytest.mark.usefixtures("halrun")
 def test_every_pass_has_the_lead_of_the_measured_spindle_and_the_same_start(tmp_path: Path) -> None:
-    done = run(tmp_path, THREAD, str(lathe(tmp_path, WANDER, WANDER_HAL)))
+    done = run(tmp_path, THREAD, lathe(tmp_path, (*PATIENT, *WANDER), WANDER_HAL))
     assert "complete" in done.stdout, done.stdout + done.stderr
     record = open_record(tmp_path / "home" / "records" / "run.ring")
     speed = record.columns["spindle speed"]

@@ -1,0 +1,136 @@
+"""A bus whose control sleeps: fewer SYNCs, our heartbeat as ever, and all of it again once it wakes up."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+
+from tests.drivers.canopen.bench import CanBench, can_machine
+from tests.drivers.machines import ramp
+
+STEP = 0.005
+
+
+class Sleeping:
+    """What the feeder's loop does with the bus while its control sleeps."""
+
+    def __init__(self, bench: CanBench, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.bench = bench
+        self.syncs: list[float] = []
+        bus = bench.machine.bus
+        sent = bus.synchronise
+
+        def noted() -> None:
+            self.syncs.append(bench.clock.now())
+            sent()
+
+        monkeypatch.setattr(bus, "synchronise", noted)
+
+    def go_on(self, seconds: float, *, asleep: bool = True) -> None:
+        machine, clock = self.bench.machine, self.bench.clock
+        end = clock.now() + seconds
+        while clock.now() < end:
+            pause = machine.idle(asleep)
+            due = clock.now() + (pause or STEP)
+            while clock.now() < due - 1e-9:
+                clock.advance(min(STEP, due - clock.now()))
+                self.bench.peers.pump()
+            machine.tick()
+            self.bench.peers.pump()
+
+
+@pytest.fixture
+def sleeping(bench: CanBench, monkeypatch: pytest.MonkeyPatch) -> Sleeping:
+    bench.machine.axes.enable(True)
+    bench.run(0.3)
+    return Sleeping(bench, monkeypatch)
+
+
+def test_a_bus_at_rest_has_ten_syncs_a_second_and_nobody_misses_anything(sleeping: Sleeping) -> None:
+    sleeping.go_on(3.0)
+    gaps = [b - a for a, b in zip(sleeping.syncs, sleeping.syncs[1:], strict=False)]
+    assert 28 <= len(sleeping.syncs) <= 31
+    assert max(gaps) < 0.11
+    machine = sleeping.bench.machine
+    assert machine.axes.sample().fault == ""
+    assert machine.axes.sample().enabled
+    assert machine.unknown() == frozenset()
+    assert machine.io.snapshot().age < 0.2  # a station that is silent for longer would hold
+
+
+def test_a_sync_may_go_out_early_with_something_else(sleeping: Sleeping) -> None:
+    sleeping.go_on(1.0)
+    machine, clock = sleeping.bench.machine, sleeping.bench.clock
+    before = len(sleeping.syncs)
+    for _ in range(40):  # a round each 5 ms, as if something else were to do in each
+        clock.advance(STEP)
+        sleeping.bench.peers.pump()
+        machine.tick()
+        machine.idle(True)
+    gaps = [b - a for a, b in itertools.pairwise(sleeping.syncs[before:])]
+    assert gaps == pytest.approx([0.07] * len(gaps), abs=0.006)
+    assert gaps
+
+
+def test_the_drives_go_on_hearing_our_heartbeat(sleeping: Sleeping, monkeypatch: pytest.MonkeyPatch) -> None:
+    bus, clock = sleeping.bench.machine.bus, sleeping.bench.clock
+    beats: list[float] = []
+    send = bus.send_message
+
+    def noted(can_id: int, data: bytes, remote: bool = False) -> None:
+        if can_id == 0x700 + bus.config.host_id:
+            beats.append(clock.now())
+        send(can_id, data, remote)
+
+    monkeypatch.setattr(bus, "send_message", noted)
+    sleeping.go_on(2.0)
+    gaps = [b - a for a, b in itertools.pairwise(beats)]
+    assert max(gaps) <= bus.config.heartbeat + 1e-9
+    assert min(gaps) > 0.9 * bus.config.heartbeat
+
+
+def test_an_input_is_seen_with_the_next_sync_at_the_latest(sleeping: Sleeping) -> None:
+    sleeping.go_on(1.0)
+    sleeping.bench.peers.machine.press_estop()
+    sleeping.go_on(0.12)
+    assert sleeping.bench.machine.io.snapshot().estop
+
+
+def test_who_answers_every_second_sync_is_seen_as_soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = CanBench(can_machine(("sync_ms = 10 ", "sync_ms = 5 ")))
+    try:
+        assert made.machine.config.bus.seldom == 2
+        made.run(0.5)
+        sleeping = Sleeping(made, monkeypatch)
+        for pressed in (True, False) * 4:  # at any time between two SYNCs
+            sleeping.go_on(0.53)
+            made.peers.machine.set_input("TB2-5", pressed)
+            sleeping.go_on(0.12)
+            assert made.machine.io.inputs()["TB2-5"] is pressed
+    finally:
+        made.close()
+
+
+def test_awake_it_has_every_sync_again_within_a_round(sleeping: Sleeping) -> None:
+    sleeping.go_on(1.0)
+    del sleeping.syncs[:]
+    woken = sleeping.bench.clock.now()
+    sleeping.go_on(1.0, asleep=False)
+    assert sleeping.syncs[0] - woken < 3 * STEP
+    assert len(sleeping.syncs) == pytest.approx(1.0 / sleeping.bench.machine.config.bus.sync, abs=2)
+
+
+def test_a_bus_that_moves_or_that_is_not_heard_needs_every_round(sleeping: Sleeping) -> None:
+    machine = sleeping.bench.machine
+    sleeping.go_on(1.0)
+    axes = machine.axes
+    begin = sleeping.bench.clock.now() + axes.commit + 0.05
+    axes.splice(ramp(begin, axes.sample().demand, 30.0, 0.5))  # type: ignore[arg-type]
+    sleeping.bench.run(0.4)
+    assert axes.sample().moving
+    assert machine.idle(True) == 0.0
+    sleeping.bench.run(2.0)
+    assert machine.idle(True) > 0.0
+    machine.bus.lost("the interface has failed")
+    assert machine.idle(True) == 0.0

@@ -1,0 +1,48 @@
+"""A bench lathe with a collet closed by hand: told in the machine file, no trouble, and no M12."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.executor.snapshot import State
+from core.machine.machine_model import Machine
+from core.table_schema import MachineFileError
+from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
+
+CLAMPED = (
+    'collet  = { at = "out.0", safe = "keep" }    # on: clamped; closed by hand: collet = { at = "none" }'
+)
+BY_HAND = 'collet  = { at = "none" }'
+PART = "G90G94F300\nX.1Z.1\n{}G01X.05F60\nM30\n"
+
+
+def by_hand(*changes: tuple[str, str]) -> Machine:
+    """The shipped machine without an output for its collet."""
+    return grbl_machine((CLAMPED, BY_HAND), *changes)
+
+
+def test_an_output_that_is_said_to_be_absent_is_no_trouble() -> None:
+    bench = GrblBench(by_hand(), quirky())
+    assert not any("collet" in warning for warning in bench.machine.ports.warnings)
+    assert "collet" not in bench.machine.ports.io.outputs()
+    assert bench.shot.absent == {"collet"}
+
+
+def test_a_program_runs_and_one_that_asks_for_it_is_refused_before_the_start() -> None:
+    bench = GrblBench(by_hand(), quirky())
+    bench.start(PART.format(""))
+    bench.until(State.IDLE)
+    assert not bench.alarms()
+    bench.start(PART.format("M13\nM12\n"))
+    assert bench.state is State.IDLE
+    assert "line 3: this machine has no output collet" in bench.shot.start_refused
+
+
+def test_one_that_is_only_left_out_is_still_a_mistake_of_the_file() -> None:
+    with pytest.raises(MachineFileError, match=r'io.out.collet: missing.*at = "none"'):
+        grbl_machine((CLAMPED, ""))
+
+
+def test_an_m_code_needs_an_output_that_is_there() -> None:
+    with pytest.raises(MachineFileError, match=r"m_codes.25.output"):
+        by_hand(('catcher = { at = "out.1", safe = false }', 'catcher = { at = "none" }'))

@@ -1,0 +1,144 @@
+"""The change-over of HAL's two streams by hand: a servo thread that is past it when it is asked for."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+
+import pytest
+
+from drivers.hal.bridge.row_streams import Row, RowStreams
+
+PERIOD = 0.001  # s
+SPEED = 20.0  # mm/s
+AHEAD = 40  # rows
+
+
+class Rows:
+    """``hal.stream`` without HAL."""
+
+    def __init__(self) -> None:
+        self.rows: deque[Row] = deque()
+
+    @property
+    def depth(self) -> int:
+        return len(self.rows)
+
+    @property
+    def writable(self) -> bool:
+        return True
+
+    @property
+    def readable(self) -> bool:
+        return bool(self.rows)
+
+    def write(self, row: Row) -> None:
+        self.rows.append(row)
+
+    def read(self) -> Row:
+        return self.rows.popleft()
+
+
+class Thread:
+    """Row by row from the stream that plays; both go over in the period of the row that is asked for."""
+
+    def __init__(self) -> None:
+        self.streams = Rows(), Rows()
+        self.pins: dict[str, float] = {}
+        self.rows = RowStreams(self.streams, self.pins)
+        self.plays = 0
+        self.played: list[Row] = []
+        for n in range(1, AHEAD + 1):
+            self.rows.write(n * PERIOD, goes_on(n * PERIOD))
+
+    def run(self, periods: int) -> None:
+        for _ in range(periods):
+            row = self.streams[self.plays].read()
+            self.played.append(row)
+            if row[0] == self.pins["switch-at"]:
+                self.plays = int(self.pins["play-b"])
+
+    def seen(self) -> bool:
+        """The bridge looks again."""
+        self.rows.seen(int(self.played[-1][0]))
+        return self.rows.settle(bool(self.plays))
+
+    def late(self, what: Callable[[float], Row], at: float, past: int) -> None:
+        """Asked for, but the thread was past it by so many rows before it has heard of it."""
+        assert self.rows.recall(at, what)
+        asked, self.pins["switch-at"] = self.pins["switch-at"], -1.0
+        self.run(int(asked) - int(self.played[-1][0]) + past)
+        self.pins["switch-at"] = asked
+
+
+def goes_on(t: float) -> Row:
+    return SPEED * t, 0.0
+
+
+def stops_at(stop: float) -> Callable[[float], Row]:
+    return lambda t: goes_on(min(t, stop))
+
+
+@pytest.fixture
+def thread() -> Thread:
+    made = Thread()
+    made.run(5)
+    assert made.seen()
+    return made
+
+
+def test_a_change_that_is_heard_of_too_late_is_made_where_both_still_are_the_same(thread: Thread) -> None:
+    new = stops_at(0.030)
+    thread.late(new, 0.010, past=6)
+    assert thread.seen()
+    thread.run(AHEAD - len(thread.played))
+    assert thread.seen()
+    assert thread.played == [(float(n), *new(n * PERIOD)) for n in range(1, AHEAD + 1)]
+
+
+def test_it_may_be_too_late_again_and_is_asked_for_again(thread: Thread) -> None:
+    new = stops_at(0.035)
+    thread.late(new, 0.010, past=3)
+    assert thread.seen()
+    asked, thread.pins["switch-at"] = thread.pins["switch-at"], -1.0
+    thread.run(int(asked) - int(thread.played[-1][0]) + 3)
+    thread.pins["switch-at"] = asked
+    assert thread.seen()
+    thread.run(AHEAD - len(thread.played))
+    assert thread.played == [(float(n), *new(n * PERIOD)) for n in range(1, AHEAD + 1)]
+
+
+def test_a_hold_that_is_heard_of_behind_its_first_row_is_not(thread: Thread) -> None:
+    """HAL has played on where it was to brake: that is told, and who is told brakes from there."""
+    thread.late(stops_at(0.012), 0.010, past=6)
+    assert not thread.seen()
+
+
+def test_rows_that_the_old_stream_has_not_are_not_waited_for(thread: Thread) -> None:
+    new = stops_at(1.0)
+    thread.late(new, 0.034, past=4)  # five rows are left, and the other stream would be met behind them
+    thread.rows.write(0.041, new(0.041))
+    assert not thread.seen()
+
+
+def test_the_way_of_a_cam_is_the_same_until_it_is_said_to_part_whatever_its_rows_are(thread: Thread) -> None:
+    def tangent(t: float) -> Row:
+        return 0.0, SPEED * t
+
+    assert thread.rows.recall(0.010, tangent, 0.025)
+    asked, thread.pins["switch-at"] = thread.pins["switch-at"], -1.0
+    thread.run(int(asked) - 5 + 4)
+    thread.pins["switch-at"] = asked
+    assert thread.seen()
+    thread.run(12)
+    assert thread.seen()
+    assert thread.played[-1] == (float(len(thread.played)), *tangent(len(thread.played) * PERIOD))
+
+
+def test_setpoints_that_hal_plays_already_are_not_too_late(thread: Thread) -> None:
+    thread.run(10)
+    thread.seen()
+    assert thread.rows.first_from(0.012) is None
+    assert thread.rows.plays_anyway(0.012, stops_at(0.030))
+    assert not thread.rows.plays_anyway(0.012, stops_at(0.014))
+    assert not thread.rows.plays_anyway(-1.0, stops_at(0.030))  # of that nobody knows any more

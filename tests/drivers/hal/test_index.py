@@ -1,0 +1,54 @@
+"""The spindle's index on HAL, on the step clock: no angle is told before it, that it misses is told."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import pytest
+
+from tests.drivers.contract.hal import Hal
+
+INDEX = 0.3  # turns of the simulated spindle at its index
+
+
+@pytest.fixture
+def rig() -> Iterator[Hal]:
+    made = Hal()
+    made.ports.axes.enable(True)
+    yield made
+    made.close()
+
+
+def angle(rig: Hal) -> tuple[float, float]:
+    found = rig.ports.spindle.angle()
+    assert found is not None
+    return found
+
+
+def test_the_angle_is_an_old_one_until_the_index_has_come_by_and_whole_there(rig: Hal) -> None:
+    first = angle(rig)
+    rig.ports.spindle.run(300.0)
+    rig.until(lambda: rig.far.plant.spindle.counted > 0.25)
+    assert angle(rig) == first
+    rig.until(lambda: angle(rig) != first, limit=2.0)
+    rig.run(0.5)
+    t, turns = angle(rig)
+    behind = 5.0 * (rig.clock.now() - t)  # turns since that sample
+    true = rig.far.plant.spindle.counted - behind - INDEX
+    assert math.remainder(turns - true, 1.0) == pytest.approx(0.0, abs=0.01)
+
+
+def test_a_spindle_whose_index_does_not_come_by_is_told_and_reset_asks_again(rig: Hal) -> None:
+    rig.far.has_index = False
+    rig.ports.spindle.run(300.0)
+    rig.run(0.5)
+    assert rig.ports.spindle.fault() == ""
+    rig.until(lambda: bool(rig.ports.spindle.fault()), limit=2.0)
+    assert "phase Z of its encoder" in rig.ports.spindle.fault()
+    rig.far.has_index = True
+    rig.ports.axes.clear_fault()
+    assert rig.ports.spindle.fault() == ""
+    rig.ports.spindle.run(300.0)
+    old = angle(rig)
+    rig.until(lambda: angle(rig) != old, limit=2.0)

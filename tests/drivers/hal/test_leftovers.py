@@ -1,0 +1,56 @@
+"""Folders of sessions of HAL whose control was killed: removed once nothing runs there any more."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from drivers.hal.hal_leftovers import clear_away, new_folder
+
+
+@pytest.fixture(autouse=True)
+def folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+
+
+def nobody_waits() -> bool:
+    raise AssertionError("there was nothing to wait for")
+
+
+def test_a_folder_in_use_stays_and_a_deserted_one_goes() -> None:
+    used, lock = new_folder()
+    deserted, its_lock = new_folder()
+    (deserted / "session.hal").write_text("")
+    os.close(its_lock)
+    clear_away(nobody_waits)
+    assert used.exists()
+    assert not deserted.exists()
+    os.close(lock)
+
+
+def test_what_still_runs_is_waited_for_and_never_removed_under_it() -> None:
+    folder, lock = new_folder()
+    os.close(lock)
+    with subprocess.Popen(["sh", "-c", "read x; exit", str(folder)], stdin=subprocess.PIPE) as left:
+        clear_away(lambda: False)
+        assert folder.exists()
+
+        def ends() -> bool:
+            left.communicate(b"\n")
+            return True
+
+        clear_away(ends)
+    assert not folder.exists()
+
+
+def test_what_is_none_of_ours_stays(tmp_path: Path) -> None:
+    other, link = tmp_path / "turndesk-hal-other", tmp_path / "turndesk-hal-link"
+    other.mkdir()  # without a lock: somebody else's, or just being made
+    link.symlink_to(other)
+    clear_away(nobody_waits)
+    assert other.exists()
+    assert link.is_symlink()

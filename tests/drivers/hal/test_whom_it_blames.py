@@ -1,0 +1,107 @@
+"""A computer that stood still as a whole has heard nothing meanwhile: nobody is silent for that."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Iterator, Sequence
+from types import SimpleNamespace
+
+import pytest
+
+from core.ports import DriverError
+from drivers.clocks import StepClock
+from drivers.feeder import feeder_links
+from drivers.feeder.feeder_links import SocketLink
+from drivers.feeder.feeder_messages import NOTHING, Message
+from drivers.hal.bridge.hal_bridge import BridgeConfig
+from drivers.hal.bridge.packets import Head
+from drivers.hal.hal_link import HalLink
+
+ROUND = 0.005  # s
+
+
+class Bridge:
+    """Tells what it is asked to, and takes everything."""
+
+    warnings: tuple[str, ...] = ()
+    down = True
+    silent = False
+
+    def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:
+        if not self.silent:
+            yield {"n": 0}, ()
+
+    def send(self, data: bytes) -> None:
+        pass
+
+    def hang_up(self) -> None:
+        pass
+
+    def close(self) -> None:
+        pass
+
+
+@pytest.fixture
+def bridge() -> Bridge:
+    return Bridge()
+
+
+@pytest.fixture
+def clock() -> StepClock:
+    return StepClock()
+
+
+@pytest.fixture
+def link(bridge: Bridge, clock: StepClock) -> HalLink:
+    made = HalLink(lambda: bridge, clock, BridgeConfig((), 0.001, 0.1))
+    made.connect()
+    return made
+
+
+def rounds(link: HalLink, clock: StepClock, seconds: float) -> None:
+    for _ in range(round(seconds / ROUND)):
+        clock.advance(ROUND)
+        link.pump()
+
+
+def test_a_bridge_that_is_silent_alone_is_told_of(link: HalLink, bridge: Bridge, clock: StepClock) -> None:
+    bridge.silent = True
+    rounds(link, clock, 0.14)
+    assert not link.trouble
+    rounds(link, clock, 0.03)
+    assert "has told nothing for 0.1" in link.trouble
+
+
+def test_one_that_stood_still_with_everybody_else_is_not(
+    link: HalLink, bridge: Bridge, clock: StepClock
+) -> None:
+    bridge.silent = True
+    for _ in range(2):
+        clock.advance(0.4)
+        link.pump()
+    assert not link.trouble
+    rounds(link, clock, 0.1)
+    assert link.trouble  # it has had its time
+
+
+@pytest.fixture
+def looks(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """How long each look for an answer takes, s: none comes."""
+    took, now = [0.0], [0.0]
+
+    def nothing(files: object, _w: object, _x: object, _left: float) -> tuple[list[object], ...]:
+        now[0] += took.pop(0) if len(took) > 1 else took[0]
+        return [], [], []
+
+    monkeypatch.setattr(feeder_links, "select", SimpleNamespace(select=nothing))
+    monkeypatch.setattr(feeder_links, "time", SimpleNamespace(monotonic=lambda: now[0]))
+    return took
+
+
+def test_a_feeder_is_silent_after_so_many_looks_not_after_one_long_one(looks: list[float]) -> None:
+    ours, theirs = socket.socketpair()
+    with ours, theirs:
+        looks[:] = [0.6, 0.6, 0.6, *[0.05] * 7, 1e9]
+        with pytest.raises(DriverError, match="has not answered"):
+            SocketLink(ours).ask(Message({"do": "look"}, NOTHING))
+        assert looks == [1e9]  # three pauses and seven looks are half a second of listening
