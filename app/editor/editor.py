@@ -31,7 +31,7 @@ from app.editor.document import (
 from app.editor.drafts import Drafts
 from app.editor.live_proof import LiveProof
 from app.editor.versions import Archive
-from core.executor.snapshot import Snapshot
+from core.executor.snapshot import Snapshot, State
 from core.ports import Unknown
 
 
@@ -167,6 +167,10 @@ class Editor:
         if self.document is not None:
             self.drafts.look(self.document, text)
 
+    def preview(self, text: str) -> None:
+        """Have proved what a form would make of the text; nothing of it is kept."""
+        self.proof.submit(self.name, with_last_line_ended(text), self.block_delete)
+
     def is_dirty(self, text: str) -> bool:
         """Whether leaving now would have something to save."""
         document = self.document
@@ -293,13 +297,16 @@ class Editor:
 # --- coming in and going, beside the machine --------------------------------------------------------------
 # The control cancels the spindle-on command when its editor is entered, so that nobody writes beside a
 # turning chuck. No command of the executor does just that (Reset gives the program up as well), so entering
-# is refused until the spindle stands.
+# is refused until the spindle stands. While a cycle runs the machine has its program as it was loaded:
+# another one may be written and proved meanwhile, and Pause, Scroll Lock and Esc stop as everywhere.
 
 
 def refusal(snapshot: Snapshot) -> str:
     """Why not, in the words of the prompt line; empty when the editor may be entered."""
+    if snapshot.state in {State.JOG, State.HOME}:
+        return messages.SLIDES
     if snapshot.state in UNDER_WAY:
-        return messages.UNDER_WAY
+        return ""
     if snapshot.rpm_command:
         return messages.SPINDLE_ON
     if Unknown.SPINDLE in snapshot.unknown:
@@ -338,7 +345,7 @@ def _take_up(desk: Desk, left: LeftProgram) -> None:
         stays = messages.SAVED_ONLY if left.changed else messages.LOOKED
         if now.path is None:
             stays = messages.SAVED_NONE
-        desk.say(tr(stays).format(name=path.name, other=now.name))
+        desk.done(tr(stays).format(name=path.name, other=now.name))
     elif path == now.path and not left.changed:
         return
     elif desk.snapshot().state in UNDER_WAY:

@@ -5,7 +5,7 @@ Everything is done by keys alone, and every function key is a target for a finge
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from enum import StrEnum
 from functools import partial
 from typing import TYPE_CHECKING
@@ -15,11 +15,13 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.arithmetic import line_of
+from app.desk.desk import Desk
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.prompt_line import MOVING
 from app.desk.sheet import Key
 from app.editor import editor_messages as messages
+from app.editor.code_help_view import CodeList, CodeStrip
 from app.editor.edited_path_view import EditedPath
 from app.editor.editor import Editor, Stage, enter
 from app.editor.findings_view import FindingList
@@ -33,13 +35,17 @@ from app.path.part_player import player_of
 from app.screen import page_table
 from app.screen.letter_keys import PROGRAMS, LetterPad, strike
 from app.screen.page_base import Host, KeyActions, Page
+from app.shapes.shapes_model import FORMS, Shapes, written_in
+from app.shapes.shapes_view import ShapesView
 from app.working_plane.plane_instant import at_line, plane_words
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
+from core.shapes.shape_table import HELPERS
 
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
     from core.language.diagnostics import Diagnostic
+    from core.shapes.shape import Shape
 
 Keys = dict[int, Key]
 Actions = dict[int, Callable[[], None]]
@@ -54,11 +60,18 @@ class Mode(StrEnum):
     NAME = "name"
     HISTORY = "history"
     OFFER = "offer"
+    CODES = "codes"  # the list of codes is looked through
     LOOK = "look"  # at the path: the keyboard measures in it
+    SHAPES = "shapes"  # a form writes the lines
 
 
 ASKING = frozenset({Mode.FIND, Mode.GO_TO, Mode.NAME})
-PROMPTS = {Mode.FIND: messages.FINDING, Mode.GO_TO: messages.GOING, Mode.HISTORY: messages.CHOOSING}
+PROMPTS = {
+    Mode.FIND: messages.FINDING,
+    Mode.GO_TO: messages.GOING,
+    Mode.HISTORY: messages.CHOOSING,
+    Mode.CODES: messages.CODING,
+}
 """What the prompt line says while nothing else is to be said."""
 
 
@@ -77,17 +90,23 @@ class EditorPage(Page):
         self._target = page_table.AUTOMATIC  # where leaving leads to
         self._moving = False
         self._with_letters = False
-        self.head = HeadLine(look, self.turn_letters, self)
+        self.head = HeadLine(
+            look, self.turn_letters, self.open_shapes, partial(self.open_shapes, HELPERS), self
+        )
         self.letters = LetterPad(look, self._strike, self, PROGRAMS)
         self.field = TextField(look, self)
         self.path = EditedPath(look, self.go_to, self, player_of(host.desk))
         self.space = WorkingPlaneView(look, self)  # takes the path's place where the program is for a mill
         self.findings = FindingList(look, self._go_to_finding, self)
+        self.code = CodeStrip(look, self.look_up, self)
+        self.codes = CodeList(look, self.field, editor.proof, self.back, self)
         self.history = VersionHistory(editor.archive, editor.worker)
         self.versions = VersionList(look, self.history, self)
         self.ask = AskLine(look, self, self)
         self.finder = Finder(self.field, self.ask)
         self.typed_text = TypedText(self.field, self.editor)
+        self.shapes = ShapesView(look, _shapes_of(host.desk), self.touched, self)
+        self._shown_shapes = (0, 0)  # texts of the shapes that were proved, and put into the field
 
     # --- the frame's calls ---------------------------------------------------------------------------
 
@@ -117,6 +136,8 @@ class EditorPage(Page):
     def key_actions(self) -> KeyActions:
         """The function keys of the moment."""
         found = {f"F{number}": key.action for number, key in self._keys().items()}
+        found["Shapes"] = self.open_shapes
+        found["Calculators"] = partial(self.open_shapes, HELPERS)
         if self.mode is Mode.LOOK:  # keys of the Automatic page that mean the same here
             path = self.path
             found |= {"Zoom in": partial(path.zoom, 1), "Zoom out": partial(path.zoom, -1)}
@@ -130,7 +151,8 @@ class EditorPage(Page):
         elif self.editor.stage is Stage.OFFERED:
             self.editor.abort()
         elif self.mode is not Mode.TEXT:
-            self.back()
+            if self.mode is not Mode.SHAPES or not self.shapes.model.escape():
+                self.back()
         elif self.editor.notice:
             self.editor.clear()
         elif self.desk.notice:
@@ -152,10 +174,9 @@ class EditorPage(Page):
             return self.editor.notice
         if self._moving:
             return messages.RUNS_OLD
-        if self.mode is Mode.LOOK:
-            return measuring_words()
-        if self.mode in PROMPTS:
-            return PROMPTS[self.mode]
+        own = {Mode.LOOK: measuring_words, Mode.SHAPES: self.shapes.model.prompt}.get(self.mode)
+        if own is not None or self.mode in PROMPTS:
+            return own() if own is not None else PROMPTS[self.mode]
         line = self.field.line
         found = self.field.finding_at(line)
         if found is not None:
@@ -172,10 +193,13 @@ class EditorPage(Page):
             return
         self.typed_text.refresh()
         self._follow_stage()
+        if self.mode is Mode.SHAPES:
+            self._follow_shapes()
         self.show_text()
         if self.mode is Mode.LOOK and self.path.ruler is None:
             self.back()  # measuring has ended: the keyboard is the text's again
         self.versions.refresh()
+        self.codes.refresh()
 
     def _follow_stage(self) -> None:
         """The questions that the editor asks of itself."""
@@ -186,19 +210,27 @@ class EditorPage(Page):
             self.enter(Mode.OFFER)
         elif stage is Stage.OPEN and self.mode in {Mode.NAME, Mode.OFFER}:
             self.enter(Mode.TEXT)
+        elif stage is Stage.OPEN and self.mode is Mode.TEXT and self.shapes.model.wanted is not None:
+            self._open_drawing()
 
     # --- the function keys ---------------------------------------------------------------------------
 
     def _keys(self) -> Keys:
         """Those that mean something now."""
-        menu, back = Key("MENU", partial(self.leave_to, page_table.MENU)), Key("BACK", self.back)
+        word = "SAV+MENU" if self.mode is Mode.TEXT and self.typed_text.dirty else "MENU"
+        menu, back = Key(word, partial(self.leave_to, page_table.MENU)), Key("BACK", self.back)
         undo = {8: Key("UNDO", self.field.undo), 9: Key("REDO", self.field.redo)}
-        if self.mode is Mode.FIND:
-            return {1: menu, **self.finder.keys(), **undo, 10: back}
-        if self.mode is Mode.HISTORY:
-            return {1: menu, 2: Key("RESTORE", self.restore), **self.versions.keys(), 10: back}
-        if self.mode is Mode.LOOK:
-            return {1: menu, 3: Key("TO LINE", self._to_line), **self.path.keys(), 10: back}
+        of_mode: dict[Mode, Callable[[], Keys]] = {
+            Mode.FIND: lambda: self.finder.keys() | undo,
+            Mode.HISTORY: lambda: {2: Key("RESTORE", self.restore), **self.versions.keys()},
+            Mode.CODES: self.codes.keys,
+            Mode.SHAPES: self.shapes.model.keys,
+            Mode.LOOK: lambda: {3: Key("TO LINE", self._to_line), **self.path.keys()},
+        }
+        if self.mode is Mode.SHAPES and not self.shapes.model.listing:
+            return {**of_mode[self.mode](), 10: back}  # what a form holds is written or dropped first
+        if self.mode in of_mode:
+            return {1: menu, **of_mode[self.mode](), 10: back}
         if self.mode is Mode.OFFER:
             return {1: Key("CREATE", self.editor.create), 10: Key("ABORT", self.editor.abort)}
         if self.mode is Mode.TEXT:
@@ -223,7 +255,11 @@ class EditorPage(Page):
         if mode is Mode.HISTORY:
             self.versions.raise_()
             self.history.look(self.editor.name, self.typed_text.now())
-        if mode in {Mode.HISTORY, Mode.OFFER}:
+        if mode is Mode.CODES:
+            self.codes.raise_()
+        if mode is Mode.SHAPES:
+            self.shapes.raise_()
+        if mode in {Mode.HISTORY, Mode.OFFER, Mode.CODES, Mode.SHAPES}:
             self.setFocus()
         elif mode is Mode.TEXT:
             self.field.setFocus()
@@ -231,6 +267,8 @@ class EditorPage(Page):
     def back(self) -> None:
         """From what is asked or looked at back to the text."""
         self.editor.keep_no_name()
+        if self.mode is Mode.SHAPES:
+            self.typed_text.stale = True  # what is proved now may be what a form would make of it
         self.enter(Mode.TEXT)
 
     def go_to(self, line: int, column: int = 0) -> None:
@@ -277,12 +315,69 @@ class EditorPage(Page):
             self.editor.restore(self.history.text, self.history.number)
             self.enter(Mode.TEXT)
 
+    def look_up(self) -> None:
+        """What is being typed is completed, or the code at the cursor looked up."""
+        if self.editor.stage is not Stage.OPEN or self.mode not in {Mode.TEXT, Mode.CODES}:
+            return
+        if self.codes.ask():
+            self.enter(Mode.CODES)
+        else:
+            self.editor.notice = messages.NO_CODES
+
     def look_at_path(self) -> None:
         """The keyboard to the path, if there is any: to measure, and to find the line of what is drawn."""
         if self.path.drawn:
             self.enter(Mode.LOOK)
         else:
             self.editor.notice = messages.NO_PATH
+
+    def open_shapes(self, table: Mapping[str, Shape] = FORMS) -> None:
+        """The form of the shape at the cursor, or the list of shapes; from them back to the text.
+
+        ``table``: shapes, or calculators and templates.
+        """
+        if self.mode is Mode.SHAPES:
+            self.back()
+        elif self.editor.stage is Stage.OPEN and self.mode is Mode.TEXT:
+            model = self.shapes.model
+            self.editor.notice = model.open(self.editor.name, self.typed_text.now(), self.field.line, table)
+            if not self.editor.notice:
+                self.desk.clear()
+                self._shown_shapes = (model.number, model.written)
+                self.enter(Mode.SHAPES)
+
+    def _open_drawing(self) -> None:
+        """The form of the drawing that this program is to be made of."""
+        model = self.shapes.model
+        wanted, model.wanted = model.wanted, None
+        self.open_shapes()
+        if self.mode is Mode.SHAPES:
+            model.wanted = wanted
+            model.open_wanted()
+
+    def _follow_shapes(self) -> None:
+        """What the form makes of the text is proved; what it has written comes into the field."""
+        model, (proved, written) = self.shapes.model, self._shown_shapes
+        model.look()
+        if model.written != written:
+            self.field.put_text(model.text, afresh=False)
+            self.field.go_to(model.at)
+        if model.number != proved and not self.typed_text.stale:
+            self.editor.preview(model.text)
+        self._shown_shapes = (model.number, model.written)
+        self.shapes.refresh()
+
+    def typed(self, key: str) -> bool:
+        """A key for the form of a shape, or for their list."""
+        return self.mode is Mode.SHAPES and self.shapes.model.typed(key)
+
+    def takes(self, key: str) -> bool:
+        """Whether a character is text of the form."""
+        return self.mode is Mode.SHAPES and self.shapes.model.takes(key)
+
+    def has_field(self) -> bool:
+        """The form has the keyboard."""
+        return self.mode is Mode.SHAPES
 
     def _to_line(self) -> None:
         """The cursor to the line whose path the cross stands on."""
@@ -320,12 +415,17 @@ class EditorPage(Page):
     def show_text(self) -> None:
         """Heading, findings and picture of what is in the field now."""
         editor = self.editor
-        line, column = self.field.line, self.field.textCursor().positionInBlock() + 1
+        line, column = self.field.line, self.field.column
+        if self.mode is Mode.SHAPES:
+            line = self.shapes.model.line
         place = f"LINE {line} OF {self.field.blockCount()}  ·  {column}"
         self.head.heading = Heading(editor.name, self.typed_text.mark, place)
+        self.head.with_shapes = self.codes.pictured = written_in(editor.name)
         findings = editor.proof.now
         self.field.show_findings(findings.by_line)
         self.findings.show_findings(findings, line)
+        if self.mode is Mode.TEXT:
+            self.code.entry = self.codes.follow()
         self._show_path(findings.picture, line)
 
     def _show_path(self, picture: Picture | None, line: int) -> None:
@@ -345,8 +445,12 @@ class EditorPage(Page):
         """The parts that this mode has."""
         self.path.measure(on=self.mode is Mode.LOOK)
         self.versions.setVisible(self.mode is Mode.HISTORY)
-        self.field.setVisible(self.mode is not Mode.OFFER)  # what was edited last is not what is offered
-        for part in (self.path, self.findings):
+        self.codes.setVisible(self.mode is Mode.CODES)
+        self.shapes.setVisible(self.mode is Mode.SHAPES)
+        self.field.setVisible(
+            self.mode not in {Mode.OFFER, Mode.SHAPES}
+        )  # what was edited last is not what is offered
+        for part in (self.path, self.findings, self.code):
             part.setVisible(self.mode is not Mode.OFFER and not self.lettered)
         self.letters.setVisible(self.lettered)
         self.letters.write_into(self.ask.first if self.mode in ASKING else self.field)
@@ -382,6 +486,9 @@ class EditorPage(Page):
             (self.path, at.path),
             (self.space, at.path),
             (self.findings, at.findings),
+            (self.code, at.code),
+            (self.codes, at.codes),
+            (self.shapes, at.text),
             (self.versions, at.body),
             (self.ask, at.ask),
             (self.letters, at.keys),
@@ -427,6 +534,8 @@ class EditorPage(Page):
             asking: Actions = dict.fromkeys((Qt.Key.Key_Return, Qt.Key.Key_Enter), enter)
             asking |= dict.fromkeys((Qt.Key.Key_Tab, Qt.Key.Key_Backtab), tab)
             return asking.get(key)
+        if self.mode is Mode.CODES:
+            return self.codes.arrows().get(key)
         if self.mode is Mode.HISTORY:
             restore: Actions = dict.fromkeys((Qt.Key.Key_Return, Qt.Key.Key_Enter), self.restore)
             return (self.versions.arrows() | restore).get(key)
@@ -438,6 +547,7 @@ class EditorPage(Page):
         if self.mode is not Mode.HISTORY:
             chords = {
                 Qt.Key.Key_S: self.save,
+                Qt.Key.Key_Space: self.look_up,
                 Qt.Key.Key_F: find,
                 Qt.Key.Key_H: find,
                 Qt.Key.Key_G: partial(self.enter, Mode.GO_TO),
@@ -455,3 +565,12 @@ class EditorPage(Page):
             self.desk.say(self.editor.notice)
             self.editor.clear()
         self.host.go(self._target)
+
+
+def _shapes_of(desk: Desk) -> Shapes:
+    """Those of the desk; one that was put together without gets some, which know no machine."""
+    found = desk.attached(Shapes)
+    if found is None:
+        found = Shapes()
+        desk.attach(found)
+    return found

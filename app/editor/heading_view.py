@@ -14,7 +14,7 @@ from app.screen.look import CENTRE, RIGHT, Look, Painter
 from app.screen.panel import Panel, Shown
 from app.screen.window_layout import Rect
 
-KEYS = 14.0  # units: width of the place that shows the keyboard
+KEYS = 14.0  # units: width of the place that shows the keyboard, and of that which opens the shapes
 
 
 class Heading(NamedTuple):
@@ -30,11 +30,19 @@ class HeadLine(Panel):
 
     ground = "panel"
     heading = Shown(Heading())
+    with_shapes = Shown(True)  # whether shapes can be written into this program
 
-    def __init__(self, look: Look, keys: Callable[[], None], parent: QWidget) -> None:
-        """``keys`` shows the drawn keyboard, or takes it away."""
+    def __init__(
+        self,
+        look: Look,
+        keys: Callable[[], None],
+        shapes: Callable[[], None],
+        sums: Callable[[], None],
+        parent: QWidget,
+    ) -> None:
+        """``keys`` shows the drawn keyboard, or takes it away; ``shapes`` and ``sums`` open their lists."""
         super().__init__(look, parent)
-        self._keys = keys
+        self._keys, self._shapes, self._sums = keys, shapes, sums
 
     def draw(self, painter: Painter) -> None:
         look, u, high, now = self.look, self.look.u, self.height(), self.heading
@@ -45,10 +53,15 @@ class HeadLine(Panel):
             box = QRectF(left, high / 2 - 1.4 * u, wide, 2.8 * u)
             painter.fill(box, "mark")
             painter.write(box, now.mark, 1.7, "on_mark", at=CENTRE, fit=False)
-        place = QRectF(self.width() - (46 + KEYS) * u, 0, 44.6 * u, high)
+        place = QRectF(self.width() - (40 + 3 * KEYS) * u, 0, 38.0 * u, high)
         painter.write(place, now.place, 1.9, "soft", at=RIGHT, bold=False, fit=False)
         key = QRectF(self.width() - KEYS * u, 0, KEYS * u, high)
         self.key(painter, key, tr("KEYBOARD"), 1.9, self._keys, ink="accent", margin=1.0)
+        if self.with_shapes:
+            key.translate(-(KEYS + 0.6) * u, 0)
+            self.key(painter, key, tr("SHAPES ⇧F3"), 1.9, self._shapes, ink="accent", margin=1.0)
+        key.translate(-(KEYS + 0.6) * u, 0)
+        self.key(painter, key, tr("SUMS ⇧F4"), 1.9, self._sums, ink="accent", margin=1.0)
 
 
 # --- where everything stands on the page, in the unit of the Automatic page --------------------------------
@@ -56,12 +69,14 @@ class HeadLine(Panel):
 
 KEYBOARD = 29.0  # units: height of the drawn keyboard, four rows of a finger's height
 NOWHERE = Rect(0, 0, 0, 0)
+CODE_LINE = 5.2  # units: a finger's height, two lines of text
 HEAD_LINE = 6.8  # units: a finger's height, for the place that shows the keyboard
 
 
 class EditorPlaces(NamedTuple):
     """The parts of the page; ``ask`` is empty while nothing is asked, ``keys`` without the drawn keyboard.
 
+    ``code`` is the line that says what the code at the cursor means, ``codes`` what the list of codes takes;
     ``path`` is the place of all pictures of the program: one of the part being cut is one more choice.
     """
 
@@ -69,6 +84,8 @@ class EditorPlaces(NamedTuple):
     text: Rect
     path: Rect
     findings: Rect
+    code: Rect
+    codes: Rect
     ask: Rect
     keys: Rect
     body: Rect  # text, path and findings together: the history takes it
@@ -90,10 +107,12 @@ def editor_places(width: int, height: int, u: float, *, asking: bool, keys: floa
     body = Rect(0, top, width, (ask.y - gap if asking else low) - top)
     keyboard = Rect(0, foot, width, keys_h)
     if keys_h:
-        return EditorPlaces(head, body, NOWHERE, NOWHERE, ask, keyboard, body)
+        return EditorPlaces(head, body, NOWHERE, NOWHERE, NOWHERE, NOWHERE, ask, keyboard, body)
     text = Rect(0, top, round(0.56 * width), body.h)
     x = text.right + gap
-    findings_h = round(min(0.4 * body.h, 24 * u))
-    path = Rect(x, top, width - x, body.h - findings_h - gap)
+    findings_h, code_h = round(min(0.34 * body.h, 24 * u)), round(CODE_LINE * u)
+    path = Rect(x, top, width - x, body.h - findings_h - code_h - 2 * gap)
     findings = Rect(x, path.bottom + gap, path.w, findings_h)
-    return EditorPlaces(head, text, path, findings, ask, keyboard, body)
+    code = Rect(x, findings.bottom + gap, path.w, code_h)
+    codes = Rect(x, top, path.w, body.h)
+    return EditorPlaces(head, text, path, findings, code, codes, ask, keyboard, body)

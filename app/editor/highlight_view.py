@@ -5,22 +5,11 @@ from __future__ import annotations
 from PySide6.QtGui import QFont, QSyntaxHighlighter, QTextCharFormat, QTextDocument
 
 from app.screen.look import Look
-from core.language.diagnostics import ProgramError
-from core.language.klartext.klartext_colours import spans as klartext_spans
-from core.language.omniturn import Line, Word, lex_line
-from core.language.omniturn.plane_switching_lines import ends_program, lex_plane, plane_entry
-from core.language.sinumerik.sinumerik_colours import spans as sinumerik_spans
+from core.language.program_colours import spans
 from core.language.source import Dialect
-from core.language.syntax_colours import Ink
+from core.language.syntax_colours import PLAIN, Ink
 
-PLAIN, IN_PLANE = 0, 1  # states that lines hand on
-
-# What a letter is of, and the palette's colour for it; weight tells codes from coordinates without colour.
-_CODES = frozenset({"G", "M"})
-_RUN = frozenset({"F", "S"})
-_TOOLS = frozenset({"T", "D", "P", "LS", "L", "}"})
-
-
+# The palette's colour of each kind; weight tells codes from coordinates without colour.
 _OF_INK = {
     Ink.NUMBER: ("soft", False),
     Ink.CODE: ("accent", True),
@@ -33,19 +22,8 @@ _OF_INK = {
 }
 
 
-def ink_of(word: Word) -> tuple[str, bool]:
-    """Colour and weight of a word."""
-    if word.letter in _CODES:
-        return "accent", True
-    if word.letter in _RUN:
-        return "run", False
-    if word.letter in _TOOLS:
-        return "pause", True
-    return "text", False
-
-
 class Highlighter(QSyntaxHighlighter):
-    """One line at a time; all that a line hands on to the next is whether it stands in a plane."""
+    """One line at a time; what a line hands on to the next is a state of its language."""
 
     def __init__(self, look: Look, document: QTextDocument) -> None:
         super().__init__(document)
@@ -69,54 +47,10 @@ class Highlighter(QSyntaxHighlighter):
 
     def highlightBlock(self, text: str) -> None:
         """Qt's call for a line that has changed, and for the next where the state it hands on has."""
-        if self._dialect is not Dialect.OMNITURN:
-            self.setCurrentBlockState(PLAIN)
-            self._spans(text)
-            return
-        inside = self.previousBlockState() == IN_PLANE and not ends_program(text)
-        entry = not inside and plane_entry(text) is not None
-        self.setCurrentBlockState(IN_PLANE if inside or entry else PLAIN)
-        if entry:
-            self.setFormat(0, len(text), self._format("accent", True))
-        elif inside:
-            self._plane(text)
-        else:
-            self._plain(text)
-
-    def _spans(self, text: str) -> None:
-        """A line of SINUMERIK or Klartext."""
-        spans = klartext_spans if self._dialect is Dialect.KLARTEXT else sinumerik_spans
-        for start, length, ink in spans(text):
+        found, state = spans(self._dialect, text, max(self.previousBlockState(), PLAIN))
+        self.setCurrentBlockState(state)
+        for start, length, ink in found:
             self.setFormat(start, length, self._format(*_OF_INK[ink]))
-
-    def _plane(self, text: str) -> None:
-        try:
-            line = lex_plane(1, text)
-        except ProgramError as fault:
-            self.setFormat(max(0, fault.diagnostic.column - 1), 1, self._format("alarm", True))
-            return
-        if line.name == "END":
-            self.setCurrentBlockState(PLAIN)
-            self.setFormat(0, len(text), self._format("accent", True))
-        for word in line.words.values():
-            self.setFormat(word.column - 1, _length(text, word), self._format(*ink_of(word)))
-
-    def _plain(self, text: str) -> None:
-        line = lex_line(1, text)
-        for word in line.words:
-            self.setFormat(word.column - 1, _length(text, word), self._format(*ink_of(word)))
-        self._comments(text, line)
-        for error in line.errors:
-            if error.column:
-                self.setFormat(error.column - 1, 1, self._format("alarm", True))
-
-    def _comments(self, text: str, line: Line) -> None:
-        at = line.comment_column - 1
-        while 0 <= at < len(text):
-            end = text.find(")", at)
-            end = len(text) if end < 0 else end + 1
-            self.setFormat(at, end - at, self._format("soft", False))
-            at = text.find("(", end)
 
     def _format(self, colour: str, bold: bool) -> QTextCharFormat:
         key = (colour, bold)
@@ -129,12 +63,3 @@ class Highlighter(QSyntaxHighlighter):
                 made.setFontUnderline(True)
             self._formats[key] = made
         return self._formats[key]
-
-
-def _length(text: str, word: Word) -> int:
-    """How far a word reaches in the line as written, blanks inside it counted."""
-    at, left = word.column - 1, len(word.text)
-    while left and at < len(text):
-        left -= not text[at].isspace()
-        at += 1
-    return at - word.column + 1

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 from app.desk.latest import Latest, Request
 from app.desk.program_loading import LoadingSteps
+from core.interpreter.dialects import code_book
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
+    from core.language.code_book import CodeBook
 
 QUIET = 0.008  # seconds without a key after which proving begins
 LONGEST = 0.03  # seconds that typing may put it off
@@ -31,6 +33,7 @@ class Findings:
     cycle_time: float = 0.0
     blocks: int = 0
     trouble: str = ""  # why it could not be proved at all
+    book: CodeBook | None = None  # of the text's language
 
     @property
     def errors(self) -> int:
@@ -92,7 +95,8 @@ class LiveProof:
         proved = self.workshop.prove(job, request)
         found, proof = proved.diagnostics, proved.proof
         before = self._now.picture
-        findings = Findings(number, found, by_line(found), before, proof.cycle_time, proof.blocks)
+        book = code_book(source.dialect).prepared()
+        findings = Findings(number, found, by_line(found), before, proof.cycle_time, proof.blocks, book=book)
         request.publish(partial(self._show, findings))
         picture = self.workshop.draw(job, request)
         findings = replace(findings, picture=picture)

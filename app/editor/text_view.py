@@ -78,6 +78,21 @@ class TextField(QPlainTextEdit):
         self.setTextCursor(cursor)
         self.ensureCursorVisible()
 
+    @property
+    def column(self) -> int:
+        """The column of the cursor, from 1."""
+        return self.textCursor().positionInBlock() + 1
+
+    def write(self, text: str, begin: int = 0) -> None:
+        """Write at the cursor, in the place of what stands in its line from column ``begin`` on, if given."""
+        cursor = self.textCursor()
+        cursor.beginEditBlock()
+        if begin:
+            cursor.setPosition(cursor.block().position() + begin - 1, QTextCursor.MoveMode.KeepAnchor)
+        cursor.insertText(text)
+        cursor.endEditBlock()
+        self.setTextCursor(cursor)
+
     def replace_at(self, places: tuple[int, ...], length: int, by: str) -> None:
         """Put ``by`` in the place of each stretch, all as one step that can be undone."""
         cursor = QTextCursor(self.document())
@@ -230,7 +245,7 @@ class Margin(QWidget):
 
 
 _PAGE = frozenset({Qt.Key.Key_Escape, *(Qt.Key(Qt.Key.Key_F1 + n) for n in range(12))})
-_CHORDS = frozenset({Qt.Key.Key_S, Qt.Key.Key_F, Qt.Key.Key_H, Qt.Key.Key_G, Qt.Key.Key_M})
+_CHORDS = frozenset({Qt.Key.Key_Space, Qt.Key.Key_S, Qt.Key.Key_F, Qt.Key.Key_H, Qt.Key.Key_G, Qt.Key.Key_M})
 
 # --- between the field and the editor ----------------------------------------------------------------------
 
@@ -240,6 +255,8 @@ class TypedText:
 
     def __init__(self, field: TextField, editor: Editor) -> None:
         self._field, self._editor = field, editor
+        self._seen: tuple[int, object] = (-1, None)  # revision of the field and document that were compared
+        self._dirty = False
         self._taken = 0  # number of the text of the editor that stands in the field
         self.stale = False  # the text has changed since it was given to the editor
         self._taking = False  # a text is being put into the field from here
@@ -254,6 +271,14 @@ class TypedText:
     def now(self) -> str:
         """The text that stands in the field."""
         return self._field.toPlainText()
+
+    @property
+    def dirty(self) -> bool:
+        """Whether there is something to save; asked once a frame, looked at when something has changed."""
+        seen = (self._field.document().revision(), self._editor.document)
+        if seen != self._seen:
+            self._seen, self._dirty = seen, self._editor.is_dirty(self.now())
+        return self._dirty
 
     def refresh(self) -> None:
         """Once a frame: take a text that has come; have proved what was typed."""

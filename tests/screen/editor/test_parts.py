@@ -92,7 +92,7 @@ def test_other_colours_reach_the_text(field: TextField) -> None:
 @pytest.mark.parametrize(("width", "height", "u"), [(860, 390, 6.4), (1600, 700, 12.0), (3200, 1400, 24.0)])
 def test_nothing_overlaps(width: int, height: int, u: float, asking: bool) -> None:
     at = editor_places(width, height, u, asking=asking)
-    parts = [at.head, at.text, at.path, at.findings, *([at.ask] if asking else [])]
+    parts = [at.head, at.text, at.path, at.findings, at.code, *([at.ask] if asking else [])]
     for one, other in combinations(parts, 2):
         apart = one.right <= other.x or other.right <= one.x or one.bottom <= other.y or other.bottom <= one.y
         assert apart, (one, other)
@@ -130,7 +130,7 @@ def test_times_are_those_of_the_shop() -> None:
 
 def test_a_sinumerik_program_has_the_colours_of_its_own_words(field: TextField) -> None:
     field.highlighter.speak(Dialect.SINUMERIK)
-    field.put_text("N10 G1 X=IC(5) F100 ; (in)\nNUT P2\nG0 T1", afresh=True)
+    field.put_text("N10 G1 X=IC(5) F100 ; (in)\nNUT P2\nG0 T1\nG0 H1", afresh=True)
     field.dress()
     assert inks(field, 1) == [
         ("N10", DARK.soft),
@@ -140,7 +140,8 @@ def test_a_sinumerik_program_has_the_colours_of_its_own_words(field: TextField) 
         ("; (in)", DARK.soft),
     ]
     assert inks(field, 2)[0] == ("NUT", DARK.pause)
-    assert ("T", DARK.alarm) in inks(field, 3)
+    assert inks(field, 3)[-1] == ("T1", DARK.pause)
+    assert ("H", DARK.alarm) in inks(field, 4)
 
 
 def test_another_language_colours_anew(field: TextField) -> None:

@@ -96,12 +96,22 @@ def test_without_a_program_or_a_name_there_is_nothing_to_edit(writer: Writer) ->
 
 
 @pytest.mark.parametrize("state", [State.RUN, State.HOLD, State.BLOCK_END, State.WAIT])
-def test_refused_while_a_program_is_under_way(writer: Writer, state: State) -> None:
+def test_a_text_is_written_while_a_program_runs_as_it_was_loaded(writer: Writer, state: State) -> None:
     writer.load("pin")
-    writer.machine.now = replace(writer.machine.now, state=state)
+    loaded = writer.desk.session.now
+    writer.machine.now = replace(writer.machine.now, state=state, rpm_command=900.0, rpm_actual=900.0)
     writer.machine.blocks = ()
     writer.key(Key.Key_F3)
-    assert writer.prompt() == messages.UNDER_WAY
+    writer.sees(lambda: writer.front == page_table.EDITOR)
+    assert writer.desk.session.now is loaded
+    assert not writer.desk.starts_here  # the palms are for the Automatic page
+
+
+def test_refused_while_a_slide_is_moved_by_hand(writer: Writer) -> None:
+    writer.load("pin")
+    writer.machine.now = replace(writer.machine.now, state=State.JOG)
+    writer.key(Key.Key_F3)
+    assert writer.prompt() == messages.SLIDES
     assert writer.front == page_table.AUTOMATIC
 
 

@@ -1,0 +1,248 @@
+"""``turndesk profile PART.dxf``: the contour of a drawing, and the program that turns it."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
+from core.shapes.cutting_data import MATERIALS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from app.cli.figures import Json
+    from app.cli.program_options import SubParsers
+    from app.compose.profile_trial import Trial
+    from core.drawings.contour_walk import Net
+    from core.drawings.drawing import Drawing
+    from core.drawings.drawing_view import Profile, View
+    from core.drawings.profile_program import ProfileProgram
+    from core.machine.machine_model import Machine
+    from core.part.tool_shape import ToolShape
+    from core.shapes.shape_fields import Value
+
+UNITS = {"mm": 1.0, "inch": 25.4}
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Declare the command."""
+    parser = subparsers.add_parser("profile", help="make a turning program of a drawing (DXF, SVG)")
+    parser.add_argument("file", metavar="DRAWING")
+    parser.add_argument("--list", action="store_true", help="what the drawing has: layers, axes, contours")
+    _add_drawing_options(parser)
+    _add_part_options(parser)
+    _add_tool_options(parser)
+    parser.add_argument("--out", metavar="FILE", help="where the program goes (default: stdout)")
+    parser.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+
+
+def _add_drawing_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--unit", choices=tuple(UNITS), help="unit of the drawing, instead of the file's")
+    parser.add_argument("--layer", default="", metavar="NAME", help="the layer of the contour (default: all)")
+    parser.add_argument("--axis", default="", metavar="NAME", help="the axis, as --list names it")
+    parser.add_argument("--contour", type=int, default=1, metavar="N", help="which contour of --list")
+    parser.add_argument("--front", choices=("right", "left"), default="right", help="where the face is")
+    parser.add_argument("--zero", choices=("face", "back", "origin"), default="face", help="where Z0 is")
+    parser.add_argument("--shift", type=float, default=0.0, metavar="Z", help="Z of that place, if not 0")
+    parser.add_argument("--side", choices=("outside", "bore"), default="outside", help="which side is cut")
+    parser.add_argument("--gap", type=float, metavar="MM", help="ends nearer than this are joined, mm")
+
+
+def _add_part_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--metric", action="store_true", help="the program and these lengths in mm, not inch")
+    parser.add_argument("--material", choices=tuple(MATERIALS), default="STEEL", help="default: STEEL")
+    parser.add_argument("--bar", type=float, metavar="D", help="diameter of the bar")
+    parser.add_argument("--face", type=float, metavar="L", help="stock before the face; 0: no facing")
+    parser.add_argument(
+        "--hole", type=float, metavar="D", help="diameter of the hole that a bore begins with"
+    )
+    parser.add_argument("--rough", type=float, metavar="L", help="depth of a rough pass; 0: finish alone")
+
+
+def _add_tool_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--tool", type=int, metavar="T", help="turning tool (default: the first that fits)")
+    parser.add_argument("--groove-tool", type=int, metavar="T", help="groove tool (default: the first)")
+    parser.add_argument("--comp", type=int, metavar="D", help="secondary offset of the nose; 0: no G41")
+    parser.add_argument("--tools", metavar="FILE", help="shapes of the tools, instead of the stored ones")
+    parser.add_argument("--machine", metavar="FILE", help="machine file (default: the simulated lathe)")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the program, and say what stays of the drawing; 1 when the program would have errors."""
+    from core.drawings.drawing import DrawingError
+
+    try:
+        return _run(args)
+    except DrawingError as error:
+        raise CommandError(str(error)) from error
+
+
+def _run(args: argparse.Namespace) -> int:
+    from app.compose.machine_setup import read_machine
+    from core.drawings.drawing_file import read_drawing
+
+    machine = read_machine(args.machine)
+    if args.side == "bore" and args.hole is None and not args.list:
+        raise CommandError("a bore begins with a hole: say its diameter with --hole")
+    args.metric = args.metric or not machine.inch
+    drawing = read_drawing(Path(args.file))
+    if args.layer and args.layer not in drawing.layers:
+        raise CommandError(f"{drawing.name} has no layer {args.layer}: say {', '.join(drawing.layers)}")
+    view = _view(drawing, args)
+    found = _contours(drawing, view, args)
+    if args.list:
+        _list(drawing, view, found, as_json=args.json)
+        return EXIT_OK
+    if not 1 <= args.contour <= len(found):
+        raise CommandError(f"{drawing.name} has {len(found)} contours: say --contour 1 to {len(found)}")
+    return _make(drawing, view, found[args.contour - 1], args, machine)
+
+
+def _view(drawing: Drawing, args: argparse.Namespace) -> View:
+    from core.drawings.contour_walk import GAP
+    from core.drawings.drawing_view import Front, View, Zero, axis_named
+
+    unit = UNITS[args.unit] if args.unit else drawing.unit
+    if not unit:
+        raise CommandError(f"{drawing.name} does not say its unit: say --unit mm or --unit inch")
+    gap = GAP if args.gap is None else args.gap
+    if not 0.0 < gap <= 1.0:
+        raise CommandError(f"--gap {gap:g}: ends are joined up to 1 mm; say .001 to 1")
+    shift = args.shift * (1.0 if args.metric else 25.4)
+    front, zero = Front(args.front.upper()), Zero(args.zero.upper())
+    return View(axis_named(drawing, args.axis, args.layer), unit, front, zero, shift, gap)
+
+
+def _contours(drawing: Drawing, view: View, args: argparse.Namespace) -> list[Net]:
+    from core.drawings.drawing_view import contours
+
+    found = contours(drawing, view, args.layer)
+    if not found:
+        where = f"on layer {args.layer}" if args.layer else "beside its axis"
+        raise CommandError(f"{drawing.name} has no contour {where}: say another --layer or --axis")
+    return found
+
+
+def _list(drawing: Drawing, view: View, found: list[Net], *, as_json: bool) -> None:
+    from core.drawings.drawing_view import axes
+
+    told: Json = {
+        "file": drawing.name,
+        "unit_mm": drawing.unit or None,
+        "layers": list(drawing.layers),
+        "axes": [axis.name for axis in axes(drawing)],
+        "axis": view.axis.name,
+        "contours": [
+            {"elements": len(net.elements), "length_mm": round(high - low, 4), "diameter_mm": round(2 * r, 4)}
+            for net in found
+            for low, high, r in (net.reach,)
+        ],
+        "left_out": dict(drawing.left_out),
+    }
+    if as_json:
+        sys.stdout.write(json.dumps(told) + "\n")
+        return
+    unit = f"{drawing.unit:g} mm" if drawing.unit else "not said"
+    lines = [
+        f"{drawing.name}: unit {unit}",
+        f"  layers: {', '.join(each or '(none)' for each in drawing.layers)}",
+    ]
+    lines.append(f"  axes: {', '.join(axis.name for axis in axes(drawing))}")
+    for number, net in enumerate(found, 1):
+        low, high, r = net.reach
+        words = f"{len(net.elements)} lines, {high - low:.4g} mm long, diameter {2 * r:.4g} mm"
+        lines.append(f"  contour {number} about {view.axis.name}: {words}")
+    if drawing.left_out:
+        lines.append("  left out: " + ", ".join(f"{n} {kind}" for kind, n in drawing.left_out.items()))
+    sys.stdout.write("\n".join(lines) + "\n")
+
+
+def _make(drawing: Drawing, view: View, net: Net, args: argparse.Namespace, machine: Machine) -> int:
+    from app.compose.profile_trial import TrialStock, tried
+    from core.drawings.drawing_view import Side, profile
+
+    shapes = _shapes(args)
+    chosen = profile(drawing, view, net, Side(args.side.upper()))
+    mm = 1.0 if args.metric else 25.4
+    typed = _typed(chosen, args, shapes)
+    made = _program(chosen, typed, args, machine, shapes)
+    if made.refusals:
+        raise CommandError(f"{drawing.name}: {made.refusals[0].text}")
+    text = "\n".join([*made.lines, "M30"]) + "\n"
+    bar = float(typed["BAR"]) * mm
+    stock = TrialStock(bar, float(typed.get("STOCK", 0.0)) * mm, (args.hole or 0.0) * mm)
+    trial = tried(text, chosen, stock, made.nose, machine, shapes)
+    _write(text, args)
+    _tell(made, trial, chosen, text, args)
+    return EXIT_ERRORS if trial.errors else EXIT_OK
+
+
+def _shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
+    from app.compose.stored_offsets import stored_shapes
+    from app.offsets.offsets_file import read_tool_shapes
+
+    return stored_shapes() if args.tools is None else read_tool_shapes(Path(args.tools))
+
+
+def _typed(chosen: Profile, args: argparse.Namespace, shapes: Mapping[int, ToolShape]) -> dict[str, Value]:
+    """The fields of the shapes, lengths in the unit of the program."""
+    from core.drawings.profile_job import proposed_fields
+
+    said: dict[str, Value | None] = {
+        "BAR": args.bar,
+        "STOCK": args.face,
+        "HOLE": args.hole,
+        "ROUGH": args.rough,
+        "T": args.tool,
+        "BLADE": args.groove_tool,
+        "COMP": args.comp,
+        "MATERIAL": args.material,
+    }
+    given = {word: value for word, value in said.items() if value is not None}
+    return proposed_fields(chosen, given, shapes, metric=args.metric)
+
+
+def _program(
+    chosen: Profile,
+    typed: dict[str, Value],
+    args: argparse.Namespace,
+    machine: Machine,
+    shapes: Mapping[int, ToolShape],
+) -> ProfileProgram:
+    from app.compose.shapes_desk import shop_of
+    from core.drawings.profile_program import profile_program
+    from core.shapes.shape_setting import Setting
+
+    setting = Setting(metric=args.metric, shop=shop_of(machine, shapes))
+    return profile_program(chosen, typed, [], setting)
+
+
+def _write(text: str, args: argparse.Namespace) -> None:
+    if args.out is None:
+        if not args.json:
+            sys.stdout.write(text)
+        return
+    try:
+        Path(args.out).write_text(text, encoding="ascii")
+    except OSError as error:
+        raise CommandError(f"{args.out}: cannot be written: {error.strerror}") from error
+
+
+def _tell(made: ProfileProgram, trial: Trial, chosen: Profile, text: str, args: argparse.Namespace) -> None:
+    from core.drawings.profile_words import in_json, in_words
+
+    if args.json:
+        told = {
+            "file": args.file,
+            "out": args.out,
+            "program": text,
+            **in_json(made, trial.comparison, chosen),
+        }
+        sys.stdout.write(json.dumps({**told, "errors": list(trial.errors)}) + "\n")
+        return
+    for line in (*in_words(made, trial.comparison, chosen, metric=args.metric), *trial.errors):
+        sys.stderr.write(f"turndesk: {line}\n")

@@ -1,0 +1,71 @@
+"""What shapes are told of the machine and of the sheets of its tools."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from functools import partial
+
+from app.desk.desk import Desk
+from app.desk.latest import Watch
+from app.shapes.drawing_plan import Plan
+from app.shapes.shapes_model import Shapes
+from core.drawings.part_against_drawing import Comparison
+from core.drawings.profile_program import greatest_diameter
+from core.machine.machine_model import Machine
+from core.part.tool_shape import ToolShape
+from core.shapes.shape_setting import Setting, Shop
+
+_LIVE = re.compile(r"live|mill|driven", re.IGNORECASE)
+_USUAL = (15, 16)
+
+
+def give_shapes(desk: Desk, machine: Machine, shapes: Callable[[], Mapping[int, ToolShape]]) -> None:
+    """The desk has shapes; the tools are those of the moment in which a form is opened."""
+    found = Shapes(lambda: shop_of(machine, shapes()), Setting(metric=not machine.inch))
+    found.drawings = lambda: {each.name: each.path for each in desk.program_folders.drawings()}
+    found.attempt = partial(attempt, machine, shapes)
+    desk.attach(found)
+
+
+def attempt(
+    machine: Machine, shapes: Callable[[], Mapping[int, ToolShape]], text: str, plan: Plan, watch: Watch
+) -> tuple[Comparison | None, tuple[str, ...]]:
+    """The program on the bar that the form names, with the tools of the moment."""
+    from app.compose.profile_trial import TrialStock, tried
+
+    made, chosen, mm = plan.made, plan.chosen, plan.asked.setting.mm
+    if made is None or chosen is None:
+        return None, ()
+
+    def length(word: str) -> float:
+        value = plan.asked.values.get(word, plan.proposals.get(word, 0.0))
+        return 0.0 if isinstance(value, str) else value * mm
+
+    bar = length("FROM") or 1.5 * greatest_diameter(chosen)
+    stock = TrialStock(bar, length("STOCK"), length("HOLE"))
+    trial = tried(text, chosen, stock, made.nose, machine, shapes(), watch)
+    return trial.comparison, trial.errors
+
+
+def shop_of(machine: Machine, tools: Mapping[int, ToolShape]) -> Shop:
+    """What proposals and refusals of a shape follow."""
+    by_name = {axis.name: axis for axis in machine.axes}
+    z, c = by_name.get("Z"), by_name.get("C")
+    return Shop(
+        max_rpm=machine.spindle.rpm_max,
+        slide_accel=z.amax if z is not None else 0.0,
+        c_rpm=c.vmax / 6.0 if c is not None and c.vmax else Shop().c_rpm,
+        live=_live(machine),
+        tools=dict(tools),
+    )
+
+
+def _live(machine: Machine) -> tuple[int, int]:
+    """The M codes that switch an output on and off that is called after a live tool; the first of them."""
+    for code, (output, state) in sorted(machine.m_codes.items()):
+        if state and _LIVE.search(output):
+            off = [other for other, (name, on) in machine.m_codes.items() if name == output and not on]
+            if off:
+                return code, min(off)
+    return _USUAL

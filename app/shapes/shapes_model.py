@@ -1,0 +1,454 @@
+"""Shapes on the text of the editor: the list, the form, and the text with what the form writes. No Qt."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from app.desk.latest import Latest, Watch
+from app.desk.sheet import STEPS, Key
+from app.desk.translation import tr
+from app.shapes.drawing_form import PROFILE, WAITS, DrawingForm
+from app.shapes.drawing_plan import Plan, Planner
+from app.shapes.shape_form import ShapeForm
+from core.drawings.drawing_file import read_drawing
+from core.drawings.part_against_drawing import Comparison
+from core.language.source import Dialect, dialect_of
+from core.shapes.pieces import Piece, pieces, renewed, setting_at, with_shape
+from core.shapes.program_head import HEAD
+from core.shapes.shape import Shape
+from core.shapes.shape_setting import Setting, Shop
+from core.shapes.shape_table import SHAPES
+
+FORMS = {**SHAPES, "X": PROFILE}
+
+
+def written_in(name: str) -> bool:
+    """Whether a program of this name takes shapes: they are lines of OmniTurn."""
+    return dialect_of(name) is Dialect.OMNITURN
+
+
+Attempt = Callable[[str, Plan, Watch], tuple[Comparison | None, tuple[str, ...]]]
+"""A program that was made of a drawing is proved, and its part held against it."""
+
+
+def nothing_tried(_text: str, _plan: Plan, _watch: Watch) -> tuple[Comparison | None, tuple[str, ...]]:
+    """Of a desk that knows no machine."""
+    return None, ()
+
+
+@dataclass(slots=True)
+class Shapes:
+    """``fetch`` tells what machine and tools say; it reads the store, so it is asked on a worker.
+
+    ``text`` is the program with what the form writes; ``at`` the line, from 0, before which a new shape is
+    written. ``number`` counts what is worth proving.
+    """
+
+    fetch: Callable[[], Shop] = Shop
+    new: Setting = field(default_factory=Setting)
+    worker: Latest = field(default_factory=lambda: Latest("editing-shapes"))
+    drawings: Callable[[], Mapping[str, Path]] = dict
+    attempt: Attempt = nothing_tried
+    planner: Planner = field(default_factory=lambda: Planner(read_drawing))
+    planning: Latest = field(default_factory=lambda: Latest("planning-drawing"))
+    trying: Latest = field(default_factory=lambda: Latest("trying-drawing"))
+    table: Mapping[str, Shape] = field(default_factory=lambda: FORMS)  # of the list: shapes, or calculators
+    wanted: Path | None = None  # a drawing that is to be opened with the next program
+    shop: Shop = field(default_factory=Shop)
+    lines: list[str] = field(default_factory=list)
+    at: int = 0
+    pieces: list[Piece] = field(default_factory=list)
+    form: ShapeForm | None = None
+    marked: int = 0
+    notice: str = ""
+    asked: Callable[[], None] | None = None
+    text: str = ""
+    number: int = 0
+    written: int = 0  # counts texts that are to stand in the editor
+    padded: bool = False  # the number pad is drawn
+    _typed: dict[str, dict[str, str]] = field(default_factory=dict)
+
+    def close(self) -> None:
+        """End the workers."""
+        for each in (self.worker, self.planning, self.trying):
+            each.close()
+
+    def look(self) -> None:
+        """Once a frame: take up what the workers have fetched and found."""
+        for each in (self.worker, self.planning, self.trying):
+            each.poll()
+
+    # --- coming in -----------------------------------------------------------------------------------
+
+    def open(self, name: str, text: str, line: int, table: Mapping[str, Shape] = FORMS) -> str:
+        """Shapes of this text; the cursor stands on ``line``, from 1. Answers why not, else nothing.
+
+        ``table``: the forms of the list; of calculators and templates no piece of the text is opened.
+        """
+        if not written_in(name):
+            return tr("SHAPES ARE WRITTEN IN OMNITURN: THIS PROGRAM SPEAKS ANOTHER LANGUAGE")
+        self.worker.ask(lambda _request: self.fetch(), self._have_shop, self._no_shop)
+        self.notice, self.asked, self.form, self.table = "", None, None, table
+        self._take(text)
+        here = self.piece_at(line - 1)
+        self.at = self._place(line - 1)
+        if here is not None and table is FORMS:
+            self._open_piece(here)
+        else:
+            self.marked = 0 if not self.pieces or table is not FORMS else max(1, self.marked)
+        return ""
+
+    @property
+    def keys_of_list(self) -> tuple[str, ...]:
+        """Those that open a form of the list."""
+        return tuple(self.table)
+
+    @property
+    def listed(self) -> list[Piece]:
+        """The pieces that the list offers behind the forms."""
+        return self.pieces if self.table is FORMS else []
+
+    def _take(self, text: str) -> None:
+        self.lines = text.split("\n")
+        while self.lines and not self.lines[-1].strip():
+            self.lines.pop()
+        self.pieces = pieces(self.lines, self.shop, self.new)
+        self._show("\n".join(self.lines) + "\n" if self.lines else "")
+
+    def _have_shop(self, shop: Shop) -> None:
+        self.shop = shop
+        if self.form is not None and self.form.instead is None:
+            form = self.form
+            form.setting = setting_at(self.lines, self.at, shop, self.new)
+            form.work()
+            self._preview()
+
+    def _no_shop(self, why: str) -> None:
+        self.notice = tr("THE TOOL SHEETS CANNOT BE READ: {why}").format(why=why)
+
+    def piece_at(self, line: int) -> Piece | None:
+        """The piece that this line, from 0, belongs to."""
+        return next((each for each in self.pieces if each.first <= line < each.behind), None)
+
+    def _place(self, line: int) -> int:
+        """Where a new shape goes: behind the piece of the cursor, and before the end of the program."""
+        here = self.piece_at(line)
+        at = here.behind if here is not None else min(line + 1, len(self.lines))
+        ends = [
+            n for n, each in enumerate(self.lines) if each.strip().upper().startswith(("M30", "M02", "M99"))
+        ]
+        started = [n for n, each in enumerate(self.lines) if each.strip().startswith("}")]
+        for end in ends:
+            begin = max((n for n in started if n < end), default=-1)
+            if at <= end or end == ends[-1]:
+                return max(min(at, end), begin + 1)
+        return at
+
+    # --- the list ------------------------------------------------------------------------------------
+
+    @property
+    def listing(self) -> bool:
+        """Whether the list is shown."""
+        return self.form is None
+
+    def choose(self, place: int) -> None:
+        """Mark a shape of the list, or a piece of the program behind them."""
+        self.marked = max(0, min(place, len(self.table) + len(self.listed) - 1))
+
+    def open_marked(self) -> None:
+        """The form of the marked shape, or of the marked piece."""
+        keys = self.keys_of_list
+        if self.marked < len(keys):
+            self.open_shape(keys[self.marked])
+        elif self.listed:
+            self._open_piece(self.listed[self.marked - len(keys)])
+
+    def open_shape(self, key: str) -> None:
+        """A new shape."""
+        self.notice = ""
+        shape = self.table[key]
+        self.marked = self.keys_of_list.index(key)
+        if shape is HEAD:
+            self.at = 0
+            head = next((each for each in self.pieces if each.filled.shape is HEAD), None)
+            if head is not None:
+                self._open_piece(head)
+                return
+        elif not shape.noted:
+            pass  # no piece of a program: it needs no head
+        elif shape is PROFILE and not self.lines:
+            self.at = 0  # it writes a head of its own
+        elif not any(line.upper().startswith(("G90", "G91")) for line in self.lines[:1]):
+            self.notice = tr("A PROGRAM BEGINS WITH ITS HEAD: PRESS N, THEN WRITE IT")
+            return
+        setting = setting_at(self.lines, self.at, self.shop, self.new)
+        self.form = self._drawing_form(setting) if shape is PROFILE else ShapeForm(shape, setting)
+        self._preview()
+
+    def _drawing_form(self, setting: Setting) -> DrawingForm:
+        """With the drawings beside the programs, that which was asked for first."""
+        files, wanted = dict(self.drawings()), self.wanted
+        self.wanted = None
+        if wanted is not None:
+            files = {wanted.name: wanted, **{name: path for name, path in files.items() if path != wanted}}
+        return DrawingForm(PROFILE, setting, files=files, before=tuple(self.lines[: self.at]))
+
+    def open_wanted(self) -> None:
+        """The form of the drawing that is waiting to be opened."""
+        self.open_shape("X")
+
+    def _open_piece(self, piece: Piece) -> None:
+        """A piece of the program; of one that somebody has changed by hand it is said."""
+        self.notice, self.asked = "", None
+        if piece.taken:
+            words = ", ".join(each.label for each in piece.filled.fields if each.word in piece.taken)
+            self.notice = tr("CHANGED BY HAND IN THE TEXT, AND TAKEN OVER: {fields}").format(fields=words)
+        elif piece.foreign >= 0:
+            text = tr("LINE {line} WAS CHANGED BY HAND: THE FORM HAS WHAT THE COMMENT SAYS, F2 ASKS FIRST")
+            self.notice = text.format(line=piece.foreign + 1)
+        self.form = ShapeForm(piece.filled.shape, piece.setting, piece)
+        self._preview()
+
+    # --- the form ------------------------------------------------------------------------------------
+
+    def keys(self) -> dict[int, Key]:
+        """The function keys."""
+        pad = Key("PAD", self.turn_pad)
+        if self.form is None:
+            return {2: Key("OPEN", self.open_marked), 9: pad}
+        found = {2: Key("WRITE", self.write), 9: pad}
+        if self.asked is not None:
+            found[6] = Key("YES", self.answer)
+        if self.form.instead is not None:
+            found[5] = Key("DELETE", self.delete)
+        if self.form.shape.contour:
+            found |= {3: Key("POINT +", self.insert_point), 4: Key("POINT -", self.drop_point)}
+        return found
+
+    def turn_pad(self) -> None:
+        """Show the number pad, or take it away."""
+        self.padded = not self.padded
+
+    def typed(self, key: str) -> bool:
+        """A key that is text or moves the mark; False when it means nothing here."""
+        if self.form is not None:
+            return self._typed_in_form(self.form, key)
+        if key.upper() in self.table:
+            self.open_shape(key.upper())
+        elif key == "Enter":
+            self.open_marked()
+        elif key in STEPS:
+            self.choose(self.marked + STEPS[key])
+        elif key in {"Left", "Right"}:
+            self.choose(len(self.table) if key == "Right" and self.listed else 0)
+        else:
+            return False
+        return True
+
+    def _typed_in_form(self, form: ShapeForm, key: str) -> bool:
+        if not form.typed_key(key):
+            return False
+        if self.asked is not None:
+            self.asked, self.notice = None, ""
+        self._preview()
+        return True
+
+    def takes(self, key: str) -> bool:
+        """Whether a character is text here."""
+        if self.form is not None:
+            return self.form.takes(key)
+        return len(key) == 1 and key.upper() in self.table
+
+    def touch(self, word: str) -> None:
+        """A finger on a field, a point or a dimension; on the marked choice it turns it."""
+        form = self.form
+        if form is None:
+            return
+        if form.word == word and form.field is not None and form.choices(form.field):
+            form.typed_key("Right")
+        else:
+            form.go_to(word)
+        self._preview()
+
+    def touch_at(self, point: tuple[float, float]) -> None:
+        """A finger on the drawing, beside its figures."""
+        if self.form is not None:
+            self.form.touch_at(point)
+            self._preview()
+
+    def touch_cell(self, number: int, column: int) -> None:
+        """A finger on a cell of a point."""
+        if self.form is not None:
+            self.form.go(len(self.form.fields) + number, column)
+
+    def insert_point(self) -> None:
+        """F3."""
+        if self.form is not None:
+            self.form.insert_point()
+            self._preview()
+
+    def drop_point(self) -> None:
+        """F4."""
+        if self.form is not None:
+            self.form.drop_point()
+            self._preview()
+
+    def escape(self) -> bool:
+        """A question, then the form, is taken back; False on the list."""
+        if self.asked is not None:
+            self.asked, self.notice = None, ""
+        elif self.notice:
+            self.notice = ""
+        elif self.form is not None:
+            self.form = None
+            self._show("\n".join(self.lines) + "\n" if self.lines else "")
+        else:
+            return False
+        return True
+
+    def write(self) -> None:
+        """F2: into the text, and back to the list; asks where something written by hand would go."""
+        form = self.form
+        if form is None:
+            return
+        if form.waits:
+            self.notice = tr(WAITS)
+        elif form.troubles:
+            self.notice = ""
+            self._to_trouble(form)
+        elif form.instead is not None and form.instead.foreign >= 0 and self.asked is None:
+            count = form.instead.count
+            text = tr(
+                "F6 REPLACES {count} LINES THAT WERE CHANGED BY HAND, FROM LINE {line}; ESC LEAVES THEM"
+            )
+            self.notice = text.format(count=count, line=form.instead.first + 1)
+            self.asked = self._write
+        else:
+            self._write()
+
+    def answer(self) -> None:
+        """F6: yes."""
+        asked, self.asked = self.asked, None
+        if asked is not None:
+            asked()
+
+    def _to_trouble(self, form: ShapeForm) -> None:
+        word = next(iter(form.troubles))
+        form.go_to(word)
+
+    def _write(self) -> None:
+        form = self.form
+        assert form is not None
+        text, behind = with_shape(self.lines, self.at, form.one, form.setting, form.instead)
+        said = ""
+        if form.shape is HEAD and form.instead is not None:
+            grown = len(form.lines) - form.instead.count
+            moved = [_moved(each, grown) for each in self.pieces if each.filled.shape is not HEAD]
+            text, stay = renewed(text, self.shop, moved)
+            if stay:
+                said = tr("{count} SHAPES WERE CHANGED BY HAND AND STAY AS THEY ARE").format(count=stay)
+        self.form, self.notice, self.asked = None, said, None
+        self._take("\n".join(text) + "\n")
+        self.at = behind
+        self.written += 1
+        self.marked = 0 if not self.pieces else max(1, self.marked)
+
+    def delete(self) -> None:
+        """F5: the piece out of the text; asked first."""
+        form = self.form
+        if form is None or form.instead is None:
+            return
+        self.notice = tr("F6 TAKES THE {count} LINES OF THIS SHAPE OUT OF THE TEXT; ESC LEAVES THEM").format(
+            count=form.instead.count
+        )
+        self.asked = self._delete
+
+    def _delete(self) -> None:
+        form = self.form
+        assert form is not None
+        assert form.instead is not None
+        piece = form.instead
+        self.form, self.notice = None, ""
+        self._take("\n".join([*self.lines[: piece.first], *self.lines[piece.behind :]]) + "\n")
+        self.at = piece.first
+        self.written += 1
+
+    @property
+    def line(self) -> int:
+        """The line, from 1, up to which the path is shown: the last of the form, or before the place."""
+        form = self.form
+        if form is None:
+            return self.at
+        return (form.instead.first if form.instead is not None else self.at) + len(form.lines)
+
+    def _preview(self) -> None:
+        """The text with what the form writes; as it was where the form is not complete."""
+        form = self.form
+        if form is None:
+            return
+        self._plan(form)
+        if form.troubles or not form.lines:
+            self._show("\n".join(self.lines) + "\n" if self.lines else "")
+            return
+        text, _ = with_shape(self.lines, self.at, form.one, form.setting, form.instead)
+        self._show("\n".join(text) + "\n")
+
+    # --- a drawing
+
+    def _plan(self, form: ShapeForm) -> None:
+        """What was typed is worked out beside the screen; then the program is tried."""
+        if not isinstance(form, DrawingForm) or form.pending is None:
+            return
+        asked = form.pending
+
+        def planned(plan: Plan) -> None:
+            if self.form is form and form.pending == asked:
+                form.take(plan)
+                self._preview()
+                self._try(form, plan)
+
+        self.trying.give_up()
+        self.planning.ask(lambda _request: self.planner.plan(asked), planned, self._no_plan)
+
+    def _no_plan(self, why: str) -> None:
+        self.notice = tr("THE DRAWING CANNOT BE WORKED OUT: {why}").format(why=why)
+
+    def _try(self, form: DrawingForm, plan: Plan) -> None:
+        if not form.lines:
+            return
+        text = self.text
+
+        def tried(found: tuple[Comparison | None, tuple[str, ...]]) -> None:
+            if self.form is form and form.plan is plan:
+                form.tried(*found)
+
+        self.trying.ask(lambda watch: self.attempt(text, plan, watch), tried, self._no_plan)
+
+    def _show(self, text: str) -> None:
+        if text != self.text:
+            self.text = text
+            self.number += 1
+
+    def prompt(self) -> str:
+        """What the keys do here."""
+        if self.notice:
+            return self.notice
+        if self.form is None:
+            return tr("A LETTER OPENS A SHAPE, RIGHT LEADS TO THOSE OF THIS PROGRAM; F10: TO THE TEXT")
+        return tr(WAITS if self.form.waits else self.form.trouble or _keys_of(self.form))
+
+
+def _keys_of(form: ShapeForm) -> str:
+    if form.shape is PROFILE:
+        return tr(
+            "LEFT AND RIGHT CHOOSE; A FINGER ON THE DRAWING PICKS THE CONTOUR, OR THE AXIS; F2 WRITES IT"
+        )
+    if form.point >= 0:
+        return tr("X Z C R A LEAD TO A COLUMN, RETURN TO THE NEXT POINT; F2 WRITES IT INTO THE PROGRAM")
+    return tr("TYPE A FIGURE OR A SUM, RETURN: NEXT FIELD; F2 WRITES IT INTO THE PROGRAM")
+
+
+def _moved(piece: Piece, by: int) -> Piece:
+    return replace(piece, first=piece.first + by, foreign=piece.foreign + by if piece.foreign >= 0 else -1)

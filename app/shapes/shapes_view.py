@@ -1,0 +1,293 @@
+"""The form of a shape and its drawing in the place of the editor's text, and the list of shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from PySide6.QtCore import QRectF, QSize, Qt
+from PySide6.QtGui import QWheelEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk.translation import spoken, tr
+from app.screen.entry_panel import KeyPad, draw_entry
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter
+from app.screen.panel import Panel, Shown
+from app.shapes.shape_form import COLUMNS, Cell, ShapeForm
+from app.shapes.shapes_model import FORMS, Shapes
+from app.shapes.sketch_view import SketchPanel
+from core.shapes.contour import row_word
+
+ROW = 5.2  # units: a finger's height
+_LABEL = 0.56  # of the width
+_SHARE = 0.54  # of the width that the fields take
+_PAD = 26.0  # units: height of the number pad
+
+
+@dataclass(frozen=True, slots=True)
+class _Line:
+    """One row: a shape, a piece or a field; ``cells`` of a point. ``tone`` is the ink of its figure."""
+
+    label: str
+    figure: str = ""
+    tone: str = "text"
+    word: str = ""
+    cells: tuple[str, ...] = ()
+    raw: bool = False
+
+
+class RowsPanel(Panel):
+    """Rows with a mark that stays in sight; a finger marks one, or what stands in it."""
+
+    rows: Shown[tuple[_Line, ...]] = Shown(())
+    marked = Shown(0)
+    column = Shown(0)
+    heading = Shown("")
+    typing = Shown(False)
+
+    def __init__(self, look: Look, choose: Callable[[int, int], None], parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._choose, self.top = choose, 0
+        self._seen = -1
+
+    @property
+    def count(self) -> int:
+        """How many rows fit."""
+        return max(1, int((self.height() / self.look.u - 3.4) / ROW))
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Three rows a notch."""
+        self.top = max(0, min(self.top - round(event.angleDelta().y() / 40), len(self.rows) - self.count))
+        self.update()
+
+    def draw(self, painter: Painter) -> None:
+        self.frame(painter, self.heading)
+        if self._seen != self.marked:
+            self._seen = self.marked
+            self.top = min(max(self.top, self.marked - self.count + 2), max(0, self.marked - 1))
+        self.top = max(0, min(self.top, len(self.rows) - self.count))
+        room, u = self.inside(), self.look.u
+        for place, line in enumerate(self.rows[self.top : self.top + self.count]):
+            box = QRectF(room.x(), room.y() + place * ROW * u, room.width(), ROW * u)
+            self._row(painter, box, line, self.top + place)
+        self._bar(painter, room)
+
+    def _row(self, painter: Painter, box: QRectF, line: _Line, number: int) -> None:
+        u, marked = self.look.u, number == self.marked
+        if marked:
+            painter.fill(box, "here")
+            painter.fill(QRectF(box.x(), box.y(), 0.5 * u, box.height()), "lit")
+        self.place(box, partial(self._choose, number, -1))
+        room = box.adjusted(1.0 * u, 0, -1.4 * u, 0)
+        if line.cells:
+            self._cells(painter, room, line, number, marked=marked)
+            return
+        label = QRectF(room.x(), room.y(), _LABEL * room.width(), room.height())
+        painter.write(label, line.label, 1.9, "text", at=LEFT, bold=marked, raw=line.raw, margin=0.6)
+        figure = QRectF(label.right(), room.y(), room.right() - label.right(), room.height())
+        self._figure(painter, figure, line.figure, line.tone, marked=marked and self.typing)
+
+    def _figure(self, painter: Painter, box: QRectF, figure: str, tone: str, *, marked: bool) -> None:
+        u = self.look.u
+        if marked:
+            frame = box.adjusted(0, 0.5 * u, 0, -0.5 * u)
+            painter.box(frame, "accent", 0.2, "ground")
+            draw_entry(painter, frame.adjusted(0.6 * u, 0, -0.4 * u, 0), figure, size=2.2)
+        else:
+            painter.write(box, figure, 2.1, tone, at=RIGHT, raw=True, bold=tone != "soft")
+
+    def _cells(self, painter: Painter, room: QRectF, line: _Line, number: int, *, marked: bool) -> None:
+        """Number and figures of a point."""
+        u = self.look.u
+        first = QRectF(room.x(), room.y(), 3.4 * u, room.height())
+        painter.write(first, line.label, 1.8, line.tone if line.tone == "alarm" else "soft", raw=True)
+        wide = (room.width() - first.width()) / len(line.cells)
+        for column, figure in enumerate(line.cells):
+            box = QRectF(first.right() + column * wide, room.y(), wide, room.height())
+            self.place(box, partial(self._choose, number, column))
+            here = marked and column == self.column
+            inner = box.adjusted(0.2 * u, 0, -0.2 * u, 0)
+            if figure or here:
+                self._figure(painter, inner, figure, line.tone, marked=here and self.typing)
+            elif marked:  # what may be typed here
+                painter.write(inner, COLUMNS[column], 1.7, "soft", at=CENTRE, raw=True, bold=False)
+        # The cells were placed behind the row: the first that holds a point is taken, so the row goes last.
+        self._places.append(self._places.pop(-1 - len(line.cells)))
+
+    def _bar(self, painter: Painter, room: QRectF) -> None:
+        """How much of the rows is seen, and where."""
+        if len(self.rows) <= self.count:
+            return
+        u = self.look.u
+        track = QRectF(room.right() - 0.5 * u, room.y(), 0.6 * u, self.count * ROW * u)
+        painter.fill(track, "key")
+        high = track.height() * self.count / len(self.rows)
+        painter.fill(
+            QRectF(track.x(), track.y() + track.height() * self.top / len(self.rows), track.width(), high),
+            "accent",
+        )
+
+
+class LinesPanel(Panel):
+    """The lines that the form writes, or what is wrong."""
+
+    title = "LINES"
+    lines: Shown[tuple[str, ...]] = Shown(())
+    trouble = Shown("")
+    words: Shown[tuple[str, ...]] = Shown(())
+
+    def draw(self, painter: Painter) -> None:
+        room, u = self.inside(), self.look.u
+        high = 2.5 * u
+        if self.trouble:
+            self._trouble(painter, room)
+            return
+        room = self._say(painter, room)
+        many = max(1, int(room.height() / high))
+        for place, line in enumerate(self.lines[:many]):
+            more = place == many - 1 and len(self.lines) > many
+            box = QRectF(room.x(), room.y() + place * high, room.width(), high)
+            painter.write(
+                box,
+                f"… +{len(self.lines) - place}" if more else line,
+                1.8,
+                "text",
+                raw=True,
+                bold=False,
+                fit=False,
+            )
+
+    def _say(self, painter: Painter, room: QRectF) -> QRectF:
+        """What is to be said of the lines, above them; the room that is left."""
+        if not self.words:
+            return room
+        painter.setFont(self.look.font(1.8, bold=True))
+        painter.setPen(self.look.colour("text"))
+        text = "\n".join(tr(each) for each in self.words)
+        flags = Qt.TextFlag.TextWordWrap | Qt.AlignmentFlag.AlignTop
+        used = painter.boundingRect(room, flags, text)
+        painter.drawText(room, flags, text)
+        return room.adjusted(0, min(used.height() + self.look.u, room.height()), 0, 0)
+
+    def _trouble(self, painter: Painter, room: QRectF) -> None:
+        painter.setFont(self.look.font(2.0, bold=True))
+        painter.setPen(self.look.colour("alarm"))
+        painter.drawText(room, Qt.TextFlag.TextWordWrap, tr(self.trouble))
+
+
+class ShapesView(QWidget):
+    """Rows at the left, drawing and lines at the right; the number pad takes the lines' place."""
+
+    def __init__(self, look: Look, model: Shapes, press: Callable[[str], None], parent: QWidget) -> None:
+        super().__init__(parent)
+        self.look, self.model = look, model
+        self.rows = RowsPanel(look, self._choose, self)
+        self.sketch = SketchPanel(look, model.touch, model.touch_at, self)
+        self.lines = LinesPanel(look, self)
+        self.pad = KeyPad(look, press, own=None, parent=self)
+        self._seen: tuple[object, ...] = ()
+        self.hide()
+
+    def refresh(self) -> None:
+        """Once a frame: what the model says now, where it says something else than before."""
+        model = self.model
+        form = model.form
+        now: tuple[object, ...] = (
+            form is None,
+            model.marked,
+            model.number,
+            model.written,
+            model.padded,
+            spoken(),
+        )
+        if form is not None:
+            now = (*now, id(form), form.marked, form.column, form.worked)
+        if now == self._seen:
+            return
+        self._seen = now
+        self.rows.typing = form is not None
+        if form is None:
+            self._show_list()
+        else:
+            self._show_form(form)
+        self.lines.setVisible(not model.padded)
+        self.pad.setVisible(model.padded)
+        self.lay_out()
+
+    def _show_list(self) -> None:
+        model = self.model
+        table, keys = model.table, model.keys_of_list
+        shapes = [_Line(f"{key}   {tr(table[key].name)}", "", word=key) for key in keys]
+        there = [
+            _Line(each.filled.shape.name, f"{each.first + 1}", "alarm" if each.foreign >= 0 else "text")
+            for each in model.listed
+        ]
+        self.rows.heading = tr(
+            "SHAPES  ·  THOSE OF THIS PROGRAM BY LINE" if table is FORMS else "CALCULATORS AND TEMPLATES"
+        )
+        self.rows.rows, self.rows.marked, self.rows.column = (*shapes, *there), model.marked, 0
+        place = model.marked
+        shape = table[keys[place]] if place < len(keys) else model.listed[place - len(keys)].filled.shape
+        form = ShapeForm(shape, model.new)
+        self.sketch.shown = shape.sketch(form.one), (), "", frozenset()
+        self.lines.trouble, self.lines.lines, self.lines.words = "", (tr(shape.use),), ()
+
+    def _show_form(self, form: ShapeForm) -> None:
+        lines = [_line_of(cell) for cell in form.cells()]
+        if form.shape.contour:
+            lines += [_point(form, number) for number in range(len(form.rows) + 1)]
+        self.rows.heading = tr(form.shape.name) + (
+            "" if form.instead is None else f"  ·  {form.instead.first + 1}"
+        )
+        self.rows.rows, self.rows.marked, self.rows.column = tuple(lines), form.marked, form.column
+        drawn = form.sketch
+        figures = tuple((dim.word, form.dimension(dim.word)) for dim in drawn.dims)
+        self.sketch.shown = drawn, figures, form.word, frozenset(form.troubles)
+        self.lines.trouble, self.lines.lines = form.trouble, tuple(form.lines)
+        self.lines.words = form.words
+
+    def _choose(self, row: int, column: int) -> None:
+        model = self.model
+        form = model.form
+        if form is None:
+            if row == model.marked:
+                model.open_marked()
+            else:
+                model.choose(row)
+        elif row < len(form.fields):
+            model.touch(form.fields[row].word)
+        else:
+            model.touch_cell(row - len(form.fields), max(0, column))
+
+    def sizeHint(self) -> QSize:
+        """None of its own."""
+        return QSize()
+
+    def lay_out(self) -> None:
+        """Everything in its place."""
+        u = self.look.u
+        gap, left = max(4, round(0.7 * u)), round(_SHARE * self.width())
+        right, x = self.width() - left - gap, left + gap
+        low = round(min(_PAD * u, 0.6 * self.height())) if self.model.padded else round(0.4 * self.height())
+        self.rows.setGeometry(0, 0, left, self.height())
+        self.sketch.setGeometry(x, 0, right, self.height() - low - gap)
+        for part in (self.lines, self.pad):
+            part.setGeometry(x, self.height() - low, right, low)
+
+    def resizeEvent(self, _event: object) -> None:
+        """In the new unit."""
+        self.lay_out()
+
+
+def _line_of(cell: Cell) -> _Line:
+    tone = "alarm" if cell.trouble else "text" if cell.typed else "soft"
+    figure = cell.figure or ("?" if cell.trouble else "")
+    return _Line(cell.label, f"◂ {figure} ▸" if cell.choice and figure != "?" else figure, tone, cell.word)
+
+
+def _point(form: ShapeForm, number: int) -> _Line:
+    said = form.rows[number] if number < len(form.rows) else {}
+    word = row_word(number + 1)
+    cells = tuple(said.get(column, "") for column in COLUMNS)
+    return _Line(f"{number + 1}", "", "alarm" if word in form.troubles else "text", word, cells)

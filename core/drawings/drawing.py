@@ -1,0 +1,115 @@
+"""A drawing: lines and arcs by layer, in the unit of its file; and why one cannot be used."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point
+
+MOST_BYTES = 16 * 1024 * 1024
+MOST_ELEMENTS = 50_000
+_NEAREST = 0.002  # mm between a curve and the arcs that are taken for it
+_OF_UNKNOWN = 0.0002  # the same in units of a drawing that does not say its unit: .005 mm if it is the inch
+_NONE = 1e-9
+
+
+class DrawingError(ValueError):
+    """A drawing that no contour can be taken from: one sentence with the cause and what to do."""
+
+
+def damaged(path: Path, kind: str, error: Exception) -> DrawingError:
+    """The sentence for a file that its library could not read.
+
+    What the system has refused is no damage and is raised again: OSError with a number, MemoryError.
+    """
+    if isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno is not None):
+        raise error
+    why = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
+    return DrawingError(f"{path.name} is damaged or no {kind} ({why}): save the drawing anew.")
+
+
+@dataclass(frozen=True, slots=True)
+class Drawn:
+    """An element with its layer; points are (y, x), so x goes along Z. ``centre``: it is a centre line."""
+
+    element: Element
+    layer: str = ""
+    centre: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """``unit`` is mm of one unit of the drawing, 0 where its file does not say.
+
+    ``left_out`` counts by kind what is no line, such as texts and dimensions.
+    """
+
+    name: str
+    drawn: tuple[Drawn, ...]
+    unit: float = 0.0
+    left_out: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def layers(self) -> tuple[str, ...]:
+        """Those that something is drawn on, the fullest first."""
+        count: dict[str, int] = {}
+        for each in self.drawn:
+            count[each.layer] = count.get(each.layer, 0) + 1
+        return tuple(sorted(count, key=lambda layer: (-count[layer], layer)))
+
+    def on(self, layer: str) -> tuple[Drawn, ...]:
+        """What is drawn on a layer; empty: on all."""
+        return tuple(each for each in self.drawn if not layer or each.layer == layer)
+
+
+def nearest(unit: float) -> float:
+    """How near arcs come to a curve, in units of the drawing."""
+    return _NEAREST / unit if unit else _OF_UNKNOWN
+
+
+def line(a: Point, b: Point) -> Iterator[Element]:
+    """A line from (x, y) to (x, y) of the drawing; one of no length is none."""
+    if math.dist(a, b) > _NONE:
+        yield Line((a[1], a[0]), (b[1], b[0]))
+
+
+def arc(centre: Point, radius: float, start: float, sweep: float) -> Iterator[Element]:
+    """An arc about (x, y), radians counter-clockwise from x, in pieces of less than half a turn."""
+    if radius <= _NONE or abs(sweep) < 1e-9:
+        return
+    count = math.ceil(abs(sweep) / (0.95 * math.pi))
+    ends = [start + sweep * k / count for k in range(count + 1)]
+    points = [(centre[1] + radius * math.sin(a), centre[0] + radius * math.cos(a)) for a in ends]
+    for a, b in itertools.pairwise(points):
+        yield Arc(a, b, (centre[1], centre[0]), clockwise=sweep > 0.0)
+
+
+def bulged(a: Point, b: Point, bulge: float) -> Iterator[Element]:
+    """A line, or the arc of a polyline: ``bulge`` is the tangent of a quarter of its angle."""
+    if abs(bulge) < 1e-9:
+        yield from line(a, b)
+        return
+    chord = math.dist(a, b)
+    if chord <= _NONE:
+        return
+    sweep = 4.0 * math.atan(bulge)
+    radius = chord / 2.0 / abs(math.sin(sweep / 2.0))
+    off = (1.0 - bulge * bulge) / (4.0 * bulge)
+    centre = (a[0] + b[0]) / 2.0 - (b[1] - a[1]) * off, (a[1] + b[1]) / 2.0 + (b[0] - a[0]) * off
+    yield from arc(centre, radius, math.atan2(a[1] - centre[1], a[0] - centre[0]), sweep)
+
+
+def within_limits(found: Iterable[Drawn], name: str) -> Iterator[Drawn]:
+    """The same, until there are too many. Raises DrawingError."""
+    for count, each in enumerate(found):
+        if count >= MOST_ELEMENTS:
+            raise DrawingError(
+                f"{name} has more than {MOST_ELEMENTS} lines: leave the layer of the contour in it alone."
+            )
+        if not all(math.isfinite(v) for p in (each.element.start, each.element.end) for v in p):
+            raise DrawingError(f"{name} has a point that is no number: save the drawing anew.")
+        yield each

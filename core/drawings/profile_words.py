@@ -1,0 +1,73 @@
+"""What a program from a drawing leaves of it, and what it needs: as a person reads it, and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from core.drawings.drawing_view import Profile
+from core.drawings.part_against_drawing import Comparison, Deviation
+from core.drawings.profile_program import ProfileProgram
+from core.shapes.number_words import plain
+
+_CLOSED = 1e-4  # mm: a narrower gap was none
+
+
+def in_words(
+    made: ProfileProgram, comparison: Comparison | None, profile: Profile, *, metric: bool
+) -> Iterator[str]:
+    """One sentence for each, lengths in the unit of the program."""
+    mm, unit = (1.0, "mm") if metric else (25.4, "in")
+    places = 3 if metric else 4
+    if made.nose is not None:
+        n = made.nose
+        x, z, r = (plain(v / mm, places + 1) for v in (2.0 * n.x, n.z, n.r))
+        yield f"secondary offset {n.number} has to hold X {x} (as a diameter), Z {z}, R {r} {unit}"
+    elif not made.nose_radius:
+        yield f"the sheet of T{made.tool:.0f} states no nose radius: the contour is not compensated"
+    if profile.closed > _CLOSED:
+        yield f"gaps up to {plain(profile.closed / mm, places)} {unit} were closed"
+    for each in made.left:
+        span = f"Z {plain(each.front / mm, places)} to {plain(each.back / mm, places)}"
+        yield f"not cut, {span}: {each.why}"
+    if comparison is None:
+        yield "no part came of the proof: the drawing could not be held against it"
+        return
+    for found in comparison.found:
+        yield _deviation(found, made.nose_radius, mm, unit, places)
+    within = plain(max(comparison.worst, 0.001) / mm, places)
+    what = "elsewhere the proved part" if comparison.found else "the proved part"
+    yield f"{what} is the drawing's within {within} {unit}"
+
+
+def _deviation(found: Deviation, nose: float, mm: float, unit: str, places: int) -> str:
+    what = "stays on" if found.most > 0.0 else "is cut too deep from"
+    deep = plain(abs(found.most) / mm, places)
+    span = f"Z {plain(found.front / mm, places)} to {plain(found.back / mm, places)}"
+    if is_corner(found, nose):
+        at = plain(found.back / mm, places)
+        return f"{deep} {unit} stays in the corner at Z {at}, by the nose of the tool"
+    return f"{deep} {unit} {what} the radius, {span}"
+
+
+def is_corner(found: Deviation, nose: float) -> bool:
+    """Whether no more stays than a nose leaves in a square corner."""
+    return 0.0 < found.most <= nose and found.front - found.back <= nose
+
+
+def in_json(made: ProfileProgram, comparison: Comparison | None, profile: Profile) -> dict[str, Any]:
+    """The same in mm."""
+    nose = made.nose
+    return {
+        "side": str(profile.side),
+        "closed_gap_mm": round(profile.closed, 5),
+        "secondary_offset": None if nose is None else {**nose._asdict(), "x": round(nose.x, 6)},
+        "left": [{"back_mm": each.back, "front_mm": each.front, "why": each.why} for each in made.left],
+        "worst_mm": None if comparison is None else round(comparison.worst, 5),
+        "deviations": []
+        if comparison is None
+        else [
+            {"back_mm": round(d.back, 4), "front_mm": round(d.front, 4), "most_mm": round(d.most, 4)}
+            for d in comparison.found
+        ],
+    }

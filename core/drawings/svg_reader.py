@@ -1,0 +1,124 @@
+"""SVG drawings: paths, lines, polylines, rectangles and circles, with their transforms; Y turned upwards."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import re
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from core.drawings.arc_fitting import Place, arcs_of
+from core.drawings.drawing import Drawing, DrawingError, Drawn, arc, damaged, line, nearest, within_limits
+from core.geometry.lines_and_arcs import Element, Point
+
+_PIXELS = 96.0  # an inch, by CSS
+_ROOT = re.compile(rb"<svg\b[^>]*>", re.IGNORECASE | re.DOTALL)
+_SIZE = re.compile(rb"\swidth\s*=\s*[\"']\s*[\d.]+(?:[eE][-+]?\d+)?\s*(mm|cm|in|pt|pc|Q)\s*[\"']")
+_INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}label"
+
+
+def read_svg(path: Path) -> Drawing:
+    """The drawing of an SVG file; its unit is known where its width has one. Raises DrawingError."""
+    left_out: Counter[str] = Counter()
+    shapes = _shapes(path)
+    unit = 25.4 / _PIXELS if _has_unit(path) else 0.0
+    drawn = tuple(within_limits(_drawn(shapes, nearest(unit), left_out), path.name))
+    if not drawn:
+        what = ", ".join(sorted(left_out)) or "nothing"
+        raise DrawingError(f"{path.name} has no path nor line, only {what[:80]}: draw the contour as a path.")
+    return Drawing(path.name, drawn, unit, dict(left_out))
+
+
+def _has_unit(path: Path) -> bool:
+    root = _ROOT.search(path.read_bytes()[:65536])
+    return root is not None and _SIZE.search(root[0]) is not None
+
+
+def _shapes(path: Path) -> Any:
+    from svgelements import SVG
+
+    text = path.read_bytes()
+    if b"<!ENTITY" in text:
+        raise DrawingError(f"{path.name} has entities of its own, which are not read: save it as plain SVG.")
+    try:
+        with path.open("rb") as file:
+            return SVG.parse(file, reify=True, ppi=_PIXELS)
+    except Exception as error:
+        raise damaged(path, "SVG", error) from error
+
+
+def _drawn(root: Any, near: float, left_out: Counter[str]) -> Iterator[Drawn]:
+    from svgelements import Group, Shape
+    from svgelements import Path as Outline
+
+    for each in root.elements():
+        if not isinstance(each, Shape):
+            if not isinstance(each, Group):
+                left_out[type(each).__name__.lower()] += 1
+            continue
+        values = each.values
+        if values.get("visibility") == "hidden" or values.get("display") == "none":
+            continue
+        layer = str(values.get(_INKSCAPE) or values.get("class") or values.get("id") or "")
+        centre = bool(values.get("stroke-dasharray")) and values.get("stroke-dasharray") != "none"
+        for segment in Outline(each):
+            for element in _segment(segment, near):
+                yield Drawn(element, layer, centre)
+
+
+def _segment(each: Any, near: float) -> Iterator[Element]:
+    from svgelements import Arc, Close, CubicBezier, Line, QuadraticBezier
+
+    if isinstance(each, Line | Close):
+        if each.start is not None and each.end is not None:
+            yield from line(_up(each.start), _up(each.end))
+    elif isinstance(each, Arc) and each.is_circular():
+        centre, a = _up(each.center), _up(each.start)
+        start = math.atan2(a[1] - centre[1], a[0] - centre[0])
+        yield from arc(centre, float(each.rx), start, -float(each.sweep))
+    elif isinstance(each, Arc):
+        yield from arcs_of(_of_ellipse(each), near, max(1, math.ceil(abs(each.sweep) / 1.6)))
+    elif isinstance(each, CubicBezier | QuadraticBezier):
+        yield from arcs_of(_of_bezier(each), near, 2)
+
+
+def _up(point: Any) -> Point:
+    return float(point.x), -float(point.y)
+
+
+def _of_ellipse(each: Any) -> Any:
+    """By the parameter of the ellipse; directions by differences, which are exact enough for a joint."""
+    begin, step = each.get_start_t(), 1e-6
+
+    def at(u: float) -> Point:
+        return _up(each.point_at_t(begin + each.sweep * u))
+
+    def place(u: float) -> Place:
+        a, b = at(u - step), at(u + step)
+        return Place(at(u), (b[0] - a[0], b[1] - a[1]))
+
+    return place
+
+
+def _of_bezier(each: Any) -> Any:
+    points = [_up(p) for p in each]
+
+    def place(u: float) -> Place:
+        held = min(max(u, 1e-6), 1.0 - 1e-6)
+        return Place(_bezier(points, u), _slope(points, held))
+
+    return place
+
+
+def _bezier(points: list[Point], u: float) -> Point:
+    while len(points) > 1:
+        points = [(a[0] + (b[0] - a[0]) * u, a[1] + (b[1] - a[1]) * u) for a, b in itertools.pairwise(points)]
+    return points[0]
+
+
+def _slope(points: list[Point], u: float) -> Point:
+    """The direction of a Bezier curve: the curve of the differences of its points."""
+    return _bezier([(b[0] - a[0], b[1] - a[1]) for a, b in itertools.pairwise(points)], u)

@@ -1,0 +1,89 @@
+"""Bar feed and loop: a number of parts off one bar, fed to a stop for each, or once and shifted by G10."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from core.shapes.code_lines import Code
+from core.shapes.number_words import plain
+from core.shapes.shape import Filled, Shape
+from core.shapes.shape_fields import Field, Kind, Refusal, Value, Values, size
+from core.shapes.shape_setting import Setting
+from core.shapes.sketch import Dim, Outline, Sketch, part, sketch, tool
+from core.shapes.usual_fields import next_tool
+
+EACH, ONCE = "EACH PART", "ONCE"
+
+
+def _sub(_values: Values, setting: Setting) -> Value | None:
+    return float(setting.free_sub)
+
+
+def _loop(filled: Filled, setting: Setting, code: Code) -> None:
+    """G97 changes nothing: it carries the comment, which has no place inside a loop."""
+    many, out = int(filled.n("COUNT")), filled.n("LONG")
+    call = f"P{filled.n('SUB'):.0f}"
+    if filled.t("FEEDS") == EACH:
+        code.write("G97", f"LS{many}")
+        _feed_out(filled, setting, code, out)
+        code.write(call, "LF")
+    else:
+        code.write("G97")
+        _feed_out(filled, setting, code, many * out)
+        code.write(f"LS{many}", call, f"G10{code.point(0.0, -out)}", "LF", "T0")
+
+
+def _feed_out(filled: Filled, setting: Setting, code: Code, out: float) -> None:
+    """The stop to the end of the bar, collet open, the bar follows it, collet closed."""
+    code.write(f"T{filled.n('STOP'):.0f}")
+    code.rapid(0.0, setting.clear)
+    code.rapid(z=filled.n("STOCK") - out)
+    code.write("M13", f"G94F{plain(filled.n('RATE'))}{code.z(filled.n('STOCK'))}", "M12")
+    code.forget()
+    code.away()
+
+
+def _checks(_filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    if setting.called:
+        yield Refusal(
+            "COUNT", "This stands in the loop of another bar: write it before that one, or after it."
+        )
+
+
+def _sketch(_filled: Filled) -> Sketch:
+    bar = part((0, 0), (0, 7), (-30, 7), (-30, 0))
+    cuts = [Outline(((z, 0.0), (z, 7.0)), "cut") for z in (-8, -16, -24)]
+    return sketch(
+        bar,
+        *cuts,
+        tool((1, -3), (1, 3), (4, 3), (4, -3)),
+        dims=(
+            Dim("LONG", (-16, 7), (-8, 7), 3),
+            Dim("COUNT", (-20, -4)),
+            Dim("STOCK", (0, 10)),
+            Dim("STOP", (5, -5)),
+        ),
+    )
+
+
+def _tail(filled: Filled) -> tuple[str, ...]:
+    return f"}}{filled.n('SUB'):.0f}", "M99"
+
+
+LOOP = Shape(
+    "BAR LOOP",
+    "feeds the bar to a stop and makes so many parts: what comes behind it is the part",
+    (
+        Field("COUNT", "PARTS", Kind.COUNT, None, most=100_000),
+        Field("LONG", "BAR A PART, CUT INCLUDED", Kind.LENGTH),
+        Field("FEEDS", "THE BAR IS FED", Kind.CHOICE, EACH, (EACH, ONCE)),
+        Field("STOP", "STOP IS TOOL", Kind.TOOL, lambda _v, s: float(next_tool(s)), most=32),
+        Field("STOCK", "LEFT FOR FACING", Kind.LENGTH, size(0.025, 0.6), zero=True),
+        Field("RATE", "FEED OF THE BAR A MINUTE", Kind.RATE, size(50.0, 1200.0)),
+        Field("SUB", "SUBROUTINE OF THE PART", Kind.COUNT, _sub, most=9999),
+    ),
+    _loop,
+    _sketch,
+    _checks,
+    ends=_tail,
+)

@@ -1,0 +1,116 @@
+"""Feeds and speeds to begin with: by material, by what is cut, by the tool and what the machine can do.
+
+Surface speeds in ft/min and feeds in in/rev are on the careful side of what handbooks and makers of inserts
+give for uncoated carbide and, for drills and taps, high-speed steel on small machines. They are proposals.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+from core.shapes.shape_setting import Setting
+
+FEET = 0.3048  # m
+_INCHES = 12.0
+
+
+class Work(StrEnum):
+    """What is cut."""
+
+    TURN = "turn"
+    FINISH = "finish"
+    BORE = "bore"
+    GROOVE = "groove"
+    PART = "part"
+    THREAD = "thread"
+    DRILL = "drill"
+    MILL = "mill"
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """Surface speeds, ft/min: carbide in turning, high-speed steel in drilling; ``feed``: a factor."""
+
+    turn: float
+    drill: float
+    feed: float = 1.0
+
+
+MATERIALS = {
+    "STEEL": Material(400, 80),
+    "FREE STEEL": Material(600, 120, 1.2),
+    "ALLOY STEEL": Material(300, 55, 0.9),
+    "STAINLESS": Material(250, 45, 0.9),
+    "TOOL STEEL": Material(200, 40, 0.8),
+    "CAST IRON": Material(300, 70),
+    "BRASS": Material(700, 200, 1.3),
+    "BRONZE": Material(450, 120, 1.1),
+    "COPPER": Material(500, 130),
+    "ALUMINIUM": Material(900, 250, 1.3),
+    "TITANIUM": Material(150, 35, 0.8),
+    "PLASTIC": Material(800, 200, 1.5),
+}
+"""In the order in which they are offered."""
+UNKNOWN = Material(250, 45, 0.8)  # nobody has said what it is: careful
+
+_SPEED = {
+    Work.TURN: 1.0,
+    Work.FINISH: 1.1,
+    Work.BORE: 0.8,
+    Work.GROOVE: 0.6,
+    Work.PART: 0.5,
+    Work.THREAD: 0.4,
+    Work.MILL: 0.3,
+}
+_FEED = {
+    Work.TURN: 0.005,
+    Work.FINISH: 0.003,
+    Work.BORE: 0.003,
+    Work.GROOVE: 0.002,
+    Work.PART: 0.0015,
+    Work.MILL: 0.001,  # a tooth
+}
+_MOST_OF_NOSE = 0.5  # of the nose radius: a larger feed leaves a thread
+_DRILLS = 0.016  # of the diameter, in/rev; small drills less
+_LEAST = 0.0003
+_SURE_RPM = 50.0  # rpm are rounded down to these
+
+
+def material_of(setting: Setting) -> Material:
+    """What the head of the program says, or the careful one."""
+    return MATERIALS.get(setting.material, UNKNOWN)
+
+
+def surface_speed(work: Work, setting: Setting) -> float:
+    """ft/min, or m/min in a metric program, rounded to what a programmer writes."""
+    material = material_of(setting)
+    feet = material.drill if work is Work.DRILL else material.turn * _SPEED[work]
+    value = feet * FEET if setting.metric else feet
+    return max(5.0, 5.0 * round(value / 5.0))
+
+
+def rpm(work: Work, diameter: float, setting: Setting) -> float:
+    """For a diameter of the program's unit; what the machine's spindle can do at most."""
+    speed = surface_speed(work, setting)
+    around = math.pi * max(diameter, 1e-6)
+    turns = speed * (1000.0 if setting.metric else _INCHES) / around
+    step = _SURE_RPM if turns >= 10 * _SURE_RPM else 10.0
+    return max(step, step * math.floor(min(turns, setting.shop.max_rpm) / step))
+
+
+def feed(work: Work, setting: Setting, tool: float = 0.0, diameter: float = 0.0) -> float:
+    """A turn, in the unit of the program; of a drill by its ``diameter``, of an insert by its nose radius."""
+    factor = material_of(setting).feed
+    if work is Work.DRILL:
+        inch = max(_LEAST, _DRILLS * diameter * setting.mm / 25.4 * min(1.0, factor))
+        inch = min(inch, 0.012)
+    else:
+        inch = _FEED[work] * factor
+    shape = setting.tool(tool)
+    if shape is not None and shape.nose_radius and work in {Work.TURN, Work.FINISH, Work.BORE}:
+        inch = min(inch, _MOST_OF_NOSE * shape.nose_radius / 25.4)
+    places = 4 if inch < 0.002 else 3
+    inch = max(_LEAST, round(inch, places + (inch < 0.001)))
+    return round(inch * 25.4, 3) if setting.metric else round(inch, 5)

@@ -1,0 +1,97 @@
+"""Drill and peck on the axis: G81 for a hole in one go, G83 where pecks are said."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from core.part.tool_shape import ToolKind
+from core.shapes.code_lines import Code
+from core.shapes.cutting_data import Work
+from core.shapes.number_words import plain
+from core.shapes.shape import Filled, Shape
+from core.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number
+from core.shapes.shape_setting import Setting
+from core.shapes.sketch import Dim, Sketch, cut, part, sketch, tool
+from core.shapes.usual_fields import around, feed_field, per_rev, rpm_field, too_fast, tool_field
+
+_DEEP = 5.0  # diameters without pecks
+
+
+def _across(values: Values, setting: Setting) -> Value | None:
+    shape = setting.tool(number(values, "T"))
+    return round(shape.diameter / setting.mm, 5) if shape is not None and shape.diameter else None
+
+
+def _peck(values: Values, _setting: Setting) -> Value | None:
+    """A diameter, in holes of more than three; else none."""
+    across, deep = number(values, "DIA"), number(values, "DEEP")
+    return round(across, 3) if across and deep - number(values, "START") > 3.0 * across else 0.0
+
+
+def _drill(filled: Filled, setting: Setting, code: Code) -> None:
+    start = setting.near / 2.0 - filled.n("START")
+    code.begin(filled.n("T"), filled.n("RPM"), 0.0, start)
+    feed = f"F{plain(filled.n('FEED'), 6)}"
+    end, peck = code.z(-filled.n("DEEP")), filled.n("PECK")
+    code.write("G95")
+    if peck:
+        back = code.z(setting.near / 2.0, "R") if filled.n("START") else ""
+        code.write(f"G83{end}{code.z(peck, 'K')}{feed}{back}")
+    else:
+        code.write(f"G81{end}{feed}")
+    code.forget()
+    code.away()
+
+
+def _drill_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    deep, start, peck, across = (filled.n(word) for word in ("DEEP", "START", "PECK", "DIA"))
+    if start >= deep:
+        yield Refusal("START", f"The hole begins {start:g} deep and ends at {deep:g}: nothing is drilled.")
+    if peck and peck > deep - start + setting.near:
+        yield Refusal("PECK", f"A peck of {peck:g} is more than the hole: type 0 for none.")
+    if not peck and deep - start > _DEEP * across:
+        yield Refusal("PECK", f"{(deep - start) / across:.1f} diameters in one go clog a drill: type a peck.")
+    shape = setting.tool(filled.n("T"))
+    name = f"T{filled.n('T'):.0f}"
+    if shape is not None and shape.length and deep > shape.length / setting.mm + 1e-9:
+        words = f"The hole of {deep:g} is deeper than the flutes of {name}, {shape.length / setting.mm:.4g}"
+        yield Refusal("DEEP", f"{words}: take a longer drill.")
+    if shape is not None and shape.diameter and abs(shape.diameter / setting.mm - across) > 1e-4:
+        yield Refusal(
+            "DIA", f"{name} is a drill of {shape.diameter / setting.mm:.4g} by its sheet: type that."
+        )
+    yield from too_fast(filled, setting)
+    yield from per_rev(filled, setting, "FEED")
+
+
+def _drill_sketch(_filled: Filled) -> Sketch:
+    wall = part((0, 0), (0, 10), (-24, 10), (-24, 0))
+    return sketch(
+        wall,
+        cut((0, 3), (-14, 3), (-16, 0), (-14, -3), (0, -3)),
+        tool((8, 3), (1, 3), (-1, 0), (1, -3), (8, -3)),
+        dims=(
+            Dim("DIA", (-6, -3), (-6, 3)),
+            Dim("DEEP", (-16, 10), (0, 10), 3),
+            Dim("PECK", (-11, 0)),
+            Dim("START", (1, 6)),
+        ),
+    )
+
+
+DRILL = Shape(
+    "DRILL",
+    "on the axis, in one go or in pecks",
+    (
+        tool_field(ToolKind.DRILL, ToolKind.CENTRE_DRILL),
+        Field("DIA", "DIAMETER OF THE DRILL", Kind.DIAMETER, _across, marked=True),
+        Field("DEEP", "DEPTH OF ITS POINT", Kind.LENGTH),
+        Field("START", "THE HOLE IS THERE TO", Kind.LENGTH, 0.0, zero=True),
+        Field("PECK", "PECK", Kind.LENGTH, _peck, zero=True),
+        feed_field(Work.DRILL),
+        rpm_field(Work.DRILL, around("DIA")),
+    ),
+    _drill,
+    _drill_sketch,
+    _drill_checks,
+)

@@ -1,0 +1,54 @@
+"""What a shape has to know of the program around it and of the machine: modes, rapid, material, tools."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from core.part.tool_shape import ToolShape
+
+_NEAR = {False: 0.1, True: 2.5}  # by metric: how near a rapid comes to the part
+
+
+@dataclass(frozen=True, slots=True)
+class Shop:
+    """What the machine and its tool store say: rpm, live tool, tools by T (mm)."""
+
+    max_rpm: float = 3500.0
+    slide_accel: float = 0.0  # mm/s²; 0: not known
+    c_rpm: float = 200.0
+    live: tuple[int, int] = (15, 16)  # M codes of the live tool: on, off
+    tools: Mapping[int, ToolShape] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """Lengths in the unit of the program. ``clear`` is Z where tools change, ``bar`` the bar's diameter.
+
+    ``called``: the shape stands in a subroutine, ``used`` are the tools before it,
+    ``free_sub`` the first number that no subroutine of the program has.
+    """
+
+    metric: bool = False
+    diameter: bool = True
+    clear: float = 1.0
+    bar: float = 0.0
+    material: str = ""
+    called: bool = False
+    used: frozenset[int] = frozenset()
+    free_sub: int = 1
+    shop: Shop = field(default_factory=Shop)
+
+    @property
+    def near(self) -> float:
+        """How near a rapid comes to the part."""
+        return _NEAR[self.metric]
+
+    @property
+    def mm(self) -> float:
+        """mm of one unit of the program."""
+        return 1.0 if self.metric else 25.4
+
+    def tool(self, number: float) -> ToolShape | None:
+        """The shape of a tool, where its sheet states one."""
+        return self.shop.tools.get(int(number))

@@ -1,0 +1,140 @@
+"""Tap on the axis: in at the pitch, the spindle turned back, out at the pitch, in a holder that gives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from core.part.tool_shape import ToolKind
+from core.shapes.code_lines import Code
+from core.shapes.cutting_data import Work, rpm
+from core.shapes.number_words import plain
+from core.shapes.shape import Filled, Shape
+from core.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number, text
+from core.shapes.shape_setting import Setting
+from core.shapes.sketch import Dim, Sketch, cut, part, sketch, tool
+from core.shapes.thread_limits import in_unit
+from core.shapes.thread_series import TAPERED, Series, size_of
+from core.shapes.threading import INSIDE, LEFT, RIGHT, class_choices, limits_of, series_of
+from core.shapes.usual_fields import MOST_RPM, too_fast, tool_field
+
+_SLOW = 0.4  # of the speed of a drill: the flanks of a tap rub
+_MOST_RPM = 600.0
+_SHORT = 1.0  # pitches before the depth: the spindle runs on while it turns back
+_COARSEST = 0.2  # in/rev: the control feeds no more without G35
+
+
+def _named(values: Values) -> bool:
+    return series_of(values) is not Series.OWN
+
+
+def _pitch(values: Values, setting: Setting) -> Value | None:
+    found = size_of(series_of(values), text(values, "SIZE"))
+    if found is None:
+        return None
+    return round(in_unit(found.pitch, series_of(values), metric=setting.metric), 6)
+
+
+def _across(values: Values, setting: Setting) -> Value | None:
+    found = size_of(series_of(values), text(values, "SIZE"))
+    if found is None:
+        return None
+    return round(in_unit(found.diameter, series_of(values), metric=setting.metric), 4)
+
+
+def _turns(values: Values, setting: Setting) -> Value | None:
+    across = number(values, "DIA")
+    if not across:
+        return None
+    return max(50.0, 50.0 * math.floor(min(_SLOW * rpm(Work.DRILL, across, setting), _MOST_RPM) / 50.0))
+
+
+def _tap(filled: Filled, setting: Setting, code: Code) -> None:
+    pitch = filled.n("PITCH")
+    start = math.ceil(max(setting.near, 3.0 * pitch) * 100.0 - 1e-6) / 100.0
+    into, back = ("M04", "M03") if filled.t("HAND") == LEFT else ("M03", "M04")
+    code.begin(filled.n("T"), filled.n("RPM"), 0.0, start, into)
+    code.cut(z=-(filled.n("DEEP") - filled.n("SHORT")), feed=pitch)
+    code.write(back)
+    if filled.n("DWELL"):
+        code.write(f"G04F{plain(filled.n('DWELL'))}")
+    code.cut(z=start)
+    code.away()
+
+
+def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    series, pitch = series_of(filled.values), filled.n("PITCH")
+    if series is not Series.OWN and size_of(series, filled.t("SIZE")) is None:
+        yield Refusal("SIZE", f"{series} has no {filled.t('SIZE') or 'size'}: choose one with the arrows.")
+        return
+    if series in TAPERED or series is Series.ACME:
+        yield Refusal("SERIES", f"{series} is not tapped here: cut it with G33.")
+    if pitch * setting.mm / 25.4 > _COARSEST:
+        most = _COARSEST * 25.4 / setting.mm
+        yield Refusal("PITCH", f"A pitch of {pitch:g} is more than a feed may be, {most:g}: cut it with G33.")
+    if filled.n("SHORT") >= filled.n("DEEP"):
+        yield Refusal(
+            "SHORT", f"It stops {filled.n('SHORT'):g} short of {filled.n('DEEP'):g}: nothing is cut."
+        )
+    speed = pitch * filled.n("RPM") * setting.mm / 25.4
+    if speed > 300.0:
+        yield Refusal(
+            "RPM", f"At S{filled.n('RPM'):g} the slide needs {speed:.0f} in/min, it has 300: type less."
+        )
+    shape, name = setting.tool(filled.n("T")), f"T{filled.n('T'):.0f}"
+    if shape is not None and shape.pitch and abs(shape.pitch / setting.mm - pitch) > 0.01 * pitch:
+        words = f"{name} has a pitch of {shape.pitch / setting.mm:.5g} by its sheet"
+        yield Refusal("T", f"{words}, this is {pitch:.5g}: take another tap.")
+    if shape is not None and shape.length and filled.n("DEEP") * setting.mm > shape.length + 1e-6:
+        reach = shape.length / setting.mm
+        yield Refusal("DEEP", f"{name} cuts {reach:.4g} deep by its sheet: type less, or take a longer tap.")
+    yield from too_fast(filled, setting)
+
+
+def _says(filled: Filled, setting: Setting) -> tuple[str, ...]:
+    known = limits_of({**filled.values, "SIDE": INSIDE, "CLASS": _usual_class(filled)}, setting)
+    if known is None:
+        return ()
+    hole = in_unit(known.crest, series_of(filled.values), metric=setting.metric)
+    return (f"the hole before it: {plain(hole, 4 if not setting.metric else 2)}",)
+
+
+def _usual_class(filled: Filled) -> str:
+    allowed = class_choices({**filled.values, "SIDE": INSIDE})
+    return allowed[0] if allowed else ""
+
+
+def _sketch(_filled: Filled) -> Sketch:
+    wall = part((0, 0), (0, 10), (-24, 10), (-24, 0))
+    teeth = [(-k, 4.0 if k % 2 else 3.4) for k in range(15)]
+    body = tool((-14, -3.4), (-14, 3.4), (8, 3.4), (8, -3.4))
+    dims = (Dim("DEEP", (-14, 10), (0, 10), 3), Dim("DIA", (-17, -4), (-17, 4)), Dim("PITCH", (-4, 6.4)))
+    return sketch(wall, body, cut(*teeth), dims=dims)
+
+
+TAP = Shape(
+    "TAP",
+    "on the axis by a tap: in, spindle back, out at the pitch",
+    (
+        tool_field(ToolKind.TAP),
+        Field("SERIES", "SERIES", Kind.CHOICE, Series.UNC.value, tuple(each.value for each in Series)),
+        Field("SIZE", "SIZE", Kind.NAME, None, only=_named),
+        Field("DIA", "DIAMETER", Kind.DIAMETER, _across, marked=True),
+        Field("PITCH", "PITCH", Kind.LENGTH, _pitch),
+        Field("DEEP", "DEPTH", Kind.LENGTH),
+        Field("HAND", "HAND", Kind.CHOICE, RIGHT, (RIGHT, LEFT)),
+        Field(
+            "SHORT",
+            "STOPS SHORT OF THE DEPTH",
+            Kind.LENGTH,
+            lambda v, _s: round(_SHORT * number(v, "PITCH"), 4),
+            zero=True,
+        ),
+        Field("DWELL", "DWELL WHILE IT TURNS BACK", Kind.SECONDS, 0.5, zero=True, most=60),
+        Field("RPM", "SPEED RPM", Kind.RPM, _turns, most=MOST_RPM),
+    ),
+    _tap,
+    _sketch,
+    _checks,
+    says=_says,
+)

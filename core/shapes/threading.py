@@ -1,0 +1,337 @@
+"""Threads by series, size and class, or by their figures: outside, in a bore, tapered, several starts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from functools import partial
+
+from core.part.tool_shape import ToolKind
+from core.shapes.code_lines import Code
+from core.shapes.cutting_data import Work, rpm
+from core.shapes.number_words import plain
+from core.shapes.shape import Filled, Shape
+from core.shapes.shape_fields import Field, Kind, Proposal, Refusal, Value, Values, number, text
+from core.shapes.shape_setting import Setting
+from core.shapes.sketch import Dim, Sketch, cut, part, sketch
+from core.shapes.thread_limits import Limits, classes, in_unit, limits, pipe_length
+from core.shapes.thread_series import TAPERED, Series, size_of
+from core.shapes.usual_fields import MOST_RPM, too_fast, tool_field
+
+OUTSIDE, INSIDE = "OUTSIDE", "BORE"
+RIGHT, LEFT = "RIGHT", "LEFT"
+YES, NO = "YES", "NO"
+_MOST_RPM = 1000.0  # of a thread on a small lathe: the slide has to follow
+_COARSE = (0.2, 1.0, 2.0)  # in/rev: without G35, under G35, under G35F2
+_TURNS_BEFORE = 3.0  # of run-up, where nobody knows the slide's acceleration
+_REACH = 0.04  # in/rev: pitch by which passes are counted
+_TAPER = 1.0 / 16.0
+
+
+# --- what the standards say
+
+
+def series_of(values: Values) -> Series:
+    """The series that is chosen."""
+    return Series(text(values, "SERIES") or Series.OWN)
+
+
+def limits_of(values: Values, setting: Setting) -> Limits | None:
+    """Limits by series, size and class in the unit of the series; None where they are not known."""
+    series, inside = series_of(values), text(values, "SIDE") == INSIDE
+    found = size_of(series, text(values, "SIZE"))
+    if found is None:
+        return None
+    shape = setting.tool(number(values, "T"))
+    nose = shape.nose_radius / in_unit(1.0, series, metric=True) if shape is not None else 0.0
+    allowed = classes(series, inside=inside)
+    chosen = text(values, "CLASS")
+    if allowed and chosen not in allowed:
+        return None
+    return limits(series, found, chosen, inside=inside, nose=nose)
+
+
+def _from_limits(of: str) -> Proposal:
+    def proposed(values: Values, setting: Setting) -> Value | None:
+        known = limits_of(values, setting)
+        if known is None:
+            return None
+        value = known.crest if of == "crest" else known.root
+        return round(in_unit(value, series_of(values), metric=setting.metric), 4 if not setting.metric else 3)
+
+    return proposed
+
+
+def _pitch(values: Values, setting: Setting) -> Value | None:
+    series = series_of(values)
+    found = size_of(series, text(values, "SIZE"))
+    if found is None:
+        return None
+    return round(in_unit(found.pitch, series, metric=setting.metric), 6)
+
+
+def _class(values: Values, _setting: Setting) -> Value | None:
+    allowed = classes(series_of(values), inside=text(values, "SIDE") == INSIDE)
+    return allowed[0] if allowed else ""
+
+
+def class_choices(values: Values) -> tuple[str, ...]:
+    """The classes that this series has on this side."""
+    return classes(series_of(values), inside=text(values, "SIDE") == INSIDE)
+
+
+def _named(values: Values) -> bool:
+    return series_of(values) is not Series.OWN
+
+
+def _own(values: Values) -> bool:
+    return not _named(values)
+
+
+def _taper(values: Values, _setting: Setting) -> Value | None:
+    return _TAPER if series_of(values) in TAPERED else 0.0
+
+
+def _long(values: Values, setting: Setting) -> Value | None:
+    series = series_of(values)
+    found = size_of(series, text(values, "SIZE"))
+    long = pipe_length(series, found) if found is not None else 0.0
+    return round(in_unit(long, series, metric=setting.metric), 3) if long else None
+
+
+def _passes(values: Values, setting: Setting) -> Value | None:
+    """As makers of inserts have it: by pitch, four for the finest and sixteen for the coarsest."""
+    pitch = number(values, "PITCH") * setting.mm / 25.4
+    return float(min(16, max(4, round(4 + 80 * pitch)))) if pitch else None
+
+
+def _rpm(values: Values, setting: Setting) -> Value | None:
+    lead = number(values, "PITCH") * number(values, "STARTS")
+    across = number(values, "CREST")
+    if not lead or not across:
+        return None
+    most = min(rpm(Work.THREAD, across, setting), _MOST_RPM)
+    fastest = 60.0 * 25.4 / setting.mm / lead  # in/min that a slide reaches in a short run-up
+    return max(10.0, 10.0 * math.floor(min(most, fastest) / 10.0))
+
+
+def _run_up(values: Values, setting: Setting) -> Value | None:
+    """What the slide needs to reach the lead, twice, and never less than two pitches."""
+    lead, turns = number(values, "PITCH") * number(values, "STARTS"), number(values, "RPM")
+    if not lead or not turns:
+        return None
+    accel = setting.shop.slide_accel / setting.mm
+    needed = (lead * turns / 60.0) ** 2 / accel if accel else _TURNS_BEFORE * lead
+    return round(max(needed, 2.0 * number(values, "PITCH"), setting.near), 2 if not setting.metric else 1)
+
+
+# --- lines
+
+
+def first_depth(filled: Filled) -> float:
+    """Per side: constant chip area, so the depth of N passes over the root of N."""
+    return filled_depth(filled) / math.sqrt(max(1.0, filled.n("PASSES")))
+
+
+def filled_depth(filled: Filled) -> float:
+    """Of the thread, per side."""
+    return abs(filled.n("CREST") - filled.n("ROOT")) / 2.0
+
+
+def _thread(filled: Filled, setting: Setting, code: Code) -> None:
+    inside = filled.t("SIDE") == INSIDE
+    outwards = -1.0 if inside else 1.0
+    near = partial(_on_step, step=_coarse_step(filled, setting))
+    starts = max(1, int(filled.n("STARTS")))
+    lead, first = filled.n("PITCH") * starts, near(first_depth(filled)) or first_depth(filled)
+    begin, end = filled.n("RUNUP") - filled.n("AT"), -(filled.n("AT") + filled.n("LONG"))
+    taper = filled.n("TAPER") / 2.0  # of the radius
+    down = -outwards * taper * filled.n("RUNUP")  # at the start of a pass
+    crest, root = filled.n("CREST") / 2.0 + down, filled.n("ROOT") / 2.0 + down
+    at, root, begin, end = near(crest - outwards * first), near(root), near(begin), near(end)
+    turns = "M04" if filled.t("HAND") == LEFT else "M03"
+    clear = near(at + outwards * 3.0 * first)
+    code.begin(filled.n("T"), filled.n("RPM"), clear, begin, turns)
+    coarse = lead * setting.mm / 25.4 > _COARSE[0]
+    for k in range(starts):
+        start_z = near(begin + k * filled.n("PITCH"))
+        code.rapid(at, start_z if k else None)
+        if coarse and k == 0:
+            f2 = "F2" if lead * setting.mm / 25.4 > _COARSE[1] else ""
+            code.write(f"G35{f2}", f"G92{code.point(at, start_z)}")
+        words = f"G33{code.x(root)}{code.z(end)}{code.x(first, 'I')}K{plain(lead, 6)}"
+        if taper:
+            far = (begin + k * filled.n("PITCH") - end) * taper * outwards
+            words += code.x(far, "A")
+        words += "P" if filled.t("PULL") == YES else ""
+        words += (
+            ""
+            if not filled.n("INFEED")
+            else "C"
+            if filled.n("INFEED") == 29.0
+            else f"C{plain(filled.n('INFEED'))}"
+        )
+        code.write(words)
+    if coarse:
+        if starts > 1:
+            code.rapid(z=begin)
+        code.write("G36", f"G92{code.point(at, begin)}")
+    code.forget()
+    code.rapid(clear)
+    code.away()
+
+
+def _coarse_step(filled: Filled, setting: Setting) -> float:
+    """Of the slide, in the unit of the program, under the G35 or G35F2 that a lead needs; 0 without."""
+    lead = filled.n("PITCH") * max(1.0, filled.n("STARTS")) * setting.mm / 25.4
+    inch = 0.0 if lead <= _COARSE[0] else 0.00025 if lead <= _COARSE[1] else 0.0005
+    return inch * 25.4 / setting.mm
+
+
+def _on_step(value: float, step: float) -> float:
+    return round(value / step) * step if step else value
+
+
+def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    inside = filled.t("SIDE") == INSIDE
+    crest, root, pitch = filled.n("CREST"), filled.n("ROOT"), filled.n("PITCH")
+    if inside and root <= crest:
+        yield Refusal("ROOT", f"In a bore the thread goes outwards: {root:g} is not more than {crest:g}.")
+    if not inside and root >= crest:
+        yield Refusal("ROOT", f"The thread goes inwards: {root:g} is not less than {crest:g}.")
+    sharp = pitch / 2.0 / math.tan(math.radians(_angle(filled) / 2.0))
+    if filled_depth(filled) > 1.02 * sharp:
+        words = f"{filled_depth(filled):.4f} deep: flanks of a pitch of {pitch:.5g} meet at {sharp:.4f}"
+        yield Refusal("ROOT", f"{words}. Look at both diameters.")
+    yield from _lead_checks(filled, setting)
+    if filled.t("PULL") == NO:
+        yield from _relief(filled)
+    yield from _by_sheet(filled, setting)
+    yield from too_fast(filled, setting)
+
+
+def _angle(filled: Filled) -> float:
+    series = series_of(filled.values)
+    if series is Series.ACME:
+        return 29.0
+    return 55.0 if series in {Series.BSP, Series.BSPT} else 60.0
+
+
+def _lead_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    lead = filled.n("PITCH") * filled.n("STARTS")
+    inch = lead * setting.mm / 25.4
+    if inch > _COARSE[2]:
+        yield Refusal(
+            "PITCH", f"A lead of {lead:g} is more than the control cuts, {_COARSE[2] / setting.mm * 25.4:g}."
+        )
+    speed = inch * filled.n("RPM")
+    if speed > 300.0:
+        slow = math.floor(300.0 / inch)
+        yield Refusal(
+            "RPM", f"At S{filled.n('RPM'):g} the slide needs {speed:.0f} in/min, it has 300: S{slow} or less."
+        )
+    turns = math.sqrt(filled_depth(filled) / max(first_depth(filled), 1e-9))
+    if turns > 60:
+        yield Refusal("PASSES", "More than 60 passes: type fewer.")
+
+
+def _relief(filled: Filled) -> Iterator[Refusal]:
+    """A pass that ends without pulling out while it goes on needs a groove to end in."""
+    lead = filled.n("PITCH") * filled.n("STARTS")
+    relief = filled.n("RELIEF")
+    if relief <= 0.0:
+        text_ = "Thread relief missing: where the tool stops it cuts a ring. Say its width, or pull out."
+        yield Refusal("RELIEF", text_)
+    elif relief < 1.5 * lead:
+        yield Refusal(
+            "RELIEF", f"A relief of {relief:g} is less than 1.5 turns of the lead, {1.5 * lead:.4g}."
+        )
+
+
+def _by_sheet(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    shape, name = setting.tool(filled.n("T")), f"T{filled.n('T'):.0f}"
+    if shape is None:
+        return
+    if shape.kind is ToolKind.THREADING and shape.point and abs(shape.point - _angle(filled)) > 0.5:
+        words = f"{name} cuts {shape.point:g}°, this thread has {_angle(filled):g}°: take another insert."
+        yield Refusal("T", words)
+    if shape.pitch and abs(shape.pitch / setting.mm - filled.n("PITCH")) > 0.02 * filled.n("PITCH"):
+        words = f"{name} is made for a pitch of {shape.pitch / setting.mm:.5g}"
+        yield Refusal("T", f"{words}, not {filled.n('PITCH'):.5g}: take another insert.")
+    if filled.t("SIDE") == INSIDE and shape.diameter and shape.diameter / setting.mm > filled.n("CREST"):
+        yield Refusal("T", f"The bar of {name} does not go into {filled.n('CREST'):g}.")
+
+
+def _size_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    series = series_of(filled.values)
+    if series is not Series.OWN and size_of(series, filled.t("SIZE")) is None:
+        yield Refusal("SIZE", f"{series} has no {filled.t('SIZE') or 'size'}: choose one with the arrows.")
+    else:
+        yield from _checks(filled, setting)
+
+
+def _sketch(filled: Filled) -> Sketch:
+    teeth: list[tuple[float, float]] = [(0.0, 6.6)]
+    for k in range(7):
+        teeth += [(-1.0 - 2 * k, 8.0), (-2.0 - 2 * k, 6.6)]
+    relief = (
+        [(-14.0, 6.0), (-17.0, 6.0), (-17.0, 10.0)]
+        if filled.n("RELIEF")
+        else [(-14.6, 8.0), (-17, 8.0), (-17, 10)]
+    )
+    inside = filled.t("SIDE") == INSIDE
+    solid = (
+        part((0, 0), *teeth, *relief, (-24, 10), (-24, 0))
+        if not inside
+        else part((0, 13), (0, 8), *((z, 14.6 - r) for z, r in teeth[1:]), (-15, 6.6), (-24, 6.6), (-24, 13))
+    )
+    crest, root = (6.6, 8.0) if inside else (8.0, 6.6)
+    return sketch(
+        solid,
+        cut(*(teeth if not inside else [(z, 14.6 - r) for z, r in teeth])),
+        dims=(
+            Dim("CREST", (-5, -crest), (-5, crest)),
+            Dim("ROOT", (-10, -root), (-10, root)),
+            Dim("LONG", (-14, 13), (0, 13), 2),
+            Dim("RUNUP", (0, 13), (5, 13), 2),
+            Dim("PITCH", (-3, 9.6)),
+            Dim("SIZE", (-19, 4)),
+            *((Dim("RELIEF", (-15.5, 4.5)),) if filled.n("RELIEF") else ()),
+        ),
+    )
+
+
+_ALL_CLASSES = tuple(
+    dict.fromkeys(c for s in Series for inside in (False, True) for c in classes(s, inside=inside))
+)
+
+THREAD = Shape(
+    "THREAD",
+    "by series, size and class: UNC, UNF, M, NPT, BSP, ACME, or its own figures",
+    (
+        tool_field(ToolKind.THREADING),
+        Field("SERIES", "SERIES", Kind.CHOICE, Series.UNC.value, tuple(each.value for each in Series)),
+        Field("SIZE", "SIZE", Kind.NAME, None, only=_named),
+        Field("SIDE", "SIDE", Kind.CHOICE, OUTSIDE, (OUTSIDE, INSIDE)),
+        Field("CLASS", "CLASS", Kind.CHOICE, _class, _ALL_CLASSES, only=lambda v: bool(class_choices(v))),
+        Field("LONG", "LENGTH", Kind.LENGTH, _long),
+        Field("AT", "BEGINS BEHIND Z0", Kind.LENGTH, 0.0, zero=True),
+        Field("PULL", "PULLS OUT WHILE GOING ON", Kind.CHOICE, YES, (YES, NO)),
+        Field(
+            "RELIEF", "WIDTH OF THE RELIEF", Kind.LENGTH, 0.0, zero=True, only=lambda v: text(v, "PULL") == NO
+        ),
+        Field("PITCH", "PITCH", Kind.LENGTH, _pitch),
+        Field("STARTS", "STARTS", Kind.COUNT, 1.0, most=24),
+        Field("HAND", "HAND", Kind.CHOICE, RIGHT, (RIGHT, LEFT)),
+        Field("CREST", "DIAMETER BEFORE IT IS CUT", Kind.DIAMETER, _from_limits("crest")),
+        Field("ROOT", "DIAMETER OF THE LAST PASS", Kind.DIAMETER, _from_limits("root")),
+        Field("TAPER", "TAPER ON THE DIAMETER", Kind.RATIO, _taper, zero=True, most=1.0),
+        Field("PASSES", "PASSES", Kind.COUNT, _passes, most=60),
+        Field("INFEED", "INFEED ANGLE", Kind.ANGLE, 29.0, most=30.0, zero=True),
+        Field("RPM", "SPEED RPM", Kind.RPM, _rpm, most=MOST_RPM),
+        Field("RUNUP", "RUN-UP", Kind.LENGTH, _run_up),
+    ),
+    _thread,
+    _sketch,
+    _size_checks,
+)

@@ -1,0 +1,438 @@
+"""Face, turn along a profile, taper, broken edge and bore: roughing by G75, then the contour."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+from core.part.tool_shape import ToolKind
+from core.shapes.code_lines import Code
+from core.shapes.contour import Row, contour_refusals, outline, points, row_word, write_contour
+from core.shapes.cutting_data import Work
+from core.shapes.shape import Filled, Shape
+from core.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number, size, text
+from core.shapes.shape_setting import Setting
+from core.shapes.sketch import Dim, Sketch, cut, part, sketch, turned
+from core.shapes.usual_fields import (
+    around,
+    bar,
+    feed_field,
+    per_rev,
+    rpm_field,
+    surface_field,
+    too_fast,
+    tool_field,
+)
+
+OUTSIDE, INSIDE = "OUTSIDE", "BORE"
+CHAMFER, ROUND = "CHAMFER", "RADIUS"
+_BESIDE = {False: 0.02, True: 0.5}  # by metric: how far beside the part a contour begins and ends
+
+
+def _roughs(values: Values) -> bool:
+    return number(values, "ROUGH") > 0.0
+
+
+_ROUGH = Field("ROUGH", "DEPTH OF A ROUGH PASS", Kind.LENGTH, 0.0, zero=True)
+_LEAVE = Field("LEAVE", "LEFT FOR FINISHING", Kind.LENGTH, size(0.01, 0.25), zero=True, only=_roughs)
+_RFEED = feed_field(Work.TURN, "RFEED", "FEED OF ROUGHING", only=_roughs)
+_COMP = Field("COMP", "NOSE COMPENSATION D", Kind.OFFSET, 0.0, zero=True, most=32)
+
+
+def begin_spindle(filled: Filled, setting: Setting, code: Code, x: float, z: float | None) -> None:
+    """Tool, spindle and the way to the part; constant surface speed where it is asked for."""
+    code.begin(filled.n("T"), filled.n("RPM"), x, z)
+    if filled.n("SURF"):
+        code.surface_speed(filled.n("SURF"), min(setting.shop.max_rpm, filled.n("RPM")))
+
+
+def end_spindle(filled: Filled, code: Code) -> None:
+    """To where tools change; back to rpm."""
+    code.away()
+    if filled.n("SURF"):
+        code.constant_speed()
+
+
+# --- along a contour
+
+
+def cut_contour(filled: Filled, setting: Setting, code: Code, rows: Sequence[Row], *, inside: bool) -> None:
+    """Roughing by G75 where a depth of a pass is said, then the contour, compensated where asked for."""
+    there = points(rows)
+    beside = _beside(filled, setting, there, inside=inside)
+    first = there[0]
+    near = first[0] + setting.near
+    rough, comp = filled.n("ROUGH"), filled.n("COMP")
+    begin_spindle(filled, setting, code, beside if rough else first[1], near)
+    if rough:
+        code.set_feed(filled.n("RFEED"))
+        words = f"{code.z(rough, 'I')}{code.z(filled.n('LEAVE'), 'U')}"
+        code.write(f"G75{words}F{_feed(filled.n('RFEED'))}", code.point(first[1], first[0]))
+        write_contour(code, rows)
+        code.write("RF")
+        code.rapid(x=first[1])
+    if comp:
+        code.set_feed(filled.n("FEED"))
+        code.write("G42" if inside else "G41", f"{code.z(first[0])}D{comp:.0f}")
+    else:
+        code.cut(z=first[0], feed=filled.n("FEED"))
+    write_contour(code, rows)
+    if abs(beside - there[-1][1]) > 1e-9:
+        code.cut(x=beside)
+    end_spindle(filled, code)
+    if comp:
+        code.write("G40")
+
+
+def _feed(value: float) -> str:
+    return f"{value:.6f}".rstrip("0").replace("0.", ".", 1) if value < 1 else f"{value:g}"
+
+
+def _beside(filled: Filled, setting: Setting, there: Sequence[tuple[float, float]], *, inside: bool) -> float:
+    """The radius beside the metal at which a contour ends, and roughing begins."""
+    free, radii = _BESIDE[setting.metric], [r for _, r in there]
+    if inside:
+        hole = filled.n("HOLE") / 2.0 or min(radii)
+        return max(0.0, min(hole, *radii) - free)
+    stock = filled.n("FROM") / 2.0
+    return max(stock, *radii) + free
+
+
+def _contour_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    inside = filled.t("SIDE") == INSIDE
+    yield from contour_refusals(filled.rows)
+    yield from _compensated(filled, setting)
+    yield from _cutting_checks(filled, setting)
+    there = points(filled.rows)
+    if filled.n("ROUGH"):
+        for at, (before, here) in enumerate(pairwise(there), 2):
+            if here[0] > before[0] + 1e-9:
+                text_ = f"Point {at} goes back towards the face: roughing goes along Z to the chuck only."
+                yield Refusal(row_word(at), text_)
+                break
+    if (
+        not inside
+        and filled.n("FROM")
+        and max((r for _, r in there), default=0.0) > filled.n("FROM") / 2 + 1e-9
+    ):
+        at = max(range(len(there)), key=lambda n: there[n][1])
+        words = f"Point {at + 1} lies outside the stock of {filled.n('FROM'):g}: type a smaller X."
+        yield Refusal(row_word(at + 1), words)
+
+
+def _compensated(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    if filled.n("COMP") and setting.called:
+        yield Refusal("COMP", "G41 does not work in a subroutine, so not in a bar loop: type 0.")
+
+
+def _cutting_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    yield from too_fast(filled, setting)
+    yield from per_rev(filled, setting, "FEED", "RFEED")
+    rough, leave = filled.n("ROUGH"), filled.n("LEAVE")
+    if rough and leave >= rough:
+        yield Refusal("LEAVE", f"{leave:g} left for finishing is more than a pass of {rough:g}: type less.")
+
+
+def _rows(filled: Filled) -> tuple[Row, ...]:
+    return filled.rows
+
+
+def _turn(filled: Filled, setting: Setting, code: Code) -> None:
+    cut_contour(filled, setting, code, filled.rows, inside=filled.t("SIDE") == INSIDE)
+
+
+def _turn_sketch(filled: Filled) -> Sketch:
+    rows = [row for row in filled.rows if not row.empty]
+    drawn = outline(rows)
+    if len(drawn) < 2:
+        return sketch(part((0, 0), (0, 5), (-12, 5), (-12, 0)))
+    across = max(filled.n("FROM"), 2.0 * max(r for _, r in drawn))
+    dims = tuple(Dim(row_word(k), at) for k, at in enumerate(points(rows), 1))
+    if filled.t("SIDE") == INSIDE:
+        back = min(z for z, _ in drawn)
+        wall = 1.3 * max(r for _, r in drawn)
+        solid = part((drawn[0][0], wall), *drawn, (back, 0.0), (1.3 * back, 0.0), (1.3 * back, wall))
+        return sketch(solid, cut(*drawn), dims=dims)
+    return sketch(*turned(drawn, across), dims=dims)
+
+
+def _outside(values: Values) -> bool:
+    return text(values, "SIDE") != INSIDE
+
+
+TURN = Shape(
+    "TURN",
+    "along a profile of points, corners and arcs; roughed or not",
+    (
+        tool_field(ToolKind.TURNING, ToolKind.BORING),
+        Field("SIDE", "SIDE", Kind.CHOICE, OUTSIDE, (OUTSIDE, INSIDE)),
+        Field("FROM", "DIAMETER OF THE STOCK", Kind.DIAMETER, bar, zero=True, only=_outside),
+        Field("HOLE", "DIAMETER OF THE HOLE", Kind.DIAMETER, None, only=lambda v: not _outside(v)),
+        _ROUGH,
+        _LEAVE,
+        _RFEED,
+        feed_field(Work.FINISH),
+        rpm_field(Work.TURN, around("FROM")),
+        surface_field(),
+        _COMP,
+    ),
+    _turn,
+    _turn_sketch,
+    _contour_checks,
+    contour=True,
+)
+
+
+# --- face
+
+
+def _face(filled: Filled, setting: Setting, code: Code) -> None:
+    at, stock, deep = filled.n("AT"), filled.n("STOCK"), filled.n("DEEP")
+    start, end = filled.n("FROM") / 2.0 + _BESIDE[setting.metric], filled.n("TO") / 2.0
+    passes = max(1, math.ceil(stock / deep - 1e-9)) if deep else 1
+    begin_spindle(filled, setting, code, start, at + stock + setting.near)
+    for k in range(1, passes + 1):
+        z = at + stock * (passes - k) / passes
+        if k > 1:
+            code.rapid(z=z + stock / passes + _BESIDE[setting.metric])
+            code.rapid(x=start)
+        code.rapid(z=z)
+        code.cut(x=end, feed=filled.n("FEED"))
+    end_spindle(filled, code)
+
+
+def _past_axis(values: Values, setting: Setting) -> Value | None:
+    """Two nose radii beyond the axis: a nose that stops on it leaves a pip."""
+    shape = setting.tool(number(values, "T"))
+    nose = shape.nose_radius / setting.mm if shape is not None else 0.0
+    return -math.ceil(2000.0 * (nose or 0.4 / setting.mm)) / 1000.0
+
+
+def _face_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    if filled.n("TO") >= filled.n("FROM"):
+        yield Refusal("TO", f"It faces from {filled.n('FROM'):g} inwards: {filled.n('TO'):g} is not less.")
+    yield from too_fast(filled, setting)
+    yield from per_rev(filled, setting, "FEED")
+
+
+def _face_sketch(_filled: Filled) -> Sketch:
+    solid = part((0, 0), (0, 10), (-22, 10), (-22, 0))
+    return sketch(
+        solid,
+        cut((0, 10), (0, 1)),
+        cut((3, 10), (3, 0), (0, 0)),
+        dims=(
+            Dim("FROM", (-16, -10), (-16, 10)),
+            Dim("TO", (0, 1), None),
+            Dim("STOCK", (0, 10), (3, 10), 4),
+            Dim("AT", (0, 5)),
+        ),
+    )
+
+
+FACE = Shape(
+    "FACE",
+    "square across the end, in one pass or several",
+    (
+        tool_field(ToolKind.TURNING),
+        Field("FROM", "FROM DIAMETER", Kind.DIAMETER, bar),
+        Field("TO", "TO DIAMETER", Kind.COORDINATE, _past_axis),
+        Field("AT", "FACE AT Z", Kind.COORDINATE, 0.0),
+        Field("STOCK", "STOCK BEFORE THE FACE", Kind.LENGTH, 0.0, zero=True),
+        Field(
+            "DEEP", "DEPTH OF A PASS", Kind.LENGTH, size(0.03, 0.75), only=lambda v: number(v, "STOCK") > 0
+        ),
+        feed_field(Work.FINISH),
+        rpm_field(Work.TURN, around("FROM")),
+        surface_field(),
+    ),
+    _face,
+    _face_sketch,
+    _face_checks,
+)
+
+
+# --- taper, edge, bore: contours that are said in a few figures
+
+
+def _taper_rows(filled: Filled) -> tuple[Row, ...]:
+    begin = -filled.n("AT")
+    return Row(filled.n("SMALL"), begin), Row(filled.n("LARGE"), begin - filled.n("LONG"))
+
+
+def _large(values: Values, _setting: Setting) -> Value | None:
+    angle = number(values, "ANGLE")
+    if not angle or abs(angle) >= 90:
+        return None
+    return round(number(values, "SMALL") + 2.0 * number(values, "LONG") * math.tan(math.radians(angle)), 5)
+
+
+def _taper(filled: Filled, setting: Setting, code: Code) -> None:
+    cut_contour(filled, setting, code, _taper_rows(filled), inside=False)
+
+
+def _taper_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    if filled.n("LARGE") < filled.n("SMALL"):
+        yield Refusal(
+            "LARGE", "The taper falls towards the chuck: a turning tool leads into metal behind it."
+        )
+    if filled.n("FROM") and filled.n("LARGE") > filled.n("FROM") + 1e-9:
+        yield Refusal("LARGE", f"{filled.n('LARGE'):g} is more than the stock of {filled.n('FROM'):g}.")
+    yield from _compensated(filled, setting)
+    yield from _cutting_checks(filled, setting)
+
+
+def _taper_sketch(_filled: Filled) -> Sketch:
+    solid = part((0, 0), (0, 5), (-4, 5), (-16, 9), (-24, 9), (-24, 0))
+    return sketch(
+        solid,
+        cut((-4, 5), (-16, 9)),
+        dims=(
+            Dim("SMALL", (-4, -5), (-4, 5)),
+            Dim("LARGE", (-16, -9), (-16, 9)),
+            Dim("AT", (-4, 9), (0, 9), 4),
+            Dim("LONG", (-16, 9), (-4, 9), 4),
+            Dim("ANGLE", (-10, 4)),
+        ),
+    )
+
+
+_USUAL_CONTOUR = (_ROUGH, _LEAVE, _RFEED, feed_field(Work.FINISH))
+
+TAPER = Shape(
+    "TAPER TURN",
+    "a cone by two diameters, or by a diameter and an angle",
+    (
+        tool_field(ToolKind.TURNING),
+        Field("FROM", "DIAMETER OF THE STOCK", Kind.DIAMETER, bar, zero=True),
+        Field("SMALL", "DIAMETER AT THE FACE", Kind.DIAMETER),
+        Field("AT", "BEGINS BEHIND Z0", Kind.LENGTH, 0.0, zero=True),
+        Field("LONG", "LENGTH", Kind.LENGTH),
+        Field("ANGLE", "ANGLE TO THE AXIS", Kind.ANGLE, 0.0, most=89.0, zero=True),
+        Field("LARGE", "DIAMETER AT THE CHUCK", Kind.DIAMETER, _large),
+        *_USUAL_CONTOUR,
+        rpm_field(Work.TURN, around("LARGE")),
+        surface_field(),
+        _COMP,
+    ),
+    _taper,
+    _taper_sketch,
+    _taper_checks,
+)
+
+
+def _edge_rows(filled: Filled) -> tuple[Row, ...]:
+    across, edge, at = filled.n("DIAM"), filled.n("EDGE"), -filled.n("AT")
+    inside = filled.t("SIDE") == INSIDE
+    begin = across + 2.0 * edge if inside else across - 2.0 * edge
+    arc = 0.0 if filled.t("KIND") == CHAMFER else (-edge if inside else edge)
+    return Row(begin, at), Row(across, at - edge, arc=arc)
+
+
+def _edge(filled: Filled, setting: Setting, code: Code) -> None:
+    cut_contour(filled, setting, code, _edge_rows(filled), inside=filled.t("SIDE") == INSIDE)
+
+
+def _edge_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    across, edge = filled.n("DIAM"), filled.n("EDGE")
+    if filled.t("SIDE") == OUTSIDE and 2.0 * edge > across + 1e-9:
+        yield Refusal("EDGE", f"{edge:g} is more than the radius of {across:g}: type {across / 2:g} or less.")
+    yield from _compensated(filled, setting)
+    yield from _cutting_checks(filled, setting)
+
+
+def _edge_sketch(filled: Filled) -> Sketch:
+    top = ((0, 6), (-4, 10)) if filled.t("KIND") == CHAMFER else ((0, 6), (-1.2, 8.8), (-4, 10))
+    solid = part((0, 0), *top, (-22, 10), (-22, 0))
+    return sketch(
+        solid,
+        cut(*top),
+        dims=(Dim("DIAM", (-14, -10), (-14, 10)), Dim("EDGE", (-4, 10), (0, 10), 3), Dim("AT", (0, 3))),
+    )
+
+
+EDGE = Shape(
+    "EDGE TURN",
+    "an edge broken by a chamfer or a radius, outside or in a bore",
+    (
+        tool_field(ToolKind.TURNING, ToolKind.BORING),
+        Field("SIDE", "SIDE", Kind.CHOICE, OUTSIDE, (OUTSIDE, INSIDE)),
+        Field("KIND", "KIND", Kind.CHOICE, CHAMFER, (CHAMFER, ROUND)),
+        Field("DIAM", "DIAMETER", Kind.DIAMETER, bar),
+        Field("EDGE", "SIZE", Kind.LENGTH),
+        Field("AT", "FACE BEHIND Z0", Kind.LENGTH, 0.0, zero=True),
+        feed_field(Work.FINISH),
+        rpm_field(Work.TURN, around("DIAM")),
+        _COMP,
+    ),
+    _edge,
+    _edge_sketch,
+    _edge_checks,
+)
+
+
+def _bore_rows(filled: Filled) -> tuple[Row, ...]:
+    across, deep, edge = filled.n("DIAM"), -filled.n("DEEP"), filled.n("EDGE")
+    mouth = (Row(across + 2.0 * edge, 0.0), Row(across, -edge)) if edge else (Row(across, 0.0),)
+    return *mouth, Row(None, deep), Row(filled.n("HOLE"), None)
+
+
+def _bore(filled: Filled, setting: Setting, code: Code) -> None:
+    cut_contour(filled, setting, code, _bore_rows(filled), inside=True)
+
+
+def _bore_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    across, deep, hole = filled.n("DIAM"), filled.n("DEEP"), filled.n("HOLE")
+    if hole >= across:
+        yield Refusal(
+            "HOLE", f"The hole of {hole:g} is not less than the bore of {across:g}: nothing is cut."
+        )
+    if filled.n("EDGE") >= deep:
+        yield Refusal("EDGE", f"The chamfer is as long as the bore of {deep:g}: type less.")
+    tool = setting.tool(filled.n("T"))
+    if tool is not None and tool.diameter and tool.diameter > hole * setting.mm:
+        words = f"The bar of T{filled.n('T'):.0f} is {tool.diameter / setting.mm:.4g}, the hole {hole:g}"
+        yield Refusal("T", f"{words}: it does not go in; drill larger, or take a thinner bar.")
+    if tool is not None and tool.stick_out and tool.stick_out < deep * setting.mm:
+        words = f"T{filled.n('T'):.0f} reaches {tool.stick_out / setting.mm:.4g}"
+        yield Refusal("DEEP", f"{words}, the bore is {deep:g} deep: take a longer bar.")
+    yield from _compensated(filled, setting)
+    yield from _cutting_checks(filled, setting)
+
+
+def _bore_sketch(_filled: Filled) -> Sketch:
+    wall = part((0, 10), (0, 7), (-1.5, 5.5), (-15, 5.5), (-15, 3), (-24, 3), (-24, 10))
+    return sketch(
+        wall,
+        cut((0, 7), (-1.5, 5.5), (-15, 5.5), (-15, 3)),
+        dims=(
+            Dim("DIAM", (-8, -5.5), (-8, 5.5)),
+            Dim("HOLE", (-19, -3), (-19, 3)),
+            Dim("DEEP", (-15, 10), (0, 10), 3),
+            Dim("EDGE", (0, 7)),
+        ),
+    )
+
+
+BORE = Shape(
+    "BORE",
+    "a drilled hole opened to a diameter, with a chamfer at its mouth",
+    (
+        tool_field(ToolKind.BORING),
+        Field("HOLE", "DIAMETER OF THE HOLE", Kind.DIAMETER),
+        Field("DIAM", "DIAMETER", Kind.DIAMETER),
+        Field("DEEP", "DEPTH", Kind.LENGTH),
+        Field("EDGE", "CHAMFER AT THE MOUTH", Kind.LENGTH, 0.0, zero=True),
+        _ROUGH,
+        _LEAVE,
+        _RFEED,
+        feed_field(Work.BORE),
+        rpm_field(Work.BORE, around("DIAM")),
+        surface_field(),
+        _COMP,
+    ),
+    _bore,
+    _bore_sketch,
+    _bore_checks,
+)

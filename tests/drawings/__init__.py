@@ -1,0 +1,1 @@
+"""Drawings: read, picked, turned; and those that no contour can be taken from."""

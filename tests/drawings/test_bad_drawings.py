@@ -1,0 +1,211 @@
+"""Drawings that no contour can be taken from: each is refused by one clear sentence, none by a traceback."""
+
+from __future__ import annotations
+
+import errno
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from core.drawings.drawing import MOST_BYTES, DrawingError
+from core.drawings.drawing_file import read_drawing
+from core.drawings.drawing_view import Side
+from core.drawings.turning_contour import Reach, turning_contour
+from tests.drawings.hand import Draw, chain, dxf, profile_of
+
+
+def refused(path: Path, **how: Any) -> str:
+    with pytest.raises(DrawingError) as told:
+        profile_of(path, **how)
+    text = str(told.value)
+    assert path.name in text
+    assert text.endswith(".")
+    assert "\n" not in text
+    assert ": " in text  # cause, then what to do
+    return text
+
+
+def box(space: Any) -> None:
+    space.add_3dface([(0, 0, 0), (1, 0, 0), (1, 1, 5), (0, 1, 5)])
+
+
+def wire(space: Any) -> None:
+    space.add_line((0, 0, 0), (10, 0, 4))
+
+
+def tilted(space: Any) -> None:
+    space.add_circle((0, 0), 5, dxfattribs={"extrusion": (0, 1, 0)})
+
+
+def words(space: Any) -> None:
+    space.add_text("M8", height=2)
+
+
+@pytest.mark.parametrize(
+    ("draw", "says"),
+    [
+        (lambda _space: None, "only nothing"),
+        (words, "only TEXT"),
+        (box, "three-dimensional"),
+        (wire, "three-dimensional"),
+        (tilted, "three-dimensional"),
+    ],
+)
+def test_no_contour(tmp_path: Path, draw: Draw, says: str) -> None:
+    assert says in refused(dxf(tmp_path / "x.dxf", draw))
+
+
+def test_a_contour_that_crosses_itself(tmp_path: Path) -> None:
+    """The second line runs back through the first wall, 10 behind the face at a diameter of 10."""
+    path = dxf(
+        tmp_path / "x.dxf", chain((0, 4), (-10, 4), (-10, 8), (-14, 8), (-14, 5), (-6, 5), (-6, 9), (-20, 9))
+    )
+    text = refused(path, axis="Y 0")
+    assert "crosses itself" in text
+    assert "10.000 mm behind its face at a diameter of 10.000 mm" in text
+
+
+def test_a_contour_that_crosses_the_axis(tmp_path: Path) -> None:
+    """Down through the axis 10 behind the face, and up again."""
+    path = dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4), (-8, 4), (-12, -4), (-16, 4), (-20, 4)))
+    text = refused(path, axis="Y 0")
+    assert "crosses the axis 10.000 mm behind its face" in text
+
+
+def test_no_bore_where_there_is_none(tmp_path: Path) -> None:
+    path = dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4), (-8, 4), (-8, 0)))
+    assert "no bore" in refused(path, side=Side.INSIDE)
+
+
+def test_no_such_axis(tmp_path: Path) -> None:
+    path = dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4), (-8, 4, 1), (-8, 0)))
+    assert "choose Y 0" in refused(path, axis="Z 0")
+    assert "none is number 9" in refused(path, axis="LINE 9")
+    assert "an arc as its line 3" in refused(path, axis="LINE 3")
+
+
+def test_a_face_alone_is_nothing_to_turn(tmp_path: Path) -> None:
+    chosen = profile_of(dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4))), axis="Y 0")
+    with pytest.raises(DrawingError, match="nothing to turn"):
+        turning_contour(chosen, Reach())
+
+
+def test_a_tool_that_leans_into_a_shoulder(tmp_path: Path) -> None:
+    chosen = profile_of(dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4), (-8, 4), (-8, 6), (-12, 6), (-12, 0))))
+    with pytest.raises(DrawingError, match=r"at 72 degrees.*at 90: take a tool for shoulders"):
+        turning_contour(chosen, Reach(math.radians(70), math.radians(72.5)))
+
+
+# --- files
+
+
+def test_empty_huge_missing_and_foreign_files(tmp_path: Path) -> None:
+    empty, huge = tmp_path / "empty.dxf", tmp_path / "huge.dxf"
+    empty.touch()
+    with huge.open("wb") as file:
+        file.truncate(100_000_000)
+    assert "is empty" in refused(empty)
+    assert f"has 100 MB, {MOST_BYTES / 1e6:.0f} are read" in refused(huge)
+    assert "cannot be read" in refused(tmp_path / "none.dxf")
+    other, dwg = tmp_path / "part.step", tmp_path / "part.dxf"
+    other.write_text("ISO-10303-21;")
+    dwg.write_bytes(b"AC1027\0\0\0\0\0")
+    assert "DXF and SVG are read" in refused(other)
+    assert "DWG" in refused(dwg)
+
+
+def test_files_that_end_anywhere_or_are_spoilt_end_in_one_sentence(tmp_path: Path) -> None:
+    """Cut off, or with a byte that is another one: a drawing or a sentence, never anything else."""
+    whole = dxf(tmp_path / "whole.dxf", chain((0, 0), (0, 4), (-8, 4, 0.3), (-8, 0))).read_bytes()
+    bad = tmp_path / "bad.dxf"
+    for at in range(200, len(whole), len(whole) // 12):
+        for data in (whole[:at], whole[:at] + b"\xff\x00" + whole[at:], whole[:at] + b"9" + whole[at + 1 :]):
+            bad.write_bytes(data)
+            try:
+                read_drawing(bad)
+            except DrawingError as error:
+                assert "bad.dxf" in str(error)  # noqa: PT017 - or it is read
+
+
+def test_a_file_that_is_cut_off_in_its_lines_is_not_taken_for_the_whole(tmp_path: Path) -> None:
+    whole = dxf(tmp_path / "whole.dxf", chain((0, 0), (0, 4), (-8, 4), (-8, 0))).read_text()
+    bad = tmp_path / "bad.dxf"
+    bad.write_text(whole[: whole.index("LWPOLYLINE") + 120])
+    assert "damaged" in refused(bad)
+
+
+# --- blocks
+
+
+def test_blocks_are_taken_apart(tmp_path: Path) -> None:
+    def draw(space: Any) -> None:
+        block = space.doc.blocks.new("PART")
+        chain((0, 0), (0, 4), (-8, 4), (-8, 0))(block)
+        space.add_blockref("PART", (10, 0), dxfattribs={"xscale": 2, "yscale": 2})
+
+    chosen = profile_of(dxf(tmp_path / "b.dxf", draw))
+    assert (chosen.front, chosen.back) == (0.0, -16.0)
+    assert chosen.elements[0].end[0] == 8.0
+
+
+def test_blocks_in_themselves_are_refused(tmp_path: Path) -> None:
+    def draw(space: Any) -> None:
+        block = space.doc.blocks.new("PART")
+        block.add_blockref("PART", (1, 0))
+        space.add_blockref("PART", (0, 0))
+
+    refused(dxf(tmp_path / "b.dxf", draw))
+
+
+def test_what_is_hidden_or_switched_off_is_not_there(tmp_path: Path) -> None:
+    def draw(space: Any) -> None:
+        space.doc.layers.add("OFF").off()
+        space.doc.layers.add("ICE").freeze()
+        for layer in ("OFF", "ICE"):
+            space.add_line((0, 0), (9, 9), dxfattribs={"layer": layer})
+        chain((0, 0), (0, 4), (-8, 4), (-8, 0))(space)
+
+    assert read_drawing(dxf(tmp_path / "b.dxf", draw)).layers == ("0",)
+
+
+def test_mirrored_arcs_and_polylines(tmp_path: Path) -> None:
+    """As CAD leaves them when a half is mirrored: the plane turned over, x from right to left."""
+
+    def draw(space: Any) -> None:
+        over = {"extrusion": (0, 0, -1)}
+        space.add_lwpolyline(
+            [(0, 2, 0), (10, 2, math.tan(math.pi / 8)), (12, 4, 0)], format="xyb", dxfattribs=over
+        )
+        space.add_arc((12, 6), 2, 270, 360, dxfattribs=over)
+
+    elements = profile_of(dxf(tmp_path / "m.dxf", draw), axis="Y 0").elements
+    assert [each.end for each in elements] == [
+        pytest.approx((2, -10)), pytest.approx((4, -12)), pytest.approx((6, -14)),
+    ]  # fmt: skip
+    assert [getattr(each, "clockwise", None) for each in elements] == [None, False, False]
+
+
+@pytest.mark.parametrize(
+    ("name", "reads"), [("part.dxf", "ezdxf.filemanagement.readfile"), ("part.svg", "svgelements.SVG.parse")]
+)
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (OSError(errno.EIO, "Input/output error"), "cannot be read: Input/output error."),
+        (MemoryError(), "needs more memory than is free: close other programs."),
+    ],
+)
+def test_a_disk_that_fails_is_not_called_damage(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, reads: str, error: Exception, said: str
+) -> None:
+    def fails(*_args: object, **_named: object) -> None:
+        raise error
+
+    monkeypatch.setattr(reads, fails)
+    path = tmp_path / name
+    path.write_text("<svg></svg>")
+    with pytest.raises(DrawingError) as told:
+        read_drawing(path)
+    assert str(told.value) == f"{name} {said}"

@@ -1,0 +1,142 @@
+"""Shapes by keys and by fingers in the editor: written, proved while they are typed, opened again."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+
+from app.editor.editor_view import Mode
+from app.screen.panel import Panel
+from core.executor.snapshot import State
+from tests.screen.editor.writer import Writer
+from tests.screen.hands import Key
+
+SHIFT = Qt.KeyboardModifier.ShiftModifier
+
+
+def opened(writer: Writer) -> Writer:
+    """In front of the list of shapes of a new program."""
+    writer.new("shaped")
+    writer.key(Key.Key_F3, SHIFT)
+    writer.sees(lambda: writer.editor.mode is Mode.SHAPES)
+    return writer
+
+
+def touch(writer: Writer, panel: Panel, place: int) -> None:
+    writer.sees(lambda: len(panel._places) > place)
+    QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=panel._places[place][0].center().toPoint())
+
+
+def drilled(writer: Writer) -> Writer:
+    """A head and a hole, written by forms."""
+    opened(writer).type("n")
+    writer.key(Key.Key_F2)
+    writer.type("d.25")
+    writer.key(Key.Key_Return)
+    writer.type(".6")
+    writer.key(Key.Key_F2)
+    writer.sees(lambda: "G81Z-.6" in writer.text())
+    return writer
+
+
+def test_a_hole_is_written_and_the_text_is_one_step_back(writer: Writer) -> None:
+    drilled(writer)
+    assert writer.text().splitlines()[-1] == "M30"
+    writer.key(Key.Key_F10)
+    assert writer.editor.mode is Mode.TEXT
+    writer.key(Key.Key_F8)
+    assert "G81" not in writer.text()
+    assert writer.text().startswith("G90G94F300G72(HEAD")
+
+
+def test_the_path_follows_every_key(writer: Writer) -> None:
+    """Before anything is written: the text that is proved is the one that the form would make."""
+    opened(writer).type("n")
+    writer.key(Key.Key_F2)
+    writer.type("d.25")
+    writer.key(Key.Key_Return)
+    writer.type(".6")
+
+    def deepest() -> float:
+        picture = writer.editor.editor.proof.now.picture
+        return min(picture.z, default=0.0) if picture is not None else 0.0
+
+    writer.sees(lambda: abs(deepest() + 0.6 * 25.4) < 1e-6)
+    writer.type("5")
+    writer.sees(lambda: abs(deepest() + 0.65 * 25.4) < 1e-6)
+    assert "G81" not in writer.text()
+    writer.key(Key.Key_Escape)
+    writer.key(Key.Key_Escape)
+    writer.sees(lambda: writer.editor.mode is Mode.TEXT and not deepest())
+
+
+def test_what_is_wrong_is_said_and_nothing_is_written(writer: Writer) -> None:
+    opened(writer).type("n")
+    writer.key(Key.Key_F2)
+    before = writer.text()
+    writer.type("d.25")
+    writer.key(Key.Key_Return)
+    writer.type("9")
+    writer.key(Key.Key_Down)
+    writer.key(Key.Key_Down)
+    writer.type("0")
+    writer.key(Key.Key_F2)
+    assert "type a peck" in writer.editor.prompt()
+    assert writer.text() == before
+
+
+def test_the_cursor_opens_the_shape_that_it_stands_in(writer: Writer) -> None:
+    drilled(writer)
+    writer.key(Key.Key_F10)
+    writer.editor.go_to(5)
+    writer.key(Key.Key_F3, SHIFT)
+    writer.sees(lambda: writer.editor.mode is Mode.SHAPES)
+    form = writer.editor.shapes.model.form
+    assert form is not None
+    assert form.typed["DEEP"] == ".6"
+
+
+def test_lines_changed_by_hand_are_written_over_only_when_asked(writer: Writer) -> None:
+    drilled(writer)
+    writer.key(Key.Key_F10)
+    writer.editor.go_to(6)
+    writer.write("G04F2\n")
+    changed = writer.text()
+    writer.key(Key.Key_F3, SHIFT)
+    writer.sees(lambda: writer.editor.mode is Mode.SHAPES)
+    assert "CHANGED BY HAND" in writer.editor.prompt()
+    writer.key(Key.Key_F2)
+    assert writer.text() == changed
+    assert "F6 REPLACES" in writer.editor.prompt()
+    writer.key(Key.Key_F6)
+    writer.sees(lambda: "G04F2" not in writer.text())
+
+
+def test_a_finger_opens_types_and_writes(writer: Writer) -> None:
+    opened(writer)
+    touch(writer, writer.editor.shapes.rows, 0)
+    writer.sees(lambda: writer.editor.shapes.model.form is not None)
+    writer.key(Key.Key_F2)
+    writer.sees(lambda: writer.text().startswith("G90"))
+    writer.type("d")
+    writer.sees(lambda: len(writer.editor.shapes.rows.rows) > 4)
+    writer.key(Key.Key_F9)
+    writer.sees(writer.editor.shapes.pad.isVisible)
+    touch(writer, writer.editor.shapes.pad, 2)
+    form = writer.editor.shapes.model.form
+    assert form is not None
+    assert form.typed == {"DIA": "9"}
+
+
+def test_letters_that_stop_the_machine_stop_it_here_too(writer: Writer) -> None:
+    opened(writer)
+    writer.key(Key.Key_E)
+    writer.sees(lambda: writer.desk.snapshot().state is State.ESTOP)
+    assert writer.editor.shapes.model.form is None
+
+
+def test_another_language_has_no_shapes(writer: Writer) -> None:
+    writer.new("other.mpf")
+    writer.key(Key.Key_F3, SHIFT)
+    writer.sees(lambda: "ANOTHER LANGUAGE" in writer.editor.prompt())
+    assert writer.editor.mode is Mode.TEXT

@@ -1,0 +1,1 @@
+"""Shapes: forms, the lines that they write, and read back."""

@@ -1,0 +1,147 @@
+"""The form of a drawing: picked by key and by pointer, tried, written as shapes; and what it refuses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.compose.shapes_desk import attempt
+from app.shapes.drawing_form import DrawingForm
+from app.shapes.shapes_model import Shapes
+from core.shapes.shape_setting import Setting, Shop
+from tests.drawings.hand import TOOLS, chain, dxf
+from tests.shapes.hand import machine
+
+STEP = ((0, 0), (0, 4), (-10, 4), (-10, 6), (-20, 6), (-20, 0))
+
+
+class Desk:
+    """Shapes beside a folder with drawings."""
+
+    def __init__(self, folder: Path, *, metric: bool = True) -> None:
+        shop = Shop(tools=TOOLS)
+        self.shapes = Shapes(lambda: shop, Setting(metric=metric))
+        self.shapes.shop = shop
+        self.shapes.drawings = lambda: {path.name: path for path in sorted(folder.glob("*.*"))}
+        self.shapes.attempt = lambda text, plan, watch: attempt(machine(), lambda: TOOLS, text, plan, watch)
+
+    def open(self, text: str = "") -> DrawingForm:
+        assert self.shapes.open("x.nc", text, 1) == ""
+        self.shapes.worker.settle(30.0)
+        while self.shapes.form is not None:  # that of the piece at the cursor
+            self.shapes.escape()
+        self.strike("x")
+        form = self.shapes.form
+        assert isinstance(form, DrawingForm)
+        return form
+
+    def strike(self, *keys: str) -> None:
+        for key in keys:
+            assert self.shapes.typed(key), key
+        self.settle()
+
+    def settle(self) -> None:
+        self.shapes.planning.settle(30.0)
+        self.shapes.trying.settle(30.0)
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> Any:
+    made = Desk(tmp_path)
+    yield made
+    made.shapes.close()
+
+
+def test_a_drawing_becomes_pieces_that_are_opened_again(desk: Desk, tmp_path: Path) -> None:
+    dxf(tmp_path / "step.dxf", chain(*STEP))
+    form = desk.open()
+    assert not form.troubles
+    assert form.words[0] == "secondary offset 1 has to hold X -.8 (as a diameter), Z -.4, R .4 mm"
+    assert any("stays in the corner at Z -9.975" in each for each in form.words)
+    desk.shapes.write()
+    assert [each.filled.shape.name for each in desk.shapes.pieces] == ["HEAD", "FACE", "TURN"]
+    assert all(each.foreign < 0 for each in desk.shapes.pieces)
+    assert "X12\n" in desk.shapes.text
+
+
+def test_contour_and_axis_by_pointer(desk: Desk, tmp_path: Path) -> None:
+    def draw(space: Any) -> None:
+        chain(*STEP)(space)
+        space.add_lwpolyline([(0, 12), (-6, 12), (-6, 15), (0, 15)], close=True)
+        space.add_line((-30, -3), (30, -3))
+
+    dxf(tmp_path / "two.dxf", draw)
+    form = desk.open()
+    desk.shapes.touch_at((-3.0, 14.0))
+    desk.settle()
+    assert form.figure(form.shape.fields[3]) == "2"
+    desk.shapes.touch("CONTOUR 1")  # the number that stands on it
+    desk.settle()
+    assert form.one.t("CONTOUR") == "1"
+    form.go_to("AXIS")
+    desk.shapes.touch_at((20.0, -3.1))  # the line of no other end, drawn last
+    desk.settle()
+    assert form.one.t("AXIS") == "LINE 10"
+    assert form.plan is not None
+    assert form.plan.chosen is not None
+    assert max(each.box[1] for each in form.plan.chosen.elements) == pytest.approx(9.0)  # 6 above Y 0
+
+
+def test_by_keys(desk: Desk, tmp_path: Path) -> None:
+    """Down to the side of the face, Right: the face is at the left."""
+    dxf(tmp_path / "step.dxf", chain(*STEP))
+    form = desk.open()
+    form.go_to("FRONT")
+    desk.strike("Right")
+    assert form.one.t("FRONT") == "LEFT"
+    form.go_to("ROUGH")
+    desk.strike("0")
+    assert not any("G75" in line for line in form.lines)
+
+
+def test_behind_a_program_it_writes_no_second_head(desk: Desk, tmp_path: Path) -> None:
+    dxf(tmp_path / "step.dxf", chain(*STEP))
+    form = desk.open("G90G94F7620G71G72(HEAD METRIC UNIT DIAMETER WORDS)\nM30\n")
+    assert form.lines[0].startswith("T1(FACE")
+
+
+def test_what_is_wrong_is_said_at_its_field(desk: Desk, tmp_path: Path) -> None:
+    dxf(tmp_path / "a.dxf", chain(*STEP), unit=0)
+    (tmp_path / "b.dxf").write_text("no drawing")
+    form = desk.open()
+    assert "does not say its unit: choose MM or INCH" in form.troubles["DUNIT"]
+    form.go_to("DUNIT")
+    desk.strike("M")
+    assert not form.troubles
+    form.go_to("SIDE")
+    desk.strike("Right")
+    assert "no bore" in form.troubles["CONTOUR"]
+    form.go_to("FILE")
+    desk.strike("Right")
+    assert "damaged" in form.troubles["FILE"]
+    desk.shapes.write()
+    assert desk.shapes.form is form  # nothing is written
+
+
+def test_a_drawing_whose_program_is_wrong_is_not_written(desk: Desk, tmp_path: Path) -> None:
+    dxf(tmp_path / "a.dxf", chain(*STEP))
+    form = desk.open()
+    form.go_to("FROM")
+    desk.strike("5")
+    assert "lies outside the stock of 5" in form.trouble
+    assert not form.lines
+
+
+def test_without_a_drawing_it_says_where_one_goes(desk: Desk) -> None:
+    assert "There is no drawing beside the programs" in desk.open().trouble
+
+
+def test_nothing_is_written_before_the_drawing_is_read(desk: Desk, tmp_path: Path) -> None:
+    dxf(tmp_path / "a.dxf", chain(*STEP))
+    desk.shapes.open("x.nc", "", 1)
+    desk.shapes.typed("x")
+    desk.shapes.write()
+    assert desk.shapes.prompt() == "THE DRAWING IS BEING READ"
+    assert desk.shapes.text == ""

@@ -1,0 +1,160 @@
+"""Threads by name against the published tables of their standards: inches and mm as printed there."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.shapes.shape import Filled, filled
+from core.shapes.shape_setting import Setting
+from core.shapes.shape_table import SHAPES
+from core.shapes.thread_limits import Limits, classes, limits, pipe_length
+from core.shapes.thread_series import Series, size_of
+
+# ASME B1.1, tables of limits: major, pitch (least, most); minor of internal threads.
+OUTSIDE = [
+    (Series.UNC, "1/4-20", "2A", (0.2408, 0.2489), (0.2127, 0.2164)),
+    (Series.UNF, "10-32", "2A", (0.1831, 0.1891), (0.1658, 0.1688)),
+    (Series.UNC, "3/8", "2A", (0.3643, 0.3737), (0.3287, 0.3331)),
+    (Series.UNC, "1/2", "2A", (0.4876, 0.4985), (0.4435, 0.4485)),
+    (Series.UNC, "1/2", "3A", (0.4891, 0.5000), (0.4463, 0.4500)),
+    (Series.UNC, "1", "2A", (0.9830, 0.9980), (0.9100, 0.9168)),
+    (Series.M, "M6", "6g", (5.794, 5.974), (5.212, 5.324)),  # ISO 965-2
+    (Series.M, "M8", "6g", (7.760, 7.972), (7.042, 7.160)),
+    (Series.M, "M10", "6g", (9.732, 9.968), (8.862, 8.994)),
+    (Series.M, "M12", "6g", (11.701, 11.966), (10.679, 10.829)),
+    (Series.ACME, "1/2", "2G", (0.4950, 0.5000), (0.4306, 0.4443)),  # B1.5
+    (Series.ACME, "3/4", "2G", (0.7417, 0.7500), (0.6424, 0.6598)),
+]
+INSIDE = [
+    (Series.UNC, "1/4", "2B", (0.2175, 0.2224), (0.196, 0.207)),
+    (Series.UNF, "10", "2B", (0.1697, 0.1736), (0.156, 0.164)),
+    (Series.UNC, "3/8", "2B", (0.3344, 0.3401), (0.307, 0.321)),
+    (Series.UNC, "1/2", "2B", (0.4500, 0.4565), (0.417, 0.434)),
+    (Series.UNC, "1", "2B", (0.9188, 0.9276), (0.865, 0.890)),
+    (Series.M, "M6", "6H", (5.350, 5.500), (4.917, 5.153)),
+    (Series.M, "M8", "6H", (7.188, 7.348), (6.647, 6.912)),
+    (Series.M, "M10", "6H", (9.026, 9.206), (8.376, 8.676)),
+    (Series.M, "M12", "6H", (10.863, 11.063), (10.106, 10.441)),
+    (Series.ACME, "1/2", "2G", (0.4500, 0.4637), (0.400, 0.405)),
+]
+
+
+def of(series: Series, name: str, tolerance: str, *, inside: bool) -> Limits:
+    found = size_of(series, name)
+    assert found is not None
+    return limits(series, found, tolerance, inside=inside)
+
+
+def rounding(series: Series) -> float:
+    """Half of the last printed place, and what rounding on the way there adds."""
+    return 0.00016 if series not in {Series.M, Series.MF} else 0.0006
+
+
+@pytest.mark.parametrize(("series", "name", "tolerance", "major", "pitch"), OUTSIDE)
+def test_external_limits_are_those_of_the_table(
+    series: Series, name: str, tolerance: str, major: tuple[float, float], pitch: tuple[float, float]
+) -> None:
+    found = of(series, name, tolerance, inside=False)
+    assert found.major == pytest.approx(major, abs=rounding(series))
+    assert found.pitch == pytest.approx(pitch, abs=rounding(series))
+
+
+@pytest.mark.parametrize(("series", "name", "tolerance", "pitch", "minor"), INSIDE)
+def test_internal_limits_are_those_of_the_table(
+    series: Series, name: str, tolerance: str, pitch: tuple[float, float], minor: tuple[float, float]
+) -> None:
+    found = of(series, name, tolerance, inside=True)
+    assert found.pitch == pytest.approx(pitch, abs=rounding(series))
+    assert found.minor == pytest.approx(minor, abs=0.0006)
+
+
+def test_the_minor_diameter_of_half_inch_13_class_3b() -> None:
+    assert of(Series.UNC, "1/2", "3B", inside=True).minor == pytest.approx((0.4167, 0.4284), abs=0.0001)
+
+
+def test_taper_pipe_at_its_small_end() -> None:
+    """B1.20.1: E0 and K0 of 1/4-18 and 1/2-14, and L2."""
+    for name, pitch, minor, long in (("1/4", 0.47739, 0.4329, 0.4018), ("1/2", 0.75843, 0.7013, 0.5337)):
+        found, known = of(Series.NPT, name, "", inside=False), size_of(Series.NPT, name)
+        assert known is not None
+        assert found.pitch[0] == pytest.approx(pitch, abs=0.00002)
+        assert found.root == pytest.approx(minor, abs=0.0001)
+        assert pipe_length(Series.NPT, known) == pytest.approx(long, abs=0.0001)
+
+
+def test_parallel_pipe() -> None:
+    """ISO 228-1: G 1/4 and G 1/2, pitch and minor diameter."""
+    for name, pitch, minor in (("1/4", 12.301, 11.445), ("1/2", 19.793, 18.631)):
+        found = of(Series.BSP, name, "", inside=False)
+        assert (found.pitch[0], found.root) == pytest.approx((pitch, minor), abs=0.001)
+
+
+def test_the_tool_goes_as_deep_as_its_nose_asks() -> None:
+    """Of a sharp V half of its height lies behind the pitch line, and a nose of radius r lacks r of that."""
+    size = size_of(Series.UNC, "1/2")
+    assert size is not None
+    sharp = limits(Series.UNC, size, "2A", inside=False, nose=1e-9)
+    usual = limits(Series.UNC, size, "2A", inside=False)
+    nosed = limits(Series.UNC, size, "2A", inside=False, nose=0.005)
+    assert sharp.root == pytest.approx(0.4460 - 0.866025 / 13, abs=0.0001)
+    assert nosed.root - sharp.root == pytest.approx(0.010, abs=1e-6)
+    assert sharp.root < nosed.root < usual.root
+
+
+def test_names_as_people_type_them() -> None:
+    for name in ("1/2", "1/2-13", " 1/2-13 "):
+        found = size_of(Series.UNC, name)
+        assert found is not None
+        assert found.diameter == 0.5
+    ten = size_of(Series.UNF, "#10")
+    assert ten is not None
+    assert ten.diameter == pytest.approx(0.190)
+    fine = size_of(Series.MF, "m10x1.25")
+    assert fine is not None
+    assert (fine.diameter, fine.pitch) == (10.0, 1.25)
+    assert size_of(Series.UNC, "7/13") is None
+
+
+def test_one_inch_is_not_number_one() -> None:
+    inch, number = size_of(Series.UNC, "1"), size_of(Series.UNC, "#1")
+    assert inch is not None
+    assert number is not None
+    assert (inch.diameter, number.diameter) == (1.0, pytest.approx(0.073))
+
+
+def thread(typed: dict[str, float | str], *, metric: bool = False) -> Filled:
+    return filled(SHAPES["R"], typed, Setting(metric=metric))
+
+
+def test_a_size_that_the_series_has_not_is_refused() -> None:
+    one = thread({"SIZE": "7/13", "LONG": 0.5, "PITCH": 0.05, "CREST": 0.5, "ROOT": 0.4, "RPM": 300.0})
+    said = {each.word: each.text for each in one.refusals(Setting())}
+    assert "SIZE" in said or "CLASS" in said
+
+
+def test_a_class_of_the_other_side_is_refused() -> None:
+    one = thread({"SIZE": "1/2", "LONG": 0.5, "CLASS": "2B"})
+    assert one.values.get("ROOT") is None
+    assert classes(Series.UNC, inside=False) == ("2A", "1A", "3A")
+
+
+def test_a_metric_thread_in_an_inch_program() -> None:
+    one = thread({"SERIES": "M", "SIZE": "M10", "LONG": 0.5})
+    assert one.n("PITCH") == pytest.approx(1.5 / 25.4, abs=1e-6)
+    assert one.n("CREST") * 25.4 == pytest.approx((9.968 + 9.732) / 2, abs=0.002)
+
+
+def test_a_thread_that_ends_without_relief_is_refused() -> None:
+    one = thread({"SIZE": "1/2", "LONG": 0.5, "PULL": "NO"})
+    (said,) = one.refusals(Setting())
+    assert (said.word, said.text[:21]) == ("RELIEF", "Thread relief missing")
+
+
+def test_a_lead_that_the_slide_cannot_follow_is_refused() -> None:
+    one = thread({"SIZE": "1/2", "LONG": 0.5, "STARTS": 4.0, "RPM": 1000.0, "RUNUP": 0.5})
+    assert {each.word for each in one.refusals(Setting())} == {"RPM"}
+
+
+def test_deeper_than_its_flanks_is_refused() -> None:
+    own = {"SERIES": "OWN", "PITCH": 0.05, "CREST": 0.5, "ROOT": 0.40, "LONG": 0.5, "RPM": 300.0}
+    assert [each.word for each in thread(own).refusals(Setting())] == ["ROOT"]
