@@ -38,6 +38,8 @@ FIELDS = (
     "MEASURE EVERY (0: NO PLAN)",
     "PARTS IN A SAMPLE",
 )
+_OF_OMNITURN = {"CORRECTED BY"}  # its D offsets
+_OF_LATHES = {"ITS NUMBER", "A LARGER OFFSET MAKES IT"}  # a mill's DL and DR are typed into its tool table
 _TURNED = {"MEASURED", "CORRECTED BY", "A LARGER OFFSET MAKES IT"}
 _WHOLE = {"ITS NUMBER": "number", "MEASURE EVERY (0: NO PLAN)": "every", "PARTS IN A SAMPLE": "sample"}
 _LENGTHS = {"NOMINAL": "nominal", "UPPER DEVIATION": "high", "LOWER DEVIATION": "low"}
@@ -50,11 +52,12 @@ class Draft:
     feature: Feature
     id: int = 0
     at: int = 0
+    fields: tuple[str, ...] = FIELDS
 
     @property
     def field(self) -> str:
         """The field under the mark."""
-        return FIELDS[self.at]
+        return self.fields[self.at]
 
     def cell(self, field: str, mode: Mode) -> str:
         """A field as the operator reads it."""
@@ -103,32 +106,38 @@ class FeaturesSection(QualitySection):
     """The list of features; F2 and Return open one to be entered, F6 keeps it."""
 
     name = "FEATURES"
-    use = "nominal, tolerance, tool, sample plan"
+    use = "nominal, tolerance, sample plan"
 
     def __init__(self, desk: Desk, watch: PartsWatch) -> None:
         super().__init__(desk, watch)
         self.draft: Draft | None = None
 
     @property
+    def fields(self) -> tuple[str, ...]:
+        """What is asked of a feature on a machine of this language."""
+        absent = {"omniturn": set[str](), "sinumerik": _OF_OMNITURN, "klartext": _OF_OMNITURN | _OF_LATHES}
+        return tuple(each for each in FIELDS if each not in absent[self.desk.language])
+
+    @property
     def count(self) -> int:
         """Fields of the draft, or features."""
-        return len(FIELDS) if self.draft is not None else len(self.data.features)
+        return len(self.draft.fields) if self.draft is not None else len(self.data.features)
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
         """The features, or the fields of one."""
         if self.draft is not None:
             return self._fields(self.draft)
         self.settle()
-        mode, rows = self.mode, []
+        mode, rows, lathe = self.mode, [], not self.of_mill
         for each in self.data.features:
             tolerance = f"{signed_size(each.high, mode)}  {signed_size(each.low, mode)}"
             every = tr("every {count}").format(count=each.every) if each.every else ""
             sample = str(each.sample)
             rows.append(
                 Row((each.name, mark_of(each) + size(each.nominal, mode), tolerance,
-                     feature_of(each).corrected_by, every, sample))
+                     feature_of(each).corrected_by if lathe else "", every, sample))
             )  # fmt: skip
-        heads = ("NAME", f"NOMINAL {mode.name}", "TOLERANCE", tr("BY"), "MEASURED", "SAMPLE")
+        heads = ("NAME", f"NOMINAL {mode.name}", "TOLERANCE", tr("BY") if lathe else "", "MEASURED", "SAMPLE")
         waits = tr("PARTS WAIT UNTIL THE PLAN IS DONE") if self.watch.waits else tr("PARTS GO ON")
         notes = (
             "F2 enters a feature, Return changes the marked one. F5: whether parts wait for the plan.",
@@ -140,7 +149,7 @@ class FeaturesSection(QualitySection):
 
     def _fields(self, draft: Draft) -> Sheet:
         mode = self.mode
-        rows = tuple(Row((field, draft.cell(field, mode))) for field in FIELDS)
+        rows = tuple(Row((field, draft.cell(field, mode))) for field in draft.fields)
         turned = draft.field in _TURNED
         question = "" if turned else f"{tr(draft.field)}?"
         way = "Return takes what is typed and goes on; F6 keeps the feature, Esc leaves it as it was."
@@ -174,7 +183,7 @@ class FeaturesSection(QualitySection):
         if draft is None:
             return self.moves(key) or (key == "Enter" and self._opened())
         if key in {"Up", "Down"} and not self.entry.text:
-            draft.at = max(0, min(len(FIELDS) - 1, draft.at + (1 if key == "Down" else -1)))
+            draft.at = max(0, min(len(draft.fields) - 1, draft.at + (1 if key == "Down" else -1)))
         elif key == "Enter":
             self.enter()
         elif self.takes(key) or key in {"Back", "Delete"}:
@@ -198,7 +207,7 @@ class FeaturesSection(QualitySection):
             return True
         if text.strip():
             draft.take(text, self.mode)
-        draft.at = min(len(FIELDS) - 1, draft.at + 1)
+        draft.at = min(len(draft.fields) - 1, draft.at + 1)
         return True
 
     def choose(self, row: int) -> None:
@@ -220,7 +229,7 @@ class FeaturesSection(QualitySection):
             self.desk.say(self.watch.book.locked or NO_PROGRAM)
             return
         self.desk.clear()
-        self.draft = Draft(NEW)
+        self.draft = Draft(NEW, fields=self.fields)
 
     def change(self) -> None:
         """The marked feature is entered anew; its readings stay."""
@@ -229,7 +238,7 @@ class FeaturesSection(QualitySection):
             self.desk.say(self.missing())
             return
         self.desk.clear()
-        self.draft = Draft(feature_of(row), row.id)
+        self.draft = Draft(feature_of(row), row.id, fields=self.fields)
 
     def keep(self) -> None:
         """F6: keep the feature that is being entered."""
@@ -249,7 +258,7 @@ class FeaturesSection(QualitySection):
 
     def _kept(self, name: str) -> None:
         self.draft = None
-        self.desk.say(tr("{name} KEPT").format(name=name))
+        self.desk.done(tr("{name} KEPT").format(name=name))
 
     def remove(self) -> None:
         """F4: the marked feature is measured no more, after asking."""

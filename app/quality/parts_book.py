@@ -11,11 +11,12 @@ from typing import Any
 from app.desk.latest import Latest
 from core.quality.measured_feature import CorrectedBy, Feature, FeatureKind
 from core.store import measured_parts, part_cycles, tool_lives
+from core.store.job_queue import JobRow
 from core.store.measured_parts import FeatureRow, ReadingRow
 from core.store.part_cycles import CorrectionRow, CycleRow, StopRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
-from core.store.store_rows import utc
+from core.store.store_rows import Kind, utc
 from core.store.store_writer import Operation
 from core.store.tool_lives import LifeRow
 
@@ -37,6 +38,7 @@ class PartsData:
     stops: tuple[StopRow, ...] = ()
     corrections: tuple[CorrectionRow, ...] = ()
     day: tuple[CycleRow, ...] = ()  # cycles of all programs, as long ago as a shift may be
+    jobs: tuple[JobRow, ...] = ()  # the queue
 
     def readings_of(self, feature: int) -> tuple[ReadingRow, ...]:
         """Readings of a feature in the order in which they were taken."""
@@ -85,20 +87,30 @@ def row_of(feature: Feature, program: str, number: int) -> FeatureRow:
     )
 
 
-def parts_data(store: Store, program: str, limit: int = NEWEST) -> PartsData:
-    """What is kept of a program, the newest so many of each; -1: all. Takes its time. Raises StoreError."""
+def parts_data(store: Store, program: str, limit: int = NEWEST, tools: Kind = Kind.TOOL) -> PartsData:
+    """What is kept of a program, the newest so many of each; -1: all. ``tools``: the table of this machine.
+
+    Takes its time. Raises StoreError.
+    """
+    jobs = store.jobs()
     with store.read() as connection:
         return PartsData(
             program,
             measured_parts.features(connection, program),
             measured_parts.readings(connection, program, limit),
-            tool_lives.lives(connection),
+            tool_lives.lives(connection, tools),
             measured_parts.last_corrections(connection),
             part_cycles.cycles(connection, program, limit),
             part_cycles.stops(connection, None, limit),
             part_cycles.corrections(connection, program, limit),
             part_cycles.cycles_since(connection, utc(datetime.now(UTC) - _DAYS)),
+            jobs,
         )
+
+
+def tools_of(machine_kind: str) -> Kind:
+    """The table of tools of a machine of this kind."""
+    return Kind.MILL_TOOL if machine_kind == "mill" else Kind.TOOL
 
 
 @dataclass(slots=True)
@@ -110,6 +122,7 @@ class PartsBook:
 
     store: Store | None = None
     locked: str = ""
+    tools: Kind = Kind.TOOL  # the table of this machine's tools
     now: PartsData = field(default_factory=PartsData)
     trouble: str = ""  # why the last reading or writing failed
     loads: int = 0  # how often ``now`` was read
@@ -129,11 +142,12 @@ class PartsBook:
         self.worker.poll()
         self._look_at_writing()
         if program != self.now.program:
-            self.now, self._stale = PartsData(program, lives=self.now.lives), True
+            self.now, self._stale = PartsData(program, lives=self.now.lives, jobs=self.now.jobs), True
         store = self.store
         if store is not None and not self.worker.busy and self._written(store):
             self._reading = True
-            self.worker.ask(lambda _watch: parts_data(store, program), self._read, self._failed)
+            tools = self.tools
+            self.worker.ask(lambda _watch: parts_data(store, program, tools=tools), self._read, self._failed)
 
     def _written(self, store: Store) -> bool:
         """Whether something is to be read anew, and the writer has come to what was posted before."""
@@ -206,7 +220,7 @@ class PartsBook:
         """What an insert has made by now; written as soon as the disk takes it."""
         store = self.store
         if store is not None:
-            use = (life.number, life.parts, life.seconds)
+            use = (life.number, life.parts, life.seconds, self.tools)
             store.keep(
                 lambda held: held.latest(("life", str(life.number)), lambda c: tool_lives.set_use(c, *use))
             )

@@ -15,7 +15,7 @@ class MeasuredPartsFunction(PageFunction):
     """Features and readings of the program, and what is to be done some time soon."""
 
     name = "MEASURED PARTS"
-    use = "readings, charts, tool life, trends"
+    use = "features, readings, charts, trends"
     page = PAGE
     way = "Return opens the page; W of the main menu does so too."
 

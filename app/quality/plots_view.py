@@ -22,6 +22,7 @@ _STYLES = {
 _INKS = {"centre": "soft", "limit": "pause", "tolerance": "alarm"}
 _ROOM = 0.08  # of the height, above and below what is drawn
 _TITLE = 2.2  # units
+_PLOTS = 2  # of a drawing, mostly
 
 
 class PlotsPane(QWidget):
@@ -38,14 +39,20 @@ class PlotsPane(QWidget):
         self._theme = ""
         self._u = 0.0
 
+    def ahead(self) -> bool:
+        """Make one plot more of those that a drawing may have; whether all are there."""
+        return self._chart.ready(_PLOTS)
+
     def show_drawing(self, drawing: ChartDrawing) -> None:
         """Draw it where it is another one than before."""
         look = self.look
         if drawing == self._shown and (self._theme, self._u) == (look.palette.name, look.u):
             return
-        self._shown, self._theme, self._u = drawing, look.palette.name, look.u
         plots = [plot for plot in drawing.plots if not plot.empty]
         barred = bool(plots) and bool(plots[0].bars)
+        if not (barred or self._chart.ready(len(plots))):
+            return
+        self._shown, self._theme, self._u = drawing, look.palette.name, look.u
         self._bars.plot = plots[0] if barred else None
         self._bars.setVisible(barred or not plots)
         self._bars.update()
@@ -83,7 +90,7 @@ class PlotsPane(QWidget):
 
     def _draw(self, plot: Plot, across: tuple[float, float]) -> None:
         drawn = self._chart.add()
-        drawn.getAxis("bottom").setLabel(plot.across)
+        drawn.axis("bottom").setLabel(plot.across)
         for curve in plot.curves:
             self._curve(drawn, curve)
         self._range(drawn, plot, across)
@@ -95,7 +102,7 @@ class PlotsPane(QWidget):
             pen = line_pen(self.look.colour("alarm"))
             pen.setWidthF(2.0)
             ring = pg.ScatterPlotItem(x=x, y=y, symbol="o", size=2.2 * self.look.u, brush=None, pen=pen)
-            drawn.addItem(ring)
+            drawn.put(ring)
 
     def _curve(self, drawn: chart.Plot, curve: Curve) -> None:
         colour = curve_colour(self.look, curve.number)
@@ -107,16 +114,16 @@ class PlotsPane(QWidget):
             dots = pg.ScatterPlotItem(
                 x=curve.x, y=curve.y, symbol="o", size=1.0 * self.look.u, pen=None, brush=colour
             )
-            drawn.addItem(dots)
+            drawn.put(dots)
         if curve.name and len(curve.x):
             label = pg.TextItem(curve.name, color=colour, anchor=(1.1, 0.5))
             label.setFont(self.look.font(1.7, bold=True))
             label.setPos(float(curve.x[-1]), float(curve.y[-1]))
-            drawn.addItem(label)
+            drawn.put(label)
 
     def _level(self, drawn: chart.Plot, level: Level) -> None:
         pen = line_pen(self.look.colour(_INKS[level.kind]), _STYLES[level.kind])
-        drawn.addItem(pg.InfiniteLine(level.value, angle=0, pen=pen))
+        drawn.put(pg.InfiniteLine(level.value, angle=0, pen=pen))
 
     def _range(self, drawn: chart.Plot, plot: Plot, across: tuple[float, float]) -> None:
         """All points and levels, with room for the title; plots stand exactly over one another."""
@@ -124,9 +131,9 @@ class PlotsPane(QWidget):
         values += [level.value for level in plot.levels]
         low, high = min(values), max(values)
         room = _ROOM * (high - low) or max(abs(high) * 0.01, 1e-4)
-        drawn.setYRange(low - room, high + 4.5 * room, padding=0)
+        drawn.vb.setYRange(low - room, high + 4.5 * room, padding=0)
         side = max(0.5, 0.02 * (across[1] - across[0]))
-        drawn.setXRange(across[0] - side, across[1] + side, padding=0)
+        drawn.vb.setXRange(across[0] - side, across[1] + side, padding=0)
 
     def _title(self, drawn: chart.Plot, words: str) -> None:
         """In the upper corner, over what is drawn, on a ground of its own: no limit strikes it out."""
@@ -136,7 +143,7 @@ class PlotsPane(QWidget):
         title.setZValue(10.0)
         title.setFont(self.look.font(1.8, bold=True))
         title.setPos(left, top)
-        drawn.addItem(title)
+        drawn.put(title)
 
 
 class BarsPane(QWidget):

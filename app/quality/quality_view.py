@@ -47,11 +47,21 @@ class MeasuredPartsPage(SpecialPage):
         if share != self._share:
             self._share = share
             self._lay_out()
-        if share and not self._asked:
-            self._asked = True
-            self.model.worker.queue(_pane_class, self._pane_there, self.desk.say)
+        if share:
+            self._ask_pane()
         if self.chart is not None and isinstance(shown, QualitySection) and share:
             self.chart.show_drawing(shown.drawing())
+
+    def ahead(self) -> bool:
+        """The sections, then the chart and its plots."""
+        self._ask_pane()
+        self.model.worker.poll()
+        return not self.model.functions or self.chart is None or not self.chart.ahead()
+
+    def _ask_pane(self) -> None:
+        if not self._asked:
+            self._asked = True
+            self.model.worker.queue(_pane_class, self._pane_there, self.desk.say)
 
     def _pane_there(self, pane: type[PlotsPane]) -> None:
         self.chart = pane(self.look, self)

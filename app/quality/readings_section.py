@@ -48,7 +48,7 @@ class ReadingsSection(QualitySection):
     """A row a feature; what is typed is the size of the marked one at the part that is asked for."""
 
     name = "READINGS"
-    use = "measure a part, take over a correction"
+    use = "measure a part, see what it asks for"
 
     def __init__(self, desk: Desk, watch: PartsWatch, folder: Path, gauge: Gauge | None = None) -> None:
         super().__init__(desk, watch)
@@ -84,7 +84,12 @@ class ReadingsSection(QualitySection):
             question = tr("{name} OF PART {part}?").format(name=feature.name, part=self.part)
         heads = ("FEATURE", f"NOMINAL {mode.name}", "PART", "MEASURED", "DEVIATION", "")
         words = self.effect.words() if self.effect.stands else ""
-        notes = (words or self._gauge_words(), "F8 proposes a correction, F9 takes the last one back.")
+        way = (
+            "What a feature is off is typed into DL and DR of the tool table, F8 of the main menu."
+            if self.of_mill
+            else "F8 proposes a correction, F9 takes the last one back."
+        )
+        notes = (words or self._gauge_words(), way)
         title = f"READINGS  ·  {self.program}" if self.program else "READINGS"
         return Sheet(title, heads, (0.2, 0.19, 0.08, 0.19, 0.16, 0.18), rows, self.marked, question,
                      self.entry.text, notes, raw=frozenset({0}), figures=frozenset({2}))  # fmt: skip
@@ -106,14 +111,14 @@ class ReadingsSection(QualitySection):
 
     def keys(self) -> Mapping[str, Key]:
         """Part number, gauge, file, correction."""
+        correct = {"F8": Key("CORRECT", self.propose), "F9": Key("UNDO", self.undo)}
         return {
             "F2": Key(tr("PART −"), partial(self._step, -1)),
             "F3": Key(tr("PART +"), partial(self._step, 1)),
             "F4": Key("TAKE OUT", self.take_out),
             "F5": Key("NO GAUGE" if self.gauge.open else "GAUGE", self.turn_gauge),
             "F6": Key("CSV", self.write_file),
-            "F8": Key("CORRECT", self.propose),
-            "F9": Key("UNDO", self.undo),
+            **({} if self.of_mill else correct),
         }
 
     def _step(self, by: int) -> None:
@@ -272,7 +277,7 @@ class ReadingsSection(QualitySection):
             self.desk.say(why)
             return
         self._last = change.kind, change.why
-        self.desk.say(tr("{words}; IT COUNTS FROM THE NEXT PART").format(words=change.words))
+        self.desk.done(tr("{words}; IT COUNTS FROM THE NEXT PART").format(words=change.words))
 
     def undo(self) -> None:
         """F9: the correction that was taken over last is taken back, while no other change came after it."""
@@ -283,7 +288,7 @@ class ReadingsSection(QualitySection):
             self.desk.say(why)
             return
         self._last = None
-        self.desk.say(tr("THE CORRECTION IS TAKEN BACK"))
+        self.desk.done(tr("THE CORRECTION IS TAKEN BACK"))
 
     def _undo_barred(self) -> str:
         """Why nothing is taken back here; empty when it is."""
@@ -306,4 +311,4 @@ class ReadingsSection(QualitySection):
         self.watch.book.worker.queue(lambda: write_readings(data, folder), self._written, self.watch.refuse)
 
     def _written(self, path: Path) -> None:
-        self.desk.say(tr("WRITTEN: {path}").format(path=path))
+        self.desk.done(tr("WRITTEN: {path}").format(path=path))

@@ -35,6 +35,11 @@ class QualitySection(FigureFunction):
         return self.watch.program
 
     @property
+    def of_mill(self) -> bool:
+        """Whether the machine is a mill: no slide's wear corrects a feature there, DL and DR are typed."""
+        return self.desk.language == "klartext"
+
+    @property
     def mode(self) -> Mode:
         """The control's unit, in which everything is typed and shown here."""
         return Mode(self.desk.snapshot().modal.metric, diameter=True)

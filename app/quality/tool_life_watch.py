@@ -11,6 +11,7 @@ from app.quality.parts_book import PartsBook
 from core.executor.snapshot import CYCLE, Snapshot
 from core.quality.tool_life import LifeState, ToolLife
 from core.store import tool_lives
+from core.store.store_rows import Kind
 from core.store.tool_lives import LifeRow
 
 KEEP = 10.0  # s at feed after which the count is kept, so that a power cut loses no more
@@ -25,7 +26,10 @@ def life_of(row: LifeRow) -> ToolLife:
 
 @dataclass(slots=True)
 class ToolLifeWatch:
-    """Looks at every snapshot. Counts are its own once the store has been read; limits are the store's."""
+    """Looks at every snapshot. Counts are its own once the store has been read; limits are the store's.
+
+    What is said of an insert holds for a whole tool of a mill.
+    """
 
     book: PartsBook
     counted: dict[int, tuple[int, float]] = field(default_factory=dict)  # parts and seconds since the insert
@@ -118,17 +122,39 @@ class ToolLifeWatch:
 
         def operation(connection: sqlite3.Connection) -> None:
             if known:
-                tool_lives.set_use(connection, number, parts, seconds)
-            tool_lives.change_insert(connection, number, why)
+                tool_lives.set_use(connection, number, parts, seconds, self.book.tools)
+            tool_lives.change_insert(connection, number, why, self.book.tools)
 
         def done() -> None:
             more_parts, more_seconds = self.counted.get(number, (parts, seconds))
             self.counted[number] = max(0, more_parts - parts), max(0.0, more_seconds - seconds)
             self._kept[number] = 0.0
             self._changes += 1
-            said(tr("T{number}: A FRESH INSERT, ITS LIFE BEGINS AT NOUGHT").format(number=number))
+            words = tr("T{number}: A FRESH INSERT, ITS LIFE BEGINS AT NOUGHT")
+            if self.book.tools is Kind.MILL_TOOL:
+                words = tr("T{number}: A FRESH TOOL, ITS LIFE BEGINS AT NOUGHT")
+            said(words.format(number=number))
 
         self.book.write(operation, done, said)
+
+    def set_used(self, number: int, seconds: float, said: Callable[[str], None]) -> None:
+        """A tool that has cut so long already is in the spindle; 0: a fresh one."""
+        life = self.lives().get(number)
+        if seconds <= 0.0:
+            self.change_insert(number, life.words if life is not None else "", said)
+            return
+        parts = life.parts if life is not None else 0
+
+        def done() -> None:
+            self.counted[number], self._kept[number] = (parts, seconds), seconds
+            self._changes += 1
+            said(tr("T{number} SAVED").format(number=number))
+
+        self.book.write(
+            lambda connection: tool_lives.set_use(connection, number, parts, seconds, self.book.tools),
+            done,
+            said,
+        )
 
     def forget(self) -> None:
         """Another store is in place: its counts are those that count."""
@@ -150,7 +176,7 @@ class ToolLifeWatch:
         for life in self._stopping(tools):
             after = replace(life, parts=life.parts + 1) if snapshot.counts else life
             if after.state is LifeState.SPENT:
-                return spent(after)
+                return spent(after, self.book.tools)
         return ""
 
     def _stopping(self, used: Collection[int]) -> Iterator[ToolLife]:
@@ -167,6 +193,9 @@ def notice(life: ToolLife) -> str:
     return tr("T{number}: {words} OF ITS LIFE ARE GONE").format(number=life.number, words=life.words)
 
 
-def spent(life: ToolLife) -> str:
+def spent(life: ToolLife, tools: Kind) -> str:
     """Why no part begins with it."""
+    if tools is Kind.MILL_TOOL:
+        how = "put a fresh tool in and set its CUR.TIME to 0 in the tool table (F8)"
+        return f"the life of T{life.number} is gone, {life.words}: {how}"
     return f"the life of T{life.number} is gone, {life.words}: change the insert and tell it in TOOL LIFE"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime
 
 import numpy as np
 
@@ -17,15 +17,15 @@ from app.quality.cycle_recorder import COMPLETE
 from app.quality.parts_watch import PartsWatch
 from app.quality.plots import ChartDrawing, Curve, Level, Plot
 from app.quality.section import QualitySection
+from app.quality.shift_figures import spans_of, stops_of
+from app.quality.shift_times import SETTING, hours_of, shift_of
 from core.executor.snapshot import Snapshot
 from core.quality.availability import Availability, Span, availability
-from core.quality.stops import Stop, pareto, times_between
-from core.store.part_cycles import CycleRow, StopRow
+from core.quality.stops import pareto, times_between
+from core.store.part_cycles import CycleRow
 from core.store.store_errors import StoreError
 
 KINDS = ("CYCLE TIME", "WEAR", "STOPS", "SPINDLE LOAD", "AVAILABILITY")
-_SHIFT = "shift"  # setting: first hour and last
-_USUAL = (6, 14)
 _MOST_BARS = 8
 
 
@@ -33,7 +33,7 @@ class TrendsSection(QualitySection):
     """A row a trend with its figure, the drawing of the marked one below."""
 
     name = "TRENDS"
-    use = "cycle times, wear, stops, availability"
+    use = "cycle times, stops, availability"
     chart_share = 0.42
 
     def __init__(
@@ -48,26 +48,27 @@ class TrendsSection(QualitySection):
     @property
     def count(self) -> int:
         """The trends."""
-        return len(KINDS)
+        return len(self.kinds)
 
     @property
     def kind(self) -> str:
         """The marked one."""
-        return KINDS[self.marked]
+        return self.kinds[self.marked]
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """Those of this machine: a mill's tools wear by DL and DR, which nobody has followed yet."""
+        return tuple(each for each in KINDS if each != "WEAR" or not self.of_mill)
 
     @property
     def shift(self) -> tuple[int, int]:
         """First hour and last of the shift, by the clock on the wall; read once."""
         if self._shift is None:
             try:
-                kept = self.desk.counter.persistence.setting(_SHIFT)
+                kept = self.desk.counter.persistence.setting(SETTING)
             except StoreError:
                 kept = None
-            match kept:
-                case [int(first), int(last)]:
-                    self._shift = first, last
-                case _:
-                    self._shift = _USUAL
+            self._shift = hours_of(kept)
         return self._shift
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
@@ -76,7 +77,7 @@ class TrendsSection(QualitySection):
         minute = int(self._now().timestamp() // 60)
         of = (self.watch.book.loads, self.program, self.mode, minute, self.shift)
         if self._rows[0] != of:
-            self._rows = of, tuple(Row((kind, self._figure(kind))) for kind in KINDS)
+            self._rows = of, tuple(Row((kind, self._figure(kind))) for kind in self.kinds)
         question = tr("SHIFT FROM-TO, SUCH AS 6-14?") if self.kind == "AVAILABILITY" else ""
         title = f"TRENDS  ·  {self.program}" if self.program else "TRENDS"
         return Sheet(title, ("", ""), (0.25, 0.75), self._rows[1], self.marked, question, self.entry.text,
@@ -121,7 +122,7 @@ class TrendsSection(QualitySection):
         )
 
     def _stop_words(self) -> str:
-        stops = _stops(self.data.stops)
+        stops = stops_of(self.data.stops)
         rows = pareto(stops)
         if not rows:
             return tr("no stop yet")
@@ -156,17 +157,12 @@ class TrendsSection(QualitySection):
 
     def of_shift(self) -> Availability | None:
         """Of the shift that is on, up to now, or that ended last; whatever program ran. None before it."""
-        now = self._now().astimezone()
-        first, last = self.shift
-        begins = now.replace(hour=first, minute=0, second=0, microsecond=0)
-        hours = (last - first) % 24 or 24
-        if begins > now:
-            begins -= timedelta(days=1)
-        ends = min(begins + timedelta(hours=hours), now)
-        if ends <= begins:
+        now = self._now()
+        shift = shift_of(self.shift, now)
+        ends = min(shift.end, now.timestamp())
+        if ends <= shift.start:
             return None
-        running = [span for row in self.data.day if (span := _span(row, now)) is not None]
-        return availability(Span(begins.timestamp(), ends.timestamp()), running)
+        return availability(Span(shift.start, ends), spans_of(self.data.day, now.timestamp()))
 
     # --- drawing -------------------------------------------------------------------------------------
 
@@ -214,7 +210,7 @@ class TrendsSection(QualitySection):
         return tuple(Plot(title, tuple(each)) for title, each in zip(titles, curves, strict=True))
 
     def _stop_plots(self) -> tuple[Plot, ...]:
-        rows = pareto(_stops(self.data.stops))[:_MOST_BARS]
+        rows = pareto(stops_of(self.data.stops))[:_MOST_BARS]
         if not rows:
             return ()
         bars = tuple(
@@ -267,7 +263,7 @@ class TrendsSection(QualitySection):
             raise EntryError(tr("a shift is two hours of the day, such as 6-14"))
         self._shift = int(first), int(last)
         hours = list(self._shift)
-        self.desk.keep(lambda: self.desk.counter.persistence.save_setting(_SHIFT, hours))
+        self.desk.keep(lambda: self.desk.counter.persistence.save_setting(SETTING, hours))
         return True
 
     def prompt(self) -> str:
@@ -277,15 +273,3 @@ class TrendsSection(QualitySection):
 
 def _numbers(count: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     return np.arange(1, count + 1, dtype=np.float64)
-
-
-def _stops(rows: tuple[StopRow, ...]) -> list[Stop]:
-    return [Stop(row.reason, datetime.fromisoformat(row.at).timestamp(), row.seconds) for row in rows]
-
-
-def _span(row: CycleRow, now: datetime) -> Span | None:
-    """When a cycle ran: from its beginning for its seconds; of one under way nobody knows more than now."""
-    start = datetime.fromisoformat(row.started).timestamp()
-    if row.ended is None:
-        return None
-    return Span(start, min(start + row.seconds, now.timestamp())) if start <= now.timestamp() else None

@@ -227,6 +227,7 @@ class FloorReader:
             "Srpm": None if not known else turning if turning >= _STILL else 0.0,
             "Scmd": abs(snapshot.spindle_asked),
             "Sovr": 100.0 * snapshot.spindle_override,
+            "Sload": snapshot.spindle_load if known else None,
             "rotmode": "CONTOUR" if snapshot.modal.c_locked and self.machine.spindle_is_c else "SPINDLE",
             "chuckil": None if not known else "ACTIVE" if held else "INACTIVE",
         }

@@ -8,12 +8,13 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 
-from app.shopfloor.floor_reading import Reading
+from app.shopfloor.floor_reading import Reading, Value
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.snapshot import Alarm
 
 NAME = "status.json"
 _LOOK = 1.0  # s
+_LOAD_STEP = 5  # per cent
 _AGAIN = 10  # looks without a change after which it is written all the same: an old file is a dead control
 _log = logging.getLogger(__name__)
 
@@ -31,6 +32,7 @@ def status_of(machine: str, reading: Reading) -> Status:
         "estop": values.get("estop"),
         "program": values.get("program"),
         "parts": int(values["pcount"] or 0) if reading.available else None,
+        "spindle_load": _load(values.get("Sload")),
         "interrupted": _interrupted(reading.interrupted),
         "alarms": [
             {"of": key, "level": level, "code": code, "text": text, **_entry(reading.alarm(code))}
@@ -38,6 +40,11 @@ def status_of(machine: str, reading: Reading) -> Status:
             for level, code, text in active
         ],
     }
+
+
+def _load(load: Value) -> int | None:
+    """Per cent to the next five: each change is a file written anew."""
+    return round(load / _LOAD_STEP) * _LOAD_STEP if isinstance(load, float) else None
 
 
 def _interrupted(found: InterruptedJob | None) -> Status | None:

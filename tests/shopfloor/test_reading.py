@@ -64,6 +64,7 @@ def test_a_machine_in_a_cycle() -> None:
         "Srpm": 2001.5,  # a speed has no direction
         "Scmd": 2000.0,
         "Sovr": pytest.approx(120.0),
+        "Sload": None,  # this machine has no such input
         "rotmode": "SPINDLE",
         "chuckil": "INACTIVE",
         "chuck": "CLOSED",
@@ -84,6 +85,7 @@ def test_a_machine_in_a_cycle() -> None:
         ({"homed": (False, True, True)}, "Xabs", None),
         ({"velocity": 0.13}, "Fact", 0.0),  # an encoder that trembles
         ({"rpm_actual": 0.4}, "Srpm", 0.0),
+        ({"spindle_load": 42.5}, "Sload", 42.5),
         ({"modal": Modal(c_locked=True)}, "rotmode", "CONTOUR"),
         ({"inputs": frozenset()}, "chuck", "UNLATCHED"),  # told to close, and not there yet
         ({"inputs": frozenset(), "outputs": frozenset()}, "chuck", "OPEN"),
@@ -215,6 +217,6 @@ def test_waiting_for_any_input_of_the_machine_is_waiting_for_a_device() -> None:
 
 def test_of_a_machine_that_is_not_heard_the_last_figures_are_not_told() -> None:
     values = values_of(replace(AT, unknown=ALL_UNKNOWN))
-    unheard = ("Xabs", "Zabs", "Cabs", "Srpm", "Fact", "chuck", "door", "endbar", "part", "chuckil")
+    unheard = ("Xabs", "Zabs", "Cabs", "Srpm", "Sload", "Fact", "chuck", "door", "endbar", "part", "chuckil")
     assert [key for key in unheard if values[key] is not None] == []
     assert (values["avail"], values["program"], values["line"]) == ("AVAILABLE", "pin.nc", "7")

@@ -63,6 +63,7 @@ def test_what_it_says(tmp_path: Path) -> None:
         "estop": "ARMED",
         "program": "pin.nc",
         "parts": 12,
+        "spindle_load": None,
         "interrupted": None,
         "alarms": [
             {
@@ -72,6 +73,14 @@ def test_what_it_says(tmp_path: Path) -> None:
         ],
     }
     assert [each.name for each in path.parent.iterdir()] == ["status.json"]
+
+
+@pytest.mark.parametrize(("load", "told"), [(42.6, 45), (41.9, 40), (0.0, 0), (None, None)])
+def test_the_load_of_the_spindle_is_told_in_steps_that_do_not_wear_out_a_disk(
+    load: float | None, told: int | None
+) -> None:
+    reading = replace(RUNNING, values={**RUNNING.values, "Sload": load})
+    assert status_of("GT-75", reading)["spindle_load"] == told
 
 
 def test_of_a_silent_control_nothing_is_said() -> None:
@@ -148,7 +157,7 @@ def test_the_keeper_says_how_it_is_and_that_it_is_over(tmp_path: Path) -> None:
     path = tmp_path / "status.json"
     keeper = StatusKeeper(StatusFile(path, Hours()), look, {"available": False})
     keeper.start()
-    assert looked.wait(5.0)
+    assert looked.wait(60.0)
     keeper.close()
     assert read(path)["available"] is False
     assert [thread.name for thread in threading.enumerate() if thread.name == "status"] == []

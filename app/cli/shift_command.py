@@ -1,0 +1,135 @@
+"""``turndesk shift``: what was made in a shift, how long it stood and why; as text, JSON or HTML."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.store_command import opened_store
+from app.desk.command_errors import EXIT_OK, CommandError
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+    from app.quality.shift_figures import ShiftFigures
+    from app.quality.shift_times import Shift
+    from core.store.store import Store
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Declare the command."""
+    parser = subparsers.add_parser(
+        "shift", help="report of a shift: parts, times, stops, alarms, offsets, readings"
+    )
+    parser.add_argument(
+        "--back",
+        type=int,
+        default=0,
+        metavar="N",
+        help="so many shifts ago (default: the one that is on, or ended last)",
+    )
+    parser.add_argument(
+        "--from", dest="since", metavar="TIME", help='such as "2026-11-23 06:00", by the clock on the wall'
+    )
+    parser.add_argument("--to", dest="until", metavar="TIME")
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--report", metavar="FILE", help="write one HTML page")
+    form.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+    parser.add_argument("--metric", action="store_true", help="lengths of the page in mm (default: inch)")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Writes the report; raises CommandError with one sentence."""
+    from app.quality.shift_figures import shift_figures
+
+    if args.metric and not args.report:
+        raise CommandError("--metric is for the page; give --report FILE with it")
+    with opened_store(read_only=True) as store:
+        found = shift_figures(store, _shift(store, args), datetime.now().timestamp())
+    if args.report:
+        _write(found, Path(args.report), metric=args.metric)
+    elif args.json:
+        sys.stdout.write(json.dumps(_told(found), indent=1) + "\n")
+    else:
+        sys.stdout.write(_text(found))
+    return EXIT_OK
+
+
+def _shift(store: Store, args: argparse.Namespace) -> Shift:
+    from app.quality.shift_times import SETTING, between, hours_of, shift_of
+
+    if (args.since is None) != (args.until is None):
+        raise CommandError("--from and --to belong together; give both")
+    if args.since is not None:
+        if args.back:
+            raise CommandError("--back counts shifts, --from and --to name times; take one of them")
+        try:
+            return between(args.since, args.until)
+        except ValueError as error:
+            raise CommandError(str(error)) from error
+    if not 0 <= args.back <= 10_000:
+        raise CommandError(f"--back {args.back}: so many shifts ago, 0 to 10000")
+    return shift_of(hours_of(store.setting(SETTING)), datetime.now().astimezone(), args.back)
+
+
+def _write(found: ShiftFigures, path: Path, *, metric: bool) -> None:
+    from app.programs.whole_file import FileError, write_out
+    from app.quality.shift_page import shift_html
+
+    made = datetime.now().strftime("%Y-%m-%d %H:%M")
+    try:
+        write_out(path, shift_html(found, "", made, metric=metric).encode("utf-8", "backslashreplace"))
+    except (FileError, OSError) as error:
+        raise CommandError(str(error)) from error
+    sys.stdout.write(f"{path} has the report: {found.parts} parts\n")
+
+
+def _text(found: ShiftFigures) -> str:
+    from app.desk.formats import duration
+    from app.quality.shift_page import facts, title_of
+
+    lines = [title_of(found, ""), *found.notes, *(f"{name}: {words}" for name, words in facts(found))]
+    for each in found.programs:
+        mean = f", {sum(each.times) / len(each.times):.1f} s in the mean" if each.times else ""
+        lines.append(f"{each.program}: {each.parts} parts{mean}")
+    lines += [f"{each.reason}: {each.times} times, {duration(each.seconds)}" for each in found.stood]
+    return "\n".join(lines) + "\n"
+
+
+def _told(found: ShiftFigures) -> dict[str, object]:
+    """Lengths mm, times s and UTC, X of offsets a radius."""
+    first, last = found.shift.utc
+    share = found.availability
+    return {
+        "from": first,
+        "to": last,
+        "notes": list(found.notes),
+        "parts": found.parts,
+        "programs": [
+            {"program": p.program, "parts": p.parts, "no_part": dict(p.others), "cycle_times": list(p.times)}
+            for p in found.programs
+        ],
+        "planned": share.planned if share is not None else 0.0,
+        "producing": share.producing if share is not None else 0.0,
+        "stopped": found.stopped,
+        "not_recorded": found.untold,
+        "stops": [row._asdict() for row in found.stops],
+        "reasons": [row._asdict() for row in found.stood],
+        "alarms": [row._asdict() for row in found.alarms],
+        "tool_lives": [row._asdict() for row in found.lives],
+        "insert_changes": [row._asdict() for row in found.inserts],
+        "offset_changes": [
+            {"at": c.at, "kind": c.kind.value, "number": c.number, "why": c.why, "who": c.who,
+             "old": c.old._asdict() if c.old is not None else None,
+             "new": c.new._asdict() if c.new is not None else None}
+            for c in found.offsets
+        ],
+        "readings": found.measured,
+        "out_of_tolerance": [
+            {"program": f.program, "feature": f.name, "part": r.part, "value": r.value, "at": r.at}
+            for f, r in found.bad
+        ],
+    }  # fmt: skip

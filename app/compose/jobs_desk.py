@@ -1,0 +1,69 @@
+"""The queue of jobs of a desk: what proves the next one, put together and given to it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from app.compose.desk_part import KeptOfProgram, PartDesk, Shapes
+from app.compose.journal import Journal
+from app.desk.desk import Desk
+from app.desk.latest import Watch
+from app.desk.program_loading import LoadingSteps
+from app.desk.translation import tr
+from app.jobs.job_setup import ProvedJob
+from app.jobs.jobs_model import JobsModel
+from app.jobs.jobs_watch import JobsWatch
+from app.jobs.next_job import JobProofs
+from app.quality.parts_watch import PartsWatch
+from core.machine.machine_model import Machine
+from core.proving.part_proof import PartSetting
+from core.store.store_rows import ToolRow
+
+Before = Callable[[str], tuple[str, dict[int, ToolRow]]]
+"""When a program was started last, and its tools as they were then; on the worker."""
+
+
+def give_jobs(
+    desk: Desk,
+    machine: Machine,
+    steps: LoadingSteps,
+    shapes: Shapes,
+    kept: KeptOfProgram,
+    journal: Journal | None,
+) -> None:
+    """``steps`` keep nothing of what they prove."""
+    parts = desk.attached(PartsWatch)
+    if parts is None:
+        return
+    of_part = PartDesk(machine, shapes, kept, steps.read)
+    before = journal.tools_of_last_run if journal is not None else _never
+    watch = JobsWatch(desk, parts, JobProofs(partial(_proved, desk, machine, steps, of_part, before)))
+    desk.attach(watch)
+    desk.watches.append(watch)
+    desk.attach(JobsModel(desk, watch))
+    desk.offered = watch.notice
+
+
+def _proved(
+    desk: Desk,
+    machine: Machine,
+    steps: LoadingSteps,
+    of_part: PartDesk,
+    before: Before,
+    program: str,
+    watch: Watch,
+) -> ProvedJob:
+    """On the worker: its setup sheet, with the offsets and shapes of this moment. Raises ValueError."""
+    from app.special.setup_sheet import setup_sheet
+
+    path = desk.program_folders.find(program)
+    if path is None:
+        raise ValueError(tr("{name} IS NOT AMONG THE PROGRAMS: F1, F6").format(name=program))
+    job = steps.make_job(steps.read(path), False)
+    setting = of_part.setting(job, watch)[0] if machine.kind == "lathe" else PartSetting()
+    return ProvedJob(setup_sheet(job.reading, job.setup, machine, setting, watch), *before(program))
+
+
+def _never(_program: str) -> tuple[str, dict[int, ToolRow]]:
+    return "", {}

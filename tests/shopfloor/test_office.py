@@ -1,0 +1,363 @@
+"""The page for the office: who may look, what it shows, the desks beside; no drawing while it runs."""
+
+from __future__ import annotations
+
+import json
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from PySide6.QtGui import QImage
+
+from app.compose.machine_answers import check_ports
+from app.compose.machine_files import load_machine, parse_machine
+from app.compose.office import AlarmDrawing, PartPicture
+from app.compose.page_server import PageServer, listening_at
+from app.compose.shop_floor import conditions_of_device, device_of
+from app.programs.preview import Thumbnail
+from app.shopfloor.alarm_drawing import HIGH, alarm_drawing
+from app.shopfloor.floor_reading import FloorReader
+from app.shopfloor.office_status import STOPS, OfficeLook
+from app.shopfloor.other_desks import OtherDesks, asked, status_address
+from app.shopfloor.png_file import png_of
+from app.shopfloor.status_file import Status
+from app.shopfloor.status_page import OtherDesk, StatusPage
+from core.executor.snapshot import Snapshot, State
+from core.machine.shop_network_tables import StatusPageTable, broker_of
+from core.ports import DriverError
+from core.records.record import Record, channels_of
+from core.store.part_cycles import StopRow
+from core.table_schema import MachineFileError
+from resources import machine_file
+
+LATHE = load_machine(None)
+TOKEN = "gt75-word-of-ours"
+STATUS: Status = {
+    "updated": "2026-11-23T09:00:00+00:00",
+    "machine": "GT-75",
+    "available": True,
+    "program": "<b>pin</b>.nc",
+    "state": "RUNNING",
+    "waiting_for": "",
+    "line": 12,
+    "made": 7,
+    "time_left": 65.0,
+    "last_cycle": 130.0,
+    "spindle_load": 40,
+    "stop": "",
+    "stops": [{"at": "2026-11-23T08:00:00Z", "reason": "<i>hold</i>", "seconds": 61}],
+    "alarms": [{"number": 102, "code": "102", "text": "<u>X</u>", "remedy": "look & see"}],
+}
+
+
+def page(token: str = "", status: Status = STATUS, others: tuple[OtherDesk, ...] = ()) -> StatusPage:
+    return StatusPage("GT-75", token, lambda: status, lambda: others, lambda: b"", lambda: b"<svg/>")
+
+
+def get(
+    wsgi: StatusPage, path: str = "/", method: str = "GET", **more: str
+) -> tuple[str, dict[str, str], str]:
+    answer: list[Any] = []
+    environ = {"REQUEST_METHOD": method, "PATH_INFO": path, **more}
+    body = b"".join(wsgi(environ, lambda status, headers: answer.extend((status, dict(headers)))))
+    return answer[0], answer[1], body.decode()
+
+
+# --- who may look -----------------------------------------------------------------------------------
+
+
+def test_without_the_token_nothing_is_said() -> None:
+    status, _, body = get(page(TOKEN))
+    assert status.startswith("403")
+    assert "pin" not in body
+
+
+def test_a_wrong_token_is_refused_everywhere() -> None:
+    for path in ("/", "/now", "/status.json", "/part.png", "/alarm.svg", "/page.js"):
+        assert get(page(TOKEN), path, QUERY_STRING="token=gt75-word-of-Ours")[0].startswith("403")
+
+
+@pytest.mark.parametrize(
+    "brought",
+    [
+        {"QUERY_STRING": f"token={TOKEN}"},
+        {"HTTP_AUTHORIZATION": f"Bearer {TOKEN}"},
+        {"HTTP_COOKIE": f"other=1; turndesk={TOKEN}"},
+    ],
+)
+def test_the_token_opens_it(brought: dict[str, str]) -> None:
+    status, headers, body = get(page(TOKEN), **brought)
+    assert status == "200 OK"
+    assert "RUNNING" in body
+    assert "HttpOnly" in headers["Set-Cookie"]
+
+
+def test_a_broken_cookie_is_no_token() -> None:
+    assert get(page(TOKEN), HTTP_COOKIE="turndesk=\x01;;=")[0].startswith("403")
+
+
+@pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "OPTIONS"])
+def test_it_takes_no_orders(method: str) -> None:
+    status, headers, _ = get(page(), method=method)
+    assert status.startswith("405")
+    assert headers["Allow"] == "GET, HEAD"
+
+
+def test_there_are_no_other_pages() -> None:
+    assert get(page(), "/../pyproject.toml")[0].startswith("404")
+    assert get(page(), "/part.png")[0].startswith("404")  # no part is drawn
+    assert get(page(), "/alarm.svg")[0] == "200 OK"
+
+
+def test_head_has_no_body() -> None:
+    status, headers, body = get(page(), method="HEAD")
+    assert (status, body) == ("200 OK", "")
+    assert int(headers["Content-Length"]) > 500
+
+
+def test_a_page_open_to_the_shop_wants_a_token() -> None:
+    text = machine_file("gt75.toml")
+    with pytest.raises(MachineFileError, match=r"other computers can ask at 0\.0\.0\.0"):
+        parse_machine(text + '[status_page]\nbind = "0.0.0.0"\ntoken = "short"\n', "m.toml")
+    with pytest.raises(MachineFileError, match="letters, figures"):
+        parse_machine(text + '[status_page]\ntoken = "with a blank and more"\n', "m.toml")
+    with pytest.raises(MachineFileError, match="begins with http"):
+        parse_machine(text + '[status_page]\ndesks = ["lathe2:8317"]\n', "m.toml")
+    table = parse_machine(
+        text + f'[status_page]\nbind = "0.0.0.0"\ntoken = "{TOKEN}"\n', "m.toml"
+    ).hardware.table(StatusPageTable)
+    assert table is not None
+    assert not table.enabled
+
+
+@pytest.mark.parametrize(
+    ("line", "why"),
+    [
+        ('mqtt = "shop:broker"', "address of the broker"),
+        ('mqtt = ":1883"', "address of the broker"),
+        ('hook = "ftp://x"', "begins with http"),
+        ('topic = "shop/#"', "a topic without"),
+    ],
+)
+def test_a_wrong_address_of_who_is_told_is_refused(line: str, why: str) -> None:
+    with pytest.raises(MachineFileError, match=why):
+        parse_machine(f"{machine_file('gt75.toml')}[announce]\n{line}\n", "m.toml")
+
+
+def test_the_broker_has_its_usual_port() -> None:
+    assert broker_of("shop-pc") == ("shop-pc", 1883)
+    assert broker_of("shop-pc:18") == ("shop-pc", 18)
+
+
+# --- what it shows ----------------------------------------------------------------------------------
+
+
+def test_what_a_program_is_called_is_text() -> None:
+    _, headers, body = get(page())
+    for harm in ("<b>", "<i>", "<u>"):
+        assert harm not in body
+    assert "&lt;b&gt;pin" in body
+    assert "look &amp; see" in body
+    assert "default-src 'none'" in headers["Content-Security-Policy"]
+    assert "1:05" in body  # 65 s left
+    assert "2:10" in body  # 130 s the last cycle
+
+
+def test_the_same_for_a_script() -> None:
+    assert json.loads(get(page(), "/status.json")[2]) == STATUS
+
+
+def looking(**snapshot: Any) -> Status:
+    reader = FloorReader(LATHE, conditions_of_device(device_of(LATHE, "GT-75")), lambda: 0.0)
+    stops = [StopRow(str(i), "", "pin.nc", f"2026-11-23T08:0{i}:00Z", 10.0 + i, "H") for i in range(9)]
+    now = datetime(2026, 11, 23, 9, tzinfo=UTC)
+    shot = Snapshot(**snapshot)
+    return OfficeLook("GT-75", reader, lambda: shot, lambda _: 42.04, lambda: stops, lambda: now).status()
+
+
+def test_a_running_part_has_its_time_left_and_the_newest_stops() -> None:
+    told = looking(state=State.RUN, program="/p/pin.nc", counts=True, made=3, line=9)
+    assert (told["state"], told["program"], told["made"], told["line"]) == ("RUNNING", "pin.nc", 3, 9)
+    assert told["time_left"] == 42.0
+    stops = told["stops"]
+    assert isinstance(stops, list)
+    assert [each["seconds"] for each in stops] == [18, 17, 16, 15, 14, 13][:STOPS]
+
+
+def test_what_does_not_run_has_no_time_left() -> None:
+    assert looking(state=State.IDLE)["time_left"] is None
+
+
+def test_a_message_to_the_operator_is_why_it_stands() -> None:
+    told = looking(state=State.PROGRAM_STOP, message="TURN THE PART ROUND")
+    assert told["stop"] == "TURN THE PART ROUND"
+
+
+def test_of_a_silent_control_nothing_else_is_said() -> None:
+    seconds = iter((0.0, 10.0, 20.0, 30.0))
+    reader = FloorReader(LATHE, frozenset({"system", "comms"}), lambda: next(seconds))
+    look = OfficeLook("GT-75", reader, Snapshot, lambda _: 1.0, lambda: (), lambda: datetime.now(UTC))
+    look.status()
+    told = look.status()
+    assert (told["state"], told["available"], told["made"]) == ("CONTROL SILENT", False, None)
+
+
+# --- the desks beside -------------------------------------------------------------------------------
+
+
+@contextmanager
+def served(wsgi: StatusPage) -> Iterator[str]:
+    """A page on a real socket."""
+    listening = listening_at("127.0.0.1", 0)
+    server = PageServer(wsgi, listening, lambda: None)
+    server.start()
+    try:
+        yield f"http://127.0.0.1:{listening.getsockname()[1]}/"
+    finally:
+        server.close()
+
+
+def test_a_desk_shows_another_one() -> None:
+    with served(page(TOKEN)) as address:
+        heard = asked(f"{address}?token={TOKEN}")
+    assert heard.trouble == ""
+    assert heard.status is not None
+    assert heard.status["program"] == "<b>pin</b>.nc"
+    shown = get(page(others=(heard,)))[2]
+    assert shown.count("&lt;b&gt;pin") == 2
+    assert TOKEN not in shown
+
+
+def test_another_desk_that_wants_another_token_says_so() -> None:
+    with served(page(TOKEN)) as address:
+        assert asked(address).trouble == "it wants another token"
+
+
+def test_a_desk_that_is_off_does_not_answer() -> None:
+    with socket.socket() as nobody:
+        nobody.bind(("127.0.0.1", 0))
+        heard = asked(f"http://127.0.0.1:{nobody.getsockname()[1]}")
+    assert heard.status is None
+    assert "refused" in heard.trouble
+    assert "NO ANSWER" in get(page(others=(heard,)))[2]
+
+
+def test_what_another_desk_says_is_not_believed() -> None:
+    odd: Status = {**STATUS, "time_left": "soon", "program": ["x"], "line": {"a": 1}, "state": "<hr>"}
+    with served(page(status=odd)) as address:
+        heard = asked(address)
+    shown = get(page(others=(heard,)))[2]
+    assert "soon" not in shown
+    assert "<hr>" not in shown
+
+
+def test_the_address_of_the_status() -> None:
+    assert status_address("http://a:1/?token=x") == "http://a:1/status.json?token=x"
+    assert status_address("http://a:1/desk") == "http://a:1/desk/status.json"
+
+
+def test_other_desks_are_asked_while_somebody_looks() -> None:
+    heard = OtherDesk("lathe2", {"state": "READY"})
+    asking = OtherDesks(("http://lathe2:8317",), lambda _address: heard)
+    assert asking.look()[0].trouble == "not asked yet"
+    asking.start()
+    while asking.look()[0] is not heard:
+        pass
+    asking.close()
+
+
+def test_a_port_that_is_taken_is_told() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        with pytest.raises(DriverError, match=f"127.0.0.1:{port}: another program listens there"):
+            listening_at("127.0.0.1", port)
+    with pytest.raises(DriverError, match="this computer has no such address"):
+        listening_at("192.0.2.1", 8317)
+
+
+def test_machine_check_has_a_row_for_the_page_and_for_the_broker() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as there, socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        taken, away = there.getsockname()[1], free.getsockname()[1]
+        tables = (
+            f'[status_page]\nenabled = true\nport = {taken}\n[announce]\nmqtt = "127.0.0.1:{taken}"\n',
+            f'[status_page]\nenabled = true\nport = {taken + 1}\n[announce]\nmqtt = "127.0.0.1:{away}"\n',
+        )
+        told = [
+            check_ports(parse_machine(machine_file("gt75.toml") + each, "m.toml")).rows for each in tables
+        ]
+    states = [{row.name: row.state for row in rows} for rows in told]
+    assert (states[0]["status_page"], states[0]["announce"]) == ("fault", "ok")
+    assert states[1]["announce"] == "no answer"
+
+
+# --- pictures ---------------------------------------------------------------------------------------
+
+
+def test_no_part_is_drawn_while_one_is_made() -> None:
+    runs, drawn = [True], []
+    job: Any = SimpleNamespace(digest="a")
+
+    def draw(_job: object, _watch: object) -> Thumbnail:
+        drawn.append(1)
+        return Thumbnail(b"\xff" * 16, 2, 2)
+
+    picture = PartPicture(lambda: job, lambda: not runs[0], draw)
+    picture.look()
+    assert (picture.png(), drawn) == (b"", [])
+    runs[0] = False
+    picture.look()
+    picture.look()
+    assert picture.png().startswith(b"\x89PNG")
+    assert drawn == [1]
+    job.digest = "b"
+    assert picture.png() == b""  # of another program
+
+
+def test_a_png_is_what_qt_reads() -> None:
+    colours = [0xFF102030, 0x80FFFFFF, 0x00000000, 0xFF00FF00, 0xFFFF0000, 0xFF0000FF]
+    image = QImage.fromData(png_of(np.array(colours, dtype=np.uint32).tobytes(), 3, 2))
+    assert [image.pixel(x, y) for y in range(2) for x in range(3)] == colours
+
+
+def record_of(error: Any) -> Record:
+    channels = channels_of({"X": False, "C": True}, (), ())
+    times = np.arange(len(error)) / 1000.0 + 50.0
+    columns = {each.name: np.full(len(error), np.nan) for each in channels}
+    columns |= {"X following error": np.asarray(error), "C following error": np.ones(len(error))}
+    about = {"alarm": "102 FOLLOWING ERROR: <X>", "alarm time": "52.5"}
+    return Record(channels, times, columns, 0.0, 1000.0, about)
+
+
+def test_an_alarm_is_drawn_with_its_peak() -> None:
+    error = np.zeros(5000)
+    error[2500] = 0.25  # one sample of 5 000, at the alarm
+    svg = alarm_drawing(record_of(error)).decode()
+    assert "±0.2500 mm" in svg
+    assert "&lt;X&gt;" in svg
+    assert svg.count("<polyline") == 1  # C is no slide
+    points = [tuple(map(float, each.split(","))) for each in svg.split('points="')[1].split('"')[0].split()]
+    peak = min(points, key=lambda point: point[1])
+    assert peak[1] == pytest.approx(24.0)  # the top of the drawing's room
+    assert peak[0] == pytest.approx(8 + 2500 / 4999 * 624, abs=0.1)
+    assert max(y for _, y in points) < HIGH
+
+
+def test_a_record_without_samples_is_not_drawn() -> None:
+    assert alarm_drawing(record_of(np.array([]))) == b""
+    assert alarm_drawing(record_of(np.full(10, np.nan))) == b""
+    assert alarm_drawing(replace(record_of(np.zeros(10)), about={})) == b""
+
+
+def test_a_record_that_is_damaged_is_not_drawn(tmp_path: Path) -> None:
+    (tmp_path / "20261123-alarm102.scope").write_bytes(b"PK damaged")
+    drawing = AlarmDrawing(tmp_path, lambda: True)
+    drawing.look()
+    assert drawing.svg() == b""
