@@ -99,7 +99,7 @@ class MachineFileError(Exception):
 
 Pair = tuple[float, float]
 Triple = tuple[float, float, float]
-Value = float | bool | str | Pair | Triple
+Value = float | bool | str | Pair | Triple | tuple[float, ...]
 _Model = TypeVar("_Model", bound="DataclassInstance")
 
 
@@ -112,12 +112,13 @@ class Kind(Enum):
     TEXT = "a text in quotes"
     PAIR = "two numbers, [low, high]"
     TRIPLE = "three numbers, [x, y, z]"
+    NUMBERS = "one to four numbers, [first, second]"
     CHOICE = "one of"
     WORDS = 'a list of words, ["one", "another"]'  # kept as one text, with blanks between them
 
 
 _HUGE = 10**300
-_NUMERIC = frozenset((Kind.NUMBER, Kind.WHOLE, Kind.PAIR, Kind.TRIPLE))
+_NUMERIC = frozenset((Kind.NUMBER, Kind.WHOLE, Kind.PAIR, Kind.TRIPLE, Kind.NUMBERS))
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,6 +183,12 @@ class Values:
         value = self.found[path]
         if not isinstance(value, tuple) or len(value) != 3:
             raise TypeError(f"{path} holds no triple")
+        return value
+
+    def numbers(self, path: str) -> tuple[float, ...]:
+        value = self.found[path]
+        if not isinstance(value, tuple):
+            raise TypeError(f"{path} holds no list")
         return value
 
     def model(self, kind: type[_Model], path: str, keys: Mapping[str, str] = {}, **given: object) -> _Model:
@@ -270,9 +277,9 @@ def _shape_is_right(raw: object, field: Field) -> bool:
             return isinstance(raw, bool)
         case Kind.TEXT | Kind.WORDS:
             return _is_words(raw) if field.kind is Kind.WORDS else isinstance(raw, str) and bool(raw.strip())
-        case Kind.PAIR | Kind.TRIPLE:
-            count = 2 if field.kind is Kind.PAIR else 3
-            return isinstance(raw, list) and len(raw) == count and all(_number(part) for part in raw)
+        case Kind.PAIR | Kind.TRIPLE | Kind.NUMBERS:
+            counts = {Kind.PAIR: (2,), Kind.TRIPLE: (3,)}.get(field.kind, range(1, 5))
+            return isinstance(raw, list) and len(raw) in counts and all(_number(part) for part in raw)
         case Kind.CHOICE:
             return any(raw is choice or (isinstance(raw, str) and raw == choice) for choice in field.choices)
 
@@ -297,7 +304,7 @@ def _problem(raw: object, field: Field, inch: bool | None) -> str:
     low, high = field.low - 1e-9 * abs(field.low), field.high + 1e-9 * abs(field.high)
     parts = _parts(raw)
     inside = all(low <= to_model(part, field.unit, inch) <= high for part in parts)
-    ordered = field.kind is Kind.TRIPLE or parts == sorted(set(parts))
+    ordered = field.kind in {Kind.TRIPLE, Kind.NUMBERS} or parts == sorted(set(parts))
     return "" if inside and ordered else _expected(field, inch)
 
 
@@ -311,6 +318,8 @@ def _converted(raw: object, field: Field, inch: bool) -> Value:
         return int(numbers[0])
     if field.kind is Kind.TRIPLE:
         return numbers[0], numbers[1], numbers[2]
+    if field.kind is Kind.NUMBERS:
+        return tuple(numbers)
     return (numbers[0], numbers[1]) if field.kind is Kind.PAIR else numbers[0]
 
 

@@ -1,4 +1,4 @@
-"""What the product ships besides code: machine files, sample programs, fonts."""
+"""What the product ships besides code: machine files, sample programs, fonts, the page for the office."""
 
 from __future__ import annotations
 
@@ -22,3 +22,8 @@ def machine_file(name: str) -> str:
 def hal_file(name: str) -> Path:
     """Where a shipped HAL file is, such as ``gt75-hal.hal``: LinuxCNC reads it itself."""
     return Path(__file__).parent / "machines" / name
+
+
+def status_page_file(name: str) -> bytes:
+    """A file of the page for the office, such as ``page.html``. Raises FileNotFoundError."""
+    return files(__name__).joinpath("status_page", name).read_bytes()

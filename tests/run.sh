@@ -5,25 +5,34 @@
 set -eu
 . "$(dirname -- "$0")/../resources/setup/environment.sh"
 
-# shellcheck disable=SC2086
-system_packages ca-certificates $QT_LIBRARIES $WINDOW_LIBRARIES $STORY_PACKAGES
-optional_packages linuxcnc-uspace
+# The quick part opens no window and has no stories.
+MORE=""
+[ "${1:-}" = "--quick" ] || MORE="$WINDOW_LIBRARIES $STORY_PACKAGES"
+# shellcheck disable=SC2046,SC2086
+system_packages ca-certificates $QT_LIBRARIES $MORE $(python_packages)
+[ "${1:-}" = "--quick" ] || optional_packages linuxcnc-uspace mosquitto
 find_python
-python_environment "[dev]"
+python_environment tests
 
 QUICK="tests/language tests/geometry tests/interpreter tests/klartext tests/sinumerik tests/motion tests/proving tests/executor tests/alarms tests/machine tests/test_map.py"
 
 cd "$ROOT"
 PATH="$PYTHON_ENV/bin:$PATH"
 export QT_QPA_PLATFORM=offscreen
+# A story, a worker and a command are processes: what one has compiled, the others read.
+unset PYTHONDONTWRITEBYTECODE
 ruff format --check --quiet .
 ruff check --quiet .
-mypy
+mypy &
+TYPES=$!
 lint-imports
 if [ "${1:-}" = "--quick" ]; then
     shift
+    wait "$TYPES"
     # shellcheck disable=SC2086
     exec pytest -n 2 -m "not long" $QUICK "$@"
 fi
+pytest --collect-only --quiet --quiet >/dev/null || true  # compiled once, before every worker does it for itself
+wait "$TYPES"
 # One more than there are cores: a story mostly waits for what it looks at.
 pytest -n 3 "$@"

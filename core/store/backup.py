@@ -10,7 +10,7 @@ from contextlib import closing, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
-from core.store import database, program_records
+from core.store import damaged_rows, database, program_records
 from core.store.database import WriterLock, make_folder
 from core.store.store_errors import Cause, StoreError, cause_of, why
 
@@ -36,6 +36,8 @@ def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
         for table, _, parent, _ in connection.execute("PRAGMA foreign_key_check")
     ]
     found += [f"{which} is not what was saved" for which in program_records.spoilt(connection)]
+    if database.version_of(connection) == len(database.migrations()):  # an older one has no sums
+        found += damaged_rows.damaged(connection)
     return tuple(found)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import sqlite3
 from collections.abc import Sequence
@@ -11,12 +10,16 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
+from core.file_lock import lock
+from core.store import row_sums
 from core.store.store_errors import Cause, StoreError, cause_of, why
 
 FILE_NAME = "turndesk.db"
 APPLICATION_ID = 0x5475724E  # "TurN": tells a store of ours from any other SQLite file
 _MAGIC = b"SQLite format 3\0"
 _BUSY_SECONDS = 5.0
+_NO_ROOM = frozenset({Cause.FULL, Cause.FORBIDDEN})
+_SUMS_SINCE = 11  # the version that brought them
 
 
 def migrations() -> tuple[str, ...]:
@@ -47,19 +50,40 @@ def check_header(path: Path) -> None:
 
 
 def connect(path: Path, *, read_only: bool) -> sqlite3.Connection:
-    """A connection with our settings. Transactions are begun by hand. Raises StoreError."""
-    mode = "ro" if read_only else "rw"
+    """A connection with our settings. Transactions are begun by hand. Raises StoreError.
+
+    Reading, too, needs a little room beside the file, for SQLite's index. Where there is none, and no log
+    whose entries would be missed, the file is read as it stands.
+    """
     try:
-        connection = sqlite3.connect(
-            f"{path.resolve().as_uri()}?mode={mode}",
-            uri=True,
-            isolation_level=None,
-            check_same_thread=False,
-            timeout=_BUSY_SECONDS,
-        )
-        return configured(connection)
+        return _connection(path, "mode=ro" if read_only else "mode=rw")
+    except sqlite3.Error as error:
+        if not read_only or cause_of(path, error) not in _NO_ROOM or _has_log(path):
+            raise why(path, error) from error
+    try:
+        return _connection(path, "mode=ro&immutable=1")
     except sqlite3.Error as error:
         raise why(path, error) from error
+
+
+def _connection(path: Path, how: str) -> sqlite3.Connection:
+    connection = sqlite3.connect(
+        f"{path.resolve().as_uri()}?{how}",
+        uri=True,
+        isolation_level=None,
+        check_same_thread=False,
+        timeout=_BUSY_SECONDS,
+    )
+    try:
+        return configured(connection)
+    except sqlite3.Error:
+        connection.close()
+        raise
+
+
+def _has_log(path: Path) -> bool:
+    log, _ = companions(path)
+    return log.exists() and log.stat().st_size > 0
 
 
 def configured(connection: sqlite3.Connection) -> sqlite3.Connection:
@@ -97,12 +121,15 @@ def check_file(path: Path, *, thorough: bool) -> int:
 
 
 def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
-    """Brings the tables up to the newest version; each version is one transaction, done or not done."""
+    """Brings the tables up to the newest version; each version is one transaction, done or not done.
+
+    From then on this connection gives a sum to every row that it writes.
+    """
     for number, script in enumerate(scripts, start=1):
         if number <= version_of(connection):
             continue
         try:
-            connection.executescript(f"BEGIN IMMEDIATE;\n{script}\nPRAGMA user_version = {number};\nCOMMIT;")
+            _bring_to(connection, number, script)
         except sqlite3.Error as error:
             if connection.in_transaction:
                 connection.rollback()
@@ -110,6 +137,17 @@ def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
                 f"the store cannot be brought to version {number}, and stays at the one before: "
                 f"{why(_path_of(connection), error)}"
             ) from error
+    if len(scripts) >= _SUMS_SINCE:
+        row_sums.watch(connection)
+
+
+def _bring_to(connection: sqlite3.Connection, number: int, script: str) -> None:
+    """Rows get their sums anew, but for those that were damaged before: other columns make another sum."""
+    damaged = row_sums.all_broken(connection) if number > _SUMS_SINCE else frozenset()
+    connection.executescript(f"BEGIN IMMEDIATE;\n{script}\nPRAGMA user_version = {number};")
+    if number >= _SUMS_SINCE:
+        row_sums.seal_all(connection, damaged)
+    connection.execute("COMMIT")
 
 
 def _path_of(connection: sqlite3.Connection) -> Path:
@@ -138,6 +176,8 @@ def put_in_place(finished: Path, path: Path) -> None:
     with finished.open("rb") as file:
         os.fsync(file.fileno())
     finished.replace(path)
+    if os.name != "posix":
+        return  # Windows opens no folders; its own journal keeps the name
     folder = os.open(path.parent, os.O_RDONLY)
     try:
         os.fsync(folder)
@@ -170,7 +210,7 @@ class WriterLock:
         except OSError as error:
             raise why(self._path, error) from error
         try:
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            lock(self._file)
         except OSError as error:
             owner = os.read(self._file, 32).decode("ascii", "replace").strip()
             os.close(self._file)
@@ -180,7 +220,8 @@ class WriterLock:
             ) from error
         with suppress(OSError):  # a courtesy to whoever finds it taken; a full disk has no room for it
             os.ftruncate(self._file, 0)
-            os.pwrite(self._file, f"{os.getpid()}\n".encode("ascii"), 0)
+            os.lseek(self._file, 0, os.SEEK_SET)
+            os.write(self._file, f"{os.getpid()}\n".encode("ascii"))
 
     def close(self) -> None:
         """Give the store free. Calling it again does nothing."""
@@ -253,8 +294,8 @@ def make_folder(folder: Path) -> None:
 
 def _refuse_lost_file(path: Path) -> None:
     """A log without its database would be poured into the new, empty one."""
-    log, _ = companions(path)
-    if log.exists() and log.stat().st_size:
+    if _has_log(path):
+        log, _ = companions(path)
         raise StoreError(
             f"{path} has gone but its log {log.name} is still there; put the file back, or move the log away"
         )

@@ -6,6 +6,7 @@ import json
 import sqlite3
 from collections.abc import Collection, Iterable
 
+from core.store import row_sums
 from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow
 
@@ -30,7 +31,9 @@ def events(
 
 
 def setting(connection: sqlite3.Connection, key: str) -> object:
-    """What was stored under ``key``, None: nothing."""
+    """What was stored under ``key``, None: nothing, or it is not as it was stored."""
+    if not row_sums.is_whole(connection, "settings", key):
+        return None
     row = connection.execute("SELECT value FROM settings WHERE key = ?", (key,)).fetchone()
     return json.loads(row[0]) if row else None
 
@@ -53,3 +56,15 @@ def setting_text(key: str, value: object) -> str:
         return json.dumps(value, allow_nan=False)
     except (TypeError, ValueError) as error:
         raise StoreError(f"the setting {key} cannot be stored: {error}") from error
+
+
+def events_between(
+    connection: sqlite3.Connection, kinds: Collection[str], since: str, until: str
+) -> tuple[EventRow, ...]:
+    """Events of these kinds within this time (UTC), in their order."""
+    rows = connection.execute(
+        "SELECT at, kind, text, line, record FROM events WHERE at >= ?1 AND at < ?2"
+        " AND kind IN (SELECT value FROM json_each(?3)) ORDER BY id",
+        (since, until, json.dumps(sorted(kinds))),
+    )
+    return tuple(EventRow(*row) for row in rows)

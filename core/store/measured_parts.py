@@ -131,3 +131,17 @@ def last_corrections(connection: sqlite3.Connection) -> dict[tuple[str, int, str
         " GROUP BY kind, number"
     )
     return {(kind, number, axis): newest for kind, number, axis, newest in rows}
+
+
+def readings_between(
+    connection: sqlite3.Connection, since: str, until: str
+) -> tuple[tuple[FeatureRow, ReadingRow], ...]:
+    """Readings that were taken within this time (UTC), each with its feature, measured any more or not."""
+    columns = ", ".join(f"f.{name}" for name in FeatureRow._fields)
+    rows = connection.execute(
+        f"SELECT r.id, r.feature, r.part, r.value, r.unit, r.at, r.source, r.gauge, {columns}"
+        " FROM part_readings AS r JOIN part_features AS f ON f.id = r.feature"
+        " WHERE r.void = 0 AND r.at >= ? AND r.at < ? ORDER BY r.id",
+        (since, until),
+    )
+    return tuple((FeatureRow(*row[8:]), ReadingRow(*row[:8])) for row in rows)

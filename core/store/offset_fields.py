@@ -17,6 +17,9 @@ REMARK_LONGEST = 40  # characters
 SHAPE_REACH = 508.0  # mm: 20 in, longer than any tool of such a lathe sticks out
 OUTLINE_LONGEST = 600  # characters
 ZERO_REACH = 5000.0  # mm, more than any such lathe travels
+MILL_TOOL_REACH = 1000.0  # mm, longer and thicker than any tool of a mill
+OVERSIZE_REACH = 99.999  # mm, as TOOL CALL takes it
+LIFE_REACH = 100_000.0  # minutes
 ANGLE_REACH = 360.0  # degrees: further is the same place
 TOOL_KINDS = (
     *("turning", "boring", "grooving", "parting", "threading", "drill"),
@@ -32,12 +35,13 @@ class Sort(StrEnum):
     LENGTH = "length"  # mm, and inches for whoever enters it
     METRIC = "millimetres"
     ANGLE = "degrees"
+    MINUTES = "minutes"
     WHOLE = "whole number"
     TEXT = "text"
     FLAG = "yes or no"
 
 
-_UNITS = {Sort.METRIC: "mm", Sort.ANGLE: "degrees"}
+_UNITS = {Sort.METRIC: "mm", Sort.ANGLE: "degrees", Sort.MINUTES: "minutes"}
 
 
 @dataclass(frozen=True, slots=True)

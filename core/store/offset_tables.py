@@ -7,18 +7,24 @@ entry has changed; taking it back is a step of the history itself.
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from core.store import row_sums
 from core.store.offset_fields import Field, Sort
 from core.store.store_errors import StoreError
 from core.store.store_rows import (
     FIELDS,
+    MILL_TOOLS,
     OFFSETS,
+    PRESETS,
+    TOOL_ROWS,
     ZERO_CODES,
     Change,
     Kind,
+    MillRow,
+    PresetRow,
     R,
     Row,
     SecondaryRow,
@@ -29,6 +35,7 @@ from core.store.store_rows import (
     inches,
     utc_now,
 )
+from core.tool_edges import edge_name, tool_of
 
 Changes = Mapping[int, tuple[Row | None, Row | None]]
 
@@ -61,7 +68,7 @@ class _Table:
 
     name: str
     letter: str
-    numbers: range
+    numbers: Container[int]
     row: type[Row]
     log: _Log
 
@@ -77,21 +84,42 @@ _ZEROS = _Log(
 )
 _NO_SHAPE = "there is no change of a tool's shape to undo"
 _SHAPES = _Log("tool_shape_changes", "number", _columns(Kind.SHAPE), "'shape'", _NO_SHAPE)
+_MILL_TOOLS = _Log(
+    "mill_tool_changes",
+    "number",
+    _columns(Kind.MILL_TOOL),
+    "'mill tool'",
+    "there is no change of a tool to undo",
+)
+_PRESETS = _Log(
+    "datum_preset_changes",
+    "number",
+    _columns(Kind.PRESET),
+    "'preset'",
+    "there is no change of a preset to undo",
+)
+_LOGS = (_OFFSETS, _ZEROS, _SHAPES, _MILL_TOOLS, _PRESETS)
 _TABLES = {
-    Kind.TOOL: _Table("tool_offsets", "T", OFFSETS, ToolRow, _OFFSETS),
+    Kind.TOOL: _Table("tool_offsets", "T", TOOL_ROWS, ToolRow, _OFFSETS),
     Kind.SECONDARY: _Table("secondary_offsets", "D", OFFSETS, SecondaryRow, _OFFSETS),
     Kind.ZERO: _Table("zero_offsets", "G", ZERO_CODES, ZeroRow, _ZEROS),
-    Kind.SHAPE: _Table("tool_shapes", "T", OFFSETS, ShapeRow, _SHAPES),
+    Kind.SHAPE: _Table("tool_shapes", "T", TOOL_ROWS, ShapeRow, _SHAPES),
+    Kind.MILL_TOOL: _Table("mill_tools", "T", MILL_TOOLS, MillRow, _MILL_TOOLS),
+    Kind.PRESET: _Table("datum_presets", "PRESET ", PRESETS, PresetRow, _PRESETS),
 }
 
 
 def current(connection: sqlite3.Connection, kind: Kind) -> dict[int, Row]:
-    """All offsets of one table that have been set, by number."""
+    """All offsets of one table that have been set, by number; not those that are not as they were saved."""
     table = _TABLES[kind]
-    rows = connection.execute(
-        f"SELECT {table.log.key}, {', '.join(_columns(kind))} FROM {table.name} ORDER BY {table.log.key}"
-    )
-    return {number: _row(kind, values) for number, *values in rows}
+    columns = ", ".join((table.log.key, *_columns(kind)))
+    rows = row_sums.raw(connection, f"SELECT {columns} FROM {table.name} ORDER BY {table.log.key}")
+    broken = row_sums.broken(connection, table.name)
+    return {
+        number: _row(kind, row_sums.readable(values))
+        for number, *values in rows
+        if isinstance(number, int) and number not in broken
+    }
 
 
 def rows_of(connection: sqlite3.Connection, kind: Kind, row: type[R]) -> dict[int, R]:
@@ -114,11 +142,14 @@ def change(
     check_number(kind, number)
     rows = current(connection, kind)
     old = rows.get(number)
+    _check_edge(kind, number, rows, wanted)
     if old is None and wanted.get("master") and not {"x", "z"} <= wanted.keys():
         raise StoreError(never_set(number))
     new = changed(kind, number, old, wanted)
     if isinstance(new, ShapeRow) and not new.kind:
-        raise StoreError(f"T{number} has no shape yet; enter its kind first: {FIELDS[kind]['kind'].range}")
+        raise StoreError(
+            f"{edge_name(number)} has no shape yet; enter its kind first: {FIELDS[kind]['kind'].range}"
+        )
     if new != old:
         changes: dict[int, tuple[Row | None, Row | None]] = {number: (old, new)}
         if isinstance(new, ToolRow) and new.master:
@@ -127,13 +158,23 @@ def change(
     return new
 
 
+def _check_edge(kind: Kind, number: int, rows: Mapping[int, Row], wanted: Mapping[str, Value]) -> None:
+    """Raises StoreError for an edge of a tool that was never set, and for one that is to be the master."""
+    if kind is not Kind.TOOL or tool_of(number) == number:
+        return
+    if tool_of(number) not in rows:
+        raise StoreError(f"{edge_name(tool_of(number))} was never set; set its D1 before {edge_name(number)}")
+    if wanted.get("master"):
+        raise StoreError(f"{edge_name(number)} is a further edge; a tool is the master by its D1")
+
+
 def _other_masters(rows: Mapping[int, Row], number: int) -> list[tuple[int, ToolRow]]:
     return [(n, row) for n, row in rows.items() if n != number and isinstance(row, ToolRow) and row.master]
 
 
 def never_set(number: int) -> str:
     """Why a tool cannot be the master."""
-    return f"T{number} was never set, so nothing can be relative to it; touch it off first"
+    return f"{edge_name(number)} was never set, so nothing can be relative to it; touch it off first"
 
 
 def check_number(kind: Kind, number: int) -> None:
@@ -143,6 +184,9 @@ def check_number(kind: Kind, number: int) -> None:
         return
     if kind is Kind.ZERO:
         raise StoreError(f"G{number} does not exist; settable offsets are G54…G59")
+    if kind in {Kind.MILL_TOOL, Kind.PRESET}:
+        last = MILL_TOOLS[-1] if kind is Kind.MILL_TOOL else PRESETS[-1]
+        raise StoreError(f"{table.letter}{number} does not exist; they are 1…{last}")
     raise StoreError(f"{table.letter}{number} does not exist; offsets are {table.letter}1…32")
 
 
@@ -153,7 +197,8 @@ def changed(kind: Kind, number: int, old: Row | None, wanted: Mapping[str, Value
         field = fields.get(name)
         if field is None or not field.takes(value):
             word, shown = (field.word, _told(field, value)) if field else (name, value)
-            told = f"{table.letter}{number} {word} {shown}"
+            whose = edge_name(number) if table.letter == "T" else f"{table.letter}{number}"
+            told = f"{whose} {word} {shown}"
             accepted = field.range if field else ", ".join(fields)
             raise StoreError(f"{told} is out of range; enter {accepted}")
     before = old or table.row()
@@ -181,9 +226,16 @@ def _plain(field: Field, value: Value | None) -> Value:
 
 
 def remove(connection: sqlite3.Connection, kind: Kind, number: int, reason: Reason) -> bool:
-    """Removes one offset or shape as one step; answers whether there was one."""
+    """Removes one offset or shape as one step; answers whether there was one.
+
+    Raises StoreError for a tool that has further cutting edges, which would stand without it.
+    """
     check_number(kind, number)
-    old = current(connection, kind).get(number)
+    rows = current(connection, kind)
+    old = rows.get(number)
+    edges = [edge_name(n) for n in rows if kind is Kind.TOOL and n != number and tool_of(n) == number]
+    if edges:
+        raise StoreError(f"{edge_name(number)} has further edges; clear {', '.join(edges)} first")
     if old is not None:
         apply(connection, kind, {number: (old, None)}, reason)
     return old is not None
@@ -240,12 +292,28 @@ def undo(connection: sqlite3.Connection, reason: Reason, kind: Kind | None = Non
     With ``kind`` the last step of that table, without one that of tools and secondary offsets together.
     Asking again goes further back. Raises StoreError when there is nothing left to undo.
     """
-    log = _log_of(kind)
-    step = connection.execute(
-        f"SELECT max(step) FROM {log.name} WHERE undoes IS NULL AND {log.kind} = coalesce(?, {log.kind})"
+    return _undo(connection, reason, _log_of(kind), kind)
+
+
+def undo_any(connection: sqlite3.Connection, reason: Reason) -> tuple[Change, ...]:
+    """The same for the youngest step of all tables."""
+    log = max(_LOGS, key=lambda each: _last_step(connection, each, None)[1])
+    return _undo(connection, reason, log, None)
+
+
+def _last_step(connection: sqlite3.Connection, log: _Log, kind: Kind | None) -> tuple[int | None, str]:
+    """The last step that is not undone yet, None without one, and when it was."""
+    step, at = connection.execute(
+        f"SELECT max(step), max(at) FROM {log.name}"
+        f" WHERE undoes IS NULL AND {log.kind} = coalesce(?, {log.kind})"
         f" AND step NOT IN (SELECT undoes FROM {log.name} WHERE undoes IS NOT NULL)",
         (kind.value if kind else None,),
-    ).fetchone()[0]
+    ).fetchone()
+    return step, at or ""
+
+
+def _undo(connection: sqlite3.Connection, reason: Reason, log: _Log, kind: Kind | None) -> tuple[Change, ...]:
+    step = _last_step(connection, log, kind)[0]
     if step is None:
         raise StoreError(log.nothing_left)
     rows = _select(connection, log, "WHERE step = ? ORDER BY id", (step,))
@@ -261,8 +329,56 @@ def history(connection: sqlite3.Connection, kind: Kind | None, limit: int) -> tu
     return _select(connection, log, f"WHERE {log.kind} = ? ORDER BY id DESC LIMIT ?", (kind.value, limit))
 
 
+def history_any(connection: sqlite3.Connection, limit: int) -> tuple[Change, ...]:
+    """The last changes of all tables, newest first."""
+    tail = "ORDER BY id DESC LIMIT ?"
+    found = [each for log in _LOGS for each in _select(connection, log, tail, (limit,))]
+    return tuple(sorted(found, key=lambda each: each.at, reverse=True)[:limit])
+
+
+def as_of(connection: sqlite3.Connection, kind: Kind, moment: str) -> dict[int, Row]:
+    """The offsets of a table as they were set at a moment (UTC), by number."""
+    log = _log_of(kind)
+    changes = _select(connection, log, f"WHERE {log.kind} = ? AND at <= ? ORDER BY id", (kind.value, moment))
+    rows = {each.number: each.new for each in changes}
+    return {number: row for number, row in rows.items() if row is not None}
+
+
 def _log_of(kind: Kind | None) -> _Log:
     return _OFFSETS if kind is None else _TABLES[kind].log
+
+
+def named(name: str, key: row_sums.Key) -> str:
+    """A row of a table with a sum, as people call it."""
+    table = next((each for each in _TABLES.values() if each.name == name), None)
+    if table is None:
+        return f"{_OTHERS[name]} {key}"
+    if table.letter != "T" or not isinstance(key, int):
+        return f"{table.letter}{key}"
+    return f"{edge_name(key)}'s shape" if table.row is ShapeRow else edge_name(key)
+
+
+_OTHERS = {
+    "settings": "the setting",
+    "part_counts": "the part count of",
+    "tool_lives": "the life of tool",
+    "mill_tool_lives": "the life of tool",
+    "jobs": "the job",
+}
+
+
+def history_of(
+    connection: sqlite3.Connection, name: str, key: row_sums.Key, columns: Sequence[str]
+) -> tuple[row_sums.Value, ...] | None:
+    """The row as it was last entered, by the columns of its table; None: never, or it was cleared."""
+    kind = next((kind for kind, table in _TABLES.items() if table.name == name), None)
+    if kind is None:
+        return None
+    log = _TABLES[kind].log
+    sides = ", ".join(log.key if column == log.key else f"new_{column}" for column in columns)
+    last = f"WHERE {log.key} = ? AND {log.kind} = ? ORDER BY id DESC LIMIT 1"
+    found = row_sums.raw(connection, f"SELECT {sides} FROM {log.name} {last}", (key, kind.value))
+    return None if not found or None in found[0] else found[0]
 
 
 def _select(

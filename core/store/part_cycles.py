@@ -125,3 +125,23 @@ def corrections(connection: sqlite3.Connection, program: str, limit: int) -> tup
         (program, limit),
     )
     return tuple(CorrectionRow(*row) for row in rows)[::-1]
+
+
+def cycles_between(connection: sqlite3.Connection, since: str, until: str) -> tuple[CycleRow, ...]:
+    """Those of all programs that ran within this time (UTC), or were under way at one of its ends."""
+    rows = connection.execute(
+        f"SELECT {_CYCLE} FROM part_cycles"
+        " WHERE started < ?2 AND max(started, coalesce(ended, started)) >= ?1 ORDER BY id",
+        (since, until),
+    )
+    return tuple(CycleRow(*row) for row in rows)
+
+
+def stops_between(connection: sqlite3.Connection, since: str, until: str) -> tuple[StopRow, ...]:
+    """Stops that are over and lay within this time (UTC), or over one of its ends."""
+    rows = connection.execute(
+        f"SELECT {', '.join(StopRow._fields)} FROM production_stops"
+        " WHERE at < ?2 AND julianday(at) + seconds / 86400.0 > julianday(?1) ORDER BY id",
+        (since, until),
+    )
+    return tuple(StopRow(*row) for row in rows)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sqlite3
 from hashlib import sha256
 
+from core.store import row_sums
 from core.store.store_errors import StoreError
 from core.store.store_rows import ProgramRow, RunRow, VersionRow, utc_now
 
@@ -90,7 +91,9 @@ def spoilt(connection: sqlite3.Connection) -> tuple[str, ...]:
 
 
 def parts(connection: sqlite3.Connection, program: str) -> int:
-    """Parts made since the count was last put to nought."""
+    """Parts made since the count was last put to nought; a count that is not as it was saved is none."""
+    if not row_sums.is_whole(connection, "part_counts", program):
+        return 0
     row = connection.execute("SELECT count FROM part_counts WHERE program = ?", (program,)).fetchone()
     return int(row[0]) if row else 0
 
@@ -174,7 +177,7 @@ def renamed(connection: sqlite3.Connection, old: str, new: str) -> None:
         " (SELECT 1 FROM programs WHERE name = ?2)",
         (old, new),
     )
-    for table in ("part_cycles", "production_stops"):
+    for table in ("part_cycles", "production_stops", "jobs"):
         connection.execute(f"UPDATE {table} SET program = ? WHERE program = ?", (new, old))
     connection.execute(
         "UPDATE part_features SET program = ?2 WHERE program = ?1 AND NOT EXISTS"

@@ -6,19 +6,23 @@ import sqlite3
 import threading
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from concurrent.futures import Future
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Concatenate, ParamSpec, TypeVar
 
-from core.store import event_log, offset_tables, program_records, touch_off
+from core.store import damaged_rows, event_log, job_queue, offset_tables, program_records, touch_off
 from core.store.database import Opened, open_to_read, open_to_write
+from core.store.job_queue import JobRow
 from core.store.offset_tables import Reason
+from core.store.row_sums import KEYS
 from core.store.store_errors import StoreError, why
 from core.store.store_rows import (
     Change,
     EventRow,
     Kind,
+    MillRow,
+    PresetRow,
     ProgramRow,
     Row,
     RunRow,
@@ -53,6 +57,7 @@ class Store:
         self._reader = opened.reader
         self._reading = threading.Lock()
         self._opened = opened
+        self.repaired = _repaired(opened.writer) if opened.writer else ()  # what was damaged, in sentences
         self._writer = StoreWriter(opened.writer, opened.path) if opened.writer else None
 
     @classmethod
@@ -116,6 +121,11 @@ class Store:
         """The tool offsets that have been set."""
         return self._asked(offset_tables.tools)
 
+    def tools_at(self, moment: str) -> dict[int, ToolRow]:
+        """The tool offsets as they were set at a moment (UTC)."""
+        rows = self._asked(offset_tables.as_of, Kind.TOOL, moment)
+        return {number: row for number, row in rows.items() if isinstance(row, ToolRow)}
+
     def secondary(self) -> dict[int, SecondaryRow]:
         """The secondary offsets that have been set."""
         return self._asked(offset_tables.rows_of, Kind.SECONDARY, SecondaryRow)
@@ -124,6 +134,10 @@ class Store:
         """Changes of a table, newest first; without ``kind`` of tool and secondary offsets together."""
         return self._asked(offset_tables.history, kind, limit)
 
+    def history_of_all(self, limit: int = 100) -> tuple[Change, ...]:
+        """Changes of all tables, newest first."""
+        return self._asked(offset_tables.history_any, limit)
+
     def zero_offsets(self) -> dict[int, ZeroRow]:
         """The settable offsets G54…G59 that have been set."""
         return self._asked(offset_tables.rows_of, Kind.ZERO, ZeroRow)
@@ -131,6 +145,18 @@ class Store:
     def shapes(self) -> dict[int, ShapeRow]:
         """The shapes of tools that have been set."""
         return self._asked(offset_tables.rows_of, Kind.SHAPE, ShapeRow)
+
+    def mill_tools(self) -> dict[int, MillRow]:
+        """The tools of a mill."""
+        return self._asked(offset_tables.rows_of, Kind.MILL_TOOL, MillRow)
+
+    def presets(self) -> dict[int, PresetRow]:
+        """The presets of a mill."""
+        return self._asked(offset_tables.rows_of, Kind.PRESET, PresetRow)
+
+    def damaged(self, tables: Collection[str] = KEYS, settings: Collection[str] = ()) -> tuple[str, ...]:
+        """A sentence for each row that is not as it was saved; of some tables only, and of some settings."""
+        return self._asked(damaged_rows.damaged, tables, settings)
 
     def programs(self) -> tuple[ProgramRow, ...]:
         """All programs by name."""
@@ -175,6 +201,12 @@ class Store:
         reset, more = held.counts.get(program, (False, 0)) if held is not None else (False, 0)
         return max(0, (0 if reset else stored) + more)
 
+    def jobs(self) -> tuple[JobRow, ...]:
+        """The queue of jobs, with the parts that are still to be written."""
+        with self.read() as connection:
+            held = self.backlog
+            return job_queue.jobs(connection, held.counts if held is not None else None)
+
     def write(self, operation: Operation[T]) -> Future[T]:
         """Posts one transaction to the writer. Raises StoreError in a read-only store."""
         if self._writer is None:
@@ -217,7 +249,11 @@ class Store:
 
     def remove_shape(self, number: int, why: str, *, who: str = "operator") -> Future[bool]:
         """A tool without a shape again; answers whether it had one."""
-        return self.write(lambda c: offset_tables.remove(c, Kind.SHAPE, number, Reason(why, who)))
+        return self.remove_offset(Kind.SHAPE, number, why, who=who)
+
+    def remove_offset(self, kind: Kind, number: int, why: str, *, who: str = "operator") -> Future[bool]:
+        """One offset that was never set again; answers whether it was."""
+        return self.write(lambda c: offset_tables.remove(c, kind, number, Reason(why, who)))
 
     def clear_offsets(self, kind: Kind, why: str, *, who: str = "operator") -> Future[int]:
         """All offsets of a table at once, as one step of its history; answers how many were set."""
@@ -231,6 +267,10 @@ class Store:
         Without ``kind`` the last of tool and secondary offsets together.
         """
         return self.write(lambda c: offset_tables.undo(c, Reason(why, who), kind))
+
+    def undo_last(self, why: str = "undo", *, who: str = "operator") -> Future[tuple[Change, ...]]:
+        """Takes the youngest change of all tables back; again: the one before. StoreError without one."""
+        return self.write(lambda c: offset_tables.undo_any(c, Reason(why, who)))
 
     def save_program(self, name: str, text: bytes, why: str) -> Future[int]:
         """Keeps a version; answers its number, that of the newest when the text is the same."""
@@ -319,8 +359,9 @@ class Store:
         why: str,
         zero_rows: Mapping[int, ZeroRow] | None = None,
         shapes: Mapping[int, ShapeRow] | None = None,
+        mill: Mapping[Kind, Mapping[int, Mapping[str, Value]]] | None = None,
     ) -> Future[None]:
-        """Programs and offsets of an export in one transaction: all of them or none."""
+        """Programs and offsets of an export in one transaction: all of them or none. ``mill``: its tables."""
 
         def operation(connection: sqlite3.Connection) -> None:
             reason = Reason(why, "import")
@@ -334,5 +375,22 @@ class Store:
                 offset_tables.change(connection, Kind.ZERO, code, reason, offset._asdict())
             for number, shape in (shapes or {}).items():
                 offset_tables.change(connection, Kind.SHAPE, number, reason, shape._asdict())
+            for kind, rows in (mill or {}).items():
+                for number, values in rows.items():
+                    offset_tables.change(connection, kind, number, reason, values)
 
         return self.write(operation)
+
+
+def _repaired(connection: sqlite3.Connection) -> tuple[str, ...]:
+    """Damaged rows that the history has put right, noted in the log; a disk that takes nothing waits."""
+    try:
+        connection.execute("BEGIN IMMEDIATE")
+        told = damaged_rows.repair(connection)
+        event_log.log(connection, (EventRow(utc_now(), "warning", text) for text in told))
+        connection.execute("COMMIT")
+    except sqlite3.Error:
+        with suppress(sqlite3.Error):
+            connection.rollback()
+        return ()
+    return told

@@ -12,16 +12,21 @@ from core.store.offset_fields import Field, Sort
 from core.store.store import Store
 from core.store.store_errors import Cause, StoreError, cause_of, why
 from core.store.store_rows import FIELDS, EventRow, Kind, Row, RunRow, Value, inches
+from core.tool_edges import edge_of, tool_of
 
 PROGRAMS, OFFSETS, EVENTS, RUNS = "programs", "offsets.toml", "events.csv", "runs.csv"
-TABLES = {  # of measured parts: whole tables, mm and seconds as the store has them
+TABLES = {  # of measured parts and of mills: whole tables, mm and seconds as the store has them
     "features.csv": "part_features",
     "readings.csv": "part_readings",
     "cycles.csv": "part_cycles",
     "stops.csv": "production_stops",
     "tool_lives.csv": "tool_lives",
     "insert_changes.csv": "insert_changes",
+    "mill_tool_lives.csv": "mill_tool_lives",
+    "mill_tools.csv": "mill_tools",
+    "presets.csv": "datum_presets",
 }
+TABLE_OF = {Kind.MILL_TOOL: "mill_tools.csv", Kind.PRESET: "presets.csv"}
 _ALL = 2**62
 
 
@@ -68,7 +73,7 @@ def _offset_lines(store: Store) -> Iterator[str]:
         yield from (f"{name} = {value!r}" for name, value in zero._asdict().items())
     tools, shapes = store.tools(), store.shapes()
     for number in sorted({*tools, *shapes}):
-        yield f"[tool.{number}]"
+        yield f"[tool.{_key(number)}]"
         if number in tools:
             yield from _entry_lines(Kind.TOOL, tools[number])
         if number in shapes:
@@ -76,6 +81,11 @@ def _offset_lines(store: Store) -> Iterator[str]:
     for number, row in store.secondary().items():
         yield f"[secondary.{number}]"
         yield from _entry_lines(Kind.SECONDARY, row)
+
+
+def _key(number: int) -> str:
+    """A tool, or a further edge of it as a table of its own: 3, 3.d2."""
+    return f"{number}" if number == tool_of(number) else f"{tool_of(number)}.d{edge_of(number)}"
 
 
 def _entry_lines(kind: Kind, row: Row) -> Iterator[str]:
@@ -104,6 +114,46 @@ def _write_table(path: Path, head: Iterable[str], rows: Iterable[Iterable[object
         table = csv.writer(file)
         table.writerow(head)
         table.writerows(rows)
+
+
+def mill_rows(folder: Path) -> dict[Kind, dict[int, dict[str, Value]]]:
+    """Tools and presets of a mill in an exported folder, by number; fields that it lacks are left out.
+
+    Raises StoreError where the folder's tables cannot be read.
+    """
+    return {kind: _rows(folder / TABLE_OF[kind], kind) for kind in TABLE_OF}
+
+
+def _rows(path: Path, kind: Kind) -> dict[int, dict[str, Value]]:
+    if not path.exists():
+        return {}
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            table = list(csv.DictReader(file))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise StoreError(f"{path} cannot be read ({error}); export it again") from error
+    return dict(_numbered(path, line, row, kind) for line, row in enumerate(table, start=2))
+
+
+def _numbered(path: Path, line: int, row: dict[str, str], kind: Kind) -> tuple[int, dict[str, Value]]:
+    """One row. Raises StoreError with its place."""
+    try:
+        fields = {each.column: each for each in FIELDS[kind].values()}
+        values = {
+            fields[column].name: text if fields[column].sort is Sort.TEXT else _number(fields[column], text)
+            for column, text in row.items()
+            if column in fields
+        }
+        return int(row["number"]), values
+    except (KeyError, ValueError, TypeError) as error:
+        text = (
+            f"{path} line {line}: {error}; each row has a number and figures, as 'store export' writes them"
+        )
+        raise StoreError(text) from error
+
+
+def _number(field: Field, text: str) -> Value:
+    return int(text) if field.sort in {Sort.WHOLE, Sort.FLAG} else float(text)
 
 
 def program_files(folder: Path) -> dict[str, bytes]:

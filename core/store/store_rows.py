@@ -10,8 +10,11 @@ from typing import Annotated, Any, NamedTuple, TypeVar
 from core.store.offset_fields import (
     ANGLE_REACH,
     HANDS,
+    LIFE_REACH,
+    MILL_TOOL_REACH,
     MM_PER_INCH,
     OUTLINE_LONGEST,
+    OVERSIZE_REACH,
     RADIUS_MAX,
     REMARK_LONGEST,
     SECONDARY_REACH,
@@ -24,19 +27,28 @@ from core.store.offset_fields import (
     Sort,
     fields_of,
 )
+from core.tool_edges import EDGES, edge_key
 
 OFFSETS = range(1, 33)
+TOOL_ROWS = frozenset(edge_key(tool, edge) for tool in OFFSETS for edge in EDGES)
+"""Numbers of the tables of tools: T, and their further cutting edges."""
+
 ZERO_CODES = range(54, 60)
+MILL_TOOLS = range(1, 1000)
+PRESETS = range(1, 100)  # 0 is that of the machine file
 Value = float | int | str | bool
 
 
 class Kind(StrEnum):
-    """The tables of offsets: T, D, the settable zero offsets G54 to G59, and the shapes of the tools."""
+    """The tables of offsets: T, D, the settable zero offsets G54 to G59, the shapes of the tools; and those
+    of a mill, its tools and the presets of the workpiece's zero."""
 
     TOOL = "tool"
     SECONDARY = "secondary"
     ZERO = "zero"
     SHAPE = "shape"
+    MILL_TOOL = "mill tool"
+    PRESET = "preset"
 
 
 def _reach(word: str, most: float, sort: Sort = Sort.LENGTH) -> Field:
@@ -107,14 +119,49 @@ class ShapeRow(NamedTuple):
     profile: Annotated[str, Field("profile", 0, OUTLINE_LONGEST, Sort.TEXT)] = ""
 
 
+class MillRow(NamedTuple):
+    """A tool of a mill: L, R, R2 (its corner), what they are off by (DL, DR, DR2), mm; its life in min.
+
+    ``stops``: no other part begins with it when its life is gone.
+    """
+
+    name: Annotated[str, Field("NAME", 0, REMARK_LONGEST, Sort.TEXT)] = ""
+    length: Annotated[float, _reach("L", MILL_TOOL_REACH, Sort.METRIC)] = 0.0
+    radius: Annotated[float, Field("R", 0.0, MILL_TOOL_REACH, Sort.METRIC)] = 0.0
+    corner: Annotated[float, Field("R2", 0.0, MILL_TOOL_REACH, Sort.METRIC)] = 0.0
+    dl: Annotated[float, _reach("DL", OVERSIZE_REACH, Sort.METRIC)] = 0.0
+    dr: Annotated[float, _reach("DR", OVERSIZE_REACH, Sort.METRIC)] = 0.0
+    dr2: Annotated[float, _reach("DR2", OVERSIZE_REACH, Sort.METRIC)] = 0.0
+    teeth: Annotated[int, Field("CUT", 0, 99, Sort.WHOLE)] = 0
+    point: Annotated[float, Field("T-ANGLE", 0.0, 180.0, Sort.ANGLE)] = 0.0
+    life: Annotated[float, Field("TIME2", 0.0, LIFE_REACH, Sort.MINUTES)] = 0.0
+    stops: Annotated[bool, Field("STOP", 0, 1, Sort.FLAG)] = False
+
+
+class PresetRow(NamedTuple):
+    """Machine position of the workpiece's zero, mm, and its basic rotation, with the rotary axes at A B C,
+    where they read 0."""
+
+    x: Annotated[float, _reach("X", ZERO_REACH, Sort.METRIC)] = 0.0
+    y: Annotated[float, _reach("Y", ZERO_REACH, Sort.METRIC)] = 0.0
+    z: Annotated[float, _reach("Z", ZERO_REACH, Sort.METRIC)] = 0.0
+    rotation: Annotated[float, _reach("ROT", 180.0, Sort.ANGLE)] = 0.0
+    a: Annotated[float, _reach("A", ANGLE_REACH, Sort.ANGLE)] = 0.0
+    b: Annotated[float, _reach("B", ANGLE_REACH, Sort.ANGLE)] = 0.0
+    c: Annotated[float, _reach("C", ANGLE_REACH, Sort.ANGLE)] = 0.0
+    remark: Annotated[str, Field("DOC", 0, REMARK_LONGEST, Sort.TEXT)] = ""
+
+
 FIELDS: Mapping[Kind, Mapping[str, Field]] = {
     Kind.TOOL: fields_of(ToolRow),
     Kind.SECONDARY: fields_of(SecondaryRow),
     Kind.ZERO: fields_of(ZeroRow),
     Kind.SHAPE: fields_of(ShapeRow),
+    Kind.MILL_TOOL: fields_of(MillRow),
+    Kind.PRESET: fields_of(PresetRow),
 }
-Row = ToolRow | SecondaryRow | ZeroRow | ShapeRow
-R = TypeVar("R", ToolRow, SecondaryRow, ZeroRow, ShapeRow)
+Row = ToolRow | SecondaryRow | ZeroRow | ShapeRow | MillRow | PresetRow
+R = TypeVar("R", ToolRow, SecondaryRow, ZeroRow, ShapeRow, MillRow, PresetRow)
 
 
 def with_fields(row: R, values: Mapping[str, Value]) -> R:

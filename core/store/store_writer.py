@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
-from core.store import event_log, program_records
+from core.store import event_log, job_queue, program_records
 from core.store.store_errors import Cause, StoreError, cause_of, why
 from core.store.store_rows import EventRow, utc_now
 
@@ -146,6 +146,7 @@ def _done(operation: Deferred, connection: sqlite3.Connection) -> str:
 def _writing_parts(program: str, parts: _Parts) -> Deferred:
     def write(connection: sqlite3.Connection) -> None:
         if parts.reset:
+            job_queue.count_reset(connection, program)
             program_records.reset_parts(connection, program)
         if parts.more:
             program_records.add_parts(connection, program, parts.more, parts.last)

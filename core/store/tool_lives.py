@@ -5,8 +5,9 @@ from __future__ import annotations
 import sqlite3
 from typing import NamedTuple
 
+from core.store import row_sums
 from core.store.store_errors import StoreError
-from core.store.store_rows import OFFSETS, utc_now
+from core.store.store_rows import MILL_TOOLS, OFFSETS, Kind, utc_now
 
 
 class LifeRow(NamedTuple):
@@ -22,7 +23,7 @@ class LifeRow(NamedTuple):
 
 
 class InsertChange(NamedTuple):
-    """An insert was changed after so many parts and seconds at feed."""
+    """An insert, or a tool of a mill, was changed after so many parts and seconds at feed."""
 
     id: int
     at: str
@@ -30,17 +31,30 @@ class InsertChange(NamedTuple):
     parts: int
     seconds: float
     why: str
+    kind: str = Kind.TOOL.value
 
 
-def lives(connection: sqlite3.Connection) -> dict[int, LifeRow]:
-    """Of all tools that have a limit or have cut, by number."""
-    rows = connection.execute(f"SELECT {', '.join(LifeRow._fields)} FROM tool_lives ORDER BY number")
-    return {row[0]: LifeRow(*row)._replace(stops=bool(row[4])) for row in rows}
+_USE = {Kind.TOOL: "tool_lives", Kind.MILL_TOOL: "mill_tool_lives"}
+_NUMBERS = {Kind.TOOL: OFFSETS, Kind.MILL_TOOL: MILL_TOOLS}
+_OF_MILL = (
+    "SELECT number, 0, 60 * life, 0.9, stops, coalesce(parts, 0), coalesce(seconds, 0)"
+    " FROM mill_tools LEFT JOIN mill_tool_lives USING (number) ORDER BY number"
+)
+
+
+def lives(connection: sqlite3.Connection, kind: Kind = Kind.TOOL) -> dict[int, LifeRow]:
+    """Of all tools that have a limit or have cut, by number; of a mill all that its tool table has."""
+    of_lathe = f"SELECT {', '.join(LifeRow._fields)} FROM tool_lives ORDER BY number"
+    rows = connection.execute(_OF_MILL if kind is Kind.MILL_TOOL else of_lathe).fetchall()
+    broken = row_sums.broken(connection, _USE[kind])
+    if kind is Kind.MILL_TOOL:
+        broken |= row_sums.broken(connection, "mill_tools")
+    return {row[0]: LifeRow(*row)._replace(stops=bool(row[4])) for row in rows if row[0] not in broken}
 
 
 def set_limits(connection: sqlite3.Connection, row: LifeRow) -> None:
-    """Limits of a tool; what it has made stays. Raises StoreError for a number that no tool has."""
-    _demand_tool(row.number)
+    """Limits of a lathe's tool; what it has made stays. Raises StoreError for a number that no tool has."""
+    _demand_tool(row.number, Kind.TOOL)
     connection.execute(
         "INSERT INTO tool_lives (number, limit_parts, limit_seconds, warn, stops) VALUES (?1, ?2, ?3, ?4, ?5)"
         " ON CONFLICT (number) DO UPDATE SET limit_parts = ?2, limit_seconds = ?3, warn = ?4, stops = ?5",
@@ -48,25 +62,27 @@ def set_limits(connection: sqlite3.Connection, row: LifeRow) -> None:
     )
 
 
-def set_use(connection: sqlite3.Connection, number: int, parts: int, seconds: float) -> None:
+def set_use(
+    connection: sqlite3.Connection, number: int, parts: int, seconds: float, kind: Kind = Kind.TOOL
+) -> None:
     """What the insert has made by now, in parts and seconds at feed."""
     connection.execute(
-        "INSERT INTO tool_lives (number, parts, seconds) VALUES (?1, ?2, ?3)"
+        f"INSERT INTO {_USE[kind]} (number, parts, seconds) VALUES (?1, ?2, ?3)"
         " ON CONFLICT (number) DO UPDATE SET parts = ?2, seconds = ?3",
         (number, parts, seconds),
     )
 
 
-def change_insert(connection: sqlite3.Connection, number: int, why: str) -> None:
+def change_insert(connection: sqlite3.Connection, number: int, why: str, kind: Kind = Kind.TOOL) -> None:
     """A fresh insert: the count begins at nought, and what the old one has made is kept."""
-    _demand_tool(number)
+    _demand_tool(number, kind)
     connection.execute(
-        "INSERT INTO insert_changes (at, number, parts, seconds, why)"
-        " SELECT ?2, ?1, coalesce(max(parts), 0), coalesce(max(seconds), 0), ?3"
-        " FROM tool_lives WHERE number = ?1",
-        (number, utc_now(), why),
+        "INSERT INTO insert_changes (at, number, parts, seconds, why, kind)"
+        " SELECT ?2, ?1, coalesce(max(parts), 0), coalesce(max(seconds), 0), ?3, ?4"
+        f" FROM {_USE[kind]} WHERE number = ?1",
+        (number, utc_now(), why, kind.value),
     )
-    connection.execute("UPDATE tool_lives SET parts = 0, seconds = 0 WHERE number = ?", (number,))
+    connection.execute(f"UPDATE {_USE[kind]} SET parts = 0, seconds = 0 WHERE number = ?", (number,))
 
 
 def insert_changes(connection: sqlite3.Connection, limit: int) -> tuple[InsertChange, ...]:
@@ -75,6 +91,7 @@ def insert_changes(connection: sqlite3.Connection, limit: int) -> tuple[InsertCh
     return tuple(InsertChange(*row) for row in rows)
 
 
-def _demand_tool(number: int) -> None:
-    if number not in OFFSETS:
-        raise StoreError(f"there is no tool T{number}; tools are T{OFFSETS[0]} to T{OFFSETS[-1]}")
+def _demand_tool(number: int, kind: Kind) -> None:
+    numbers = _NUMBERS[kind]
+    if number not in numbers:
+        raise StoreError(f"there is no tool T{number}; tools are T{numbers[0]} to T{numbers[-1]}")

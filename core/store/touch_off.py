@@ -14,6 +14,7 @@ from core.store import offset_tables
 from core.store.offset_tables import Reason
 from core.store.store_errors import StoreError
 from core.store.store_rows import Change, Kind, Row, ToolRow
+from core.tool_edges import edge_name
 
 
 class Touch(NamedTuple):
@@ -39,7 +40,7 @@ def touch_off(
     rows = offset_tables.tools(connection)
     old = rows.get(number)
     if old is None and (touch.x is None or touch.z is None):
-        raise StoreError(f"T{number} was never set; touch both X and Z")
+        raise StoreError(f"{edge_name(number)} was never set; touch both X and Z")
     geometry = {name: value for name, value in (("x", touch.x), ("z", touch.z)) if value is not None}
     new = _tool(number, old, {**geometry, **{f"wear_{name}": 0.0 for name in geometry}})
     changes: dict[int, tuple[Row | None, Row | None]] = {number: (old, new)}

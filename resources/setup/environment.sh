@@ -1,16 +1,20 @@
-# Sourced by app/start.sh and tests/run.sh: brings a fresh Debian or Ubuntu machine to where TurnDesk runs.
+# Sourced by app/start.sh, tests/run.sh and install.sh: brings a fresh Debian or Ubuntu machine to where TurnDesk runs.
 # Sets PYTHON_ENV, the folder of the Python environment. Installs only what is missing, and says what.
 # shellcheck shell=sh
 
-ROOT=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
+ROOT=${ROOT:-$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)}
 PYTHON_ENV=${TURNDESK_VENV:-$ROOT/.venv}
 
 # Qt needs these even without a window (offscreen) …
 QT_LIBRARIES="libgl1 libegl1 libglib2.0-0 libxkbcommon0 libdbus-1-3 libfontconfig1"
 # … and these for a window on an X11 display.
 WINDOW_LIBRARIES="libxcb-cursor0 libxkbcommon-x11-0 libxcb-icccm4 libxcb-keysyms1 libxcb-shape0"
+# … and these for one on a Wayland display.
+WAYLAND_LIBRARIES="libwayland-client0 libwayland-cursor0 libwayland-egl1"
 # What the stories of tests/stories need besides: a server without a screen, a window manager, hands.
 STORY_PACKAGES="xvfb openbox xdotool x11-utils x11-xkb-utils libxtst6"
+# How apt-get is to be asked besides; install.sh leads it to the packages that it brings along.
+APT_OPTIONS=""
 
 say() { printf '%s\n' "$*" >&2; }
 
@@ -20,10 +24,30 @@ installed() {
         || dpkg-query -W -f='${Status}' "$1t64" 2>/dev/null | grep -q 'ok installed'
 }
 
-as_root() {
-    if [ "$(id -u)" = 0 ]; then "$@"; return; fi
-    command -v sudo >/dev/null || { say "These packages need root; run as root or install sudo: $missing"; exit 2; }
-    sudo "$@"
+# may_install PACKAGES: whether packages can be installed by this user; else it says what whoever can has to do.
+may_install() {
+    [ "$(id -u)" = 0 ] && return
+    command -v sudo >/dev/null && sudo -v && return
+    say "These packages are missing, and $(id -un) may not install them. Ask whoever looks after this computer for"
+    say "  ${AS_ROOT:-apt-get install$1}"
+    say "as root; then start again."
+    return 1
+}
+
+as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }
+
+# apt_get INSTRUCTION …: apt-get without questions, its last lines kept in apt_says.
+apt_get() {
+    # shellcheck disable=SC2086
+    apt_says=$(as_root env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get -qq $APT_OPTIONS "$@" 2>&1) && return
+    apt_says=$(printf '%s\n' "$apt_says" | grep '^[EW]:' | tail -n 4)
+    return 1
+}
+
+fresh_package_lists() {
+    [ -n "${LISTS_RENEWED:-}" ] && return
+    LISTS_RENEWED=yes
+    apt_get update || say "The package lists could not be renewed; going on with those that are here."
 }
 
 system_packages() {
@@ -31,10 +55,21 @@ system_packages() {
     missing=""
     for package in "$@"; do installed "$package" || missing="$missing $package"; done
     [ -z "$missing" ] && return
+    may_install "$missing" || exit 2
     say "Installing system packages:$missing"
-    as_root env DEBIAN_FRONTEND=noninteractive apt-get update -qq
+    fresh_package_lists
     # shellcheck disable=SC2086
-    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
+    apt_get install -y --no-install-recommends $missing || not_installed
+}
+
+not_installed() {
+    say "Not installed:$missing. apt-get says:"
+    say "$apt_says"
+    case $apt_says in
+        *"Unable to locate"* | *"no installation candidate"* | *"Failed to fetch"* | *resolving* | *onnect*)
+            say "Is there a network? Without one, bring the bundle in one file (docs/setup.md), or install them from the distribution's medium." ;;
+    esac
+    exit 2
 }
 
 optional_packages() {
@@ -42,44 +77,129 @@ optional_packages() {
     command -v apt-get >/dev/null || return 0
     for package in "$@"; do
         installed "$package" && continue
-        say "Installing $package (tests that need it are skipped without)"
-        (missing=$package; as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq \
-            --no-install-recommends "$package" >/dev/null) || say "$package cannot be installed here"
+        { may_install " $package" && apt_get install -y --no-install-recommends "$package"; } \
+            || say "$package cannot be installed here: tests that need it are skipped"
     done
 }
 
-new_enough() { "$1" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; }
+# The Pythons for which the packages are locked: lock.py's PYTHONS, pyproject.toml's requires-python.
+supported() { "$1" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 14))' 2>/dev/null; }
 
-usable_python() { new_enough "$1" && "$1" -c 'import ensurepip, venv' 2>/dev/null; }
+version_of() { "$1" -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2>/dev/null; }
 
-find_python() {
-    for candidate in python3 python3.13 python3.12 python3.11; do
-        if usable_python "$candidate"; then PYTHON=$candidate; return; fi
-    done
-    if command -v python3 >/dev/null && ! new_enough python3; then
-        system_packages python3.11 python3.11-venv
-        PYTHON=python3.11
-    else
-        system_packages python3 python3-venv
-        PYTHON=python3
-    fi
-    usable_python "$PYTHON" || { say "TurnDesk needs Python 3.11 or newer with venv; found: $($PYTHON --version)"; exit 2; }
-}
-
-# python_environment EXTRAS: makes or renews the environment when the list of packages has changed.
-python_environment() {
-    stamp="$PYTHON_ENV/.turndesk$1"
-    wanted=$(cat "$ROOT/pyproject.toml" "$ROOT/resources/setup/constraints.txt" "$ROOT/setup.cfg" | cksum)
-    [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$wanted" ] && return
-    say "Setting up Python packages in $PYTHON_ENV"
+# These four are how it is done with a network; install.sh does them with what it brings along.
+PYTHON_PACKAGES="python3 python3-venv"
+can_make_environment() { command -v uv || "$1" -c 'import ensurepip, venv'; }
+make_environment() {
     if command -v uv >/dev/null; then
         uv venv -q --allow-existing --python "$PYTHON" "$PYTHON_ENV"
-        uv pip install -q --python "$PYTHON_ENV/bin/python" -c "$ROOT/resources/setup/constraints.txt" -e "$ROOT$1"
     else
         "$PYTHON" -m venv "$PYTHON_ENV"
-        "$PYTHON_ENV/bin/python" -m pip install -q --disable-pip-version-check \
-            -c "$ROOT/resources/setup/constraints.txt" -e "$ROOT$1"
     fi
+}
+place() { printf '%s' "$ROOT $PYTHON_ENV"; }
+
+usable_python() { supported "$1" && can_make_environment "$1" >/dev/null 2>&1; }
+
+# search_python: sets PYTHON to the first of those here with which an environment can be made.
+search_python() {
+    for PYTHON in python3 python3.14 python3.13 python3.12 python3.11; do
+        usable_python "$PYTHON" && return
+    done
+    return 1
+}
+
+# python_packages: what has to be installed for that, in one go with everything else.
+python_packages() {
+    search_python && return
+    if ! command -v python3 >/dev/null; then echo "$PYTHON_PACKAGES"
+    elif supported python3; then echo python3-venv; fi
+}
+
+find_python() {
+    search_python && return
+    if supported python3; then
+        say "Python $(version_of python3) is here without venv and ensurepip: install them (Debian: python3-venv), then start again."
+    else
+        say "TurnDesk needs Python 3.11, 3.12, 3.13 or 3.14; here is $(version_of python3 || echo none). Install one of them, then start again."
+    fi
+    exit 2
+}
+
+# right_environment: whether the Python environment that is there works where it is and was made by a set-up of ours.
+right_environment() {
+    version=$(version_of "$PYTHON_ENV/bin/python") || return 1
+    supported "$PYTHON_ENV/bin/python" && [ -d "$PYTHON_ENV/lib/python$version" ] || return 1
+    [ -x "$PYTHON_ENV/bin/pip" ] || command -v uv >/dev/null || return 1
+    # A clone that was moved or copied: its programs still name the old place.
+    [ ! -f "$PYTHON_ENV/.turndesk-place" ] || [ "$(cat "$PYTHON_ENV/.turndesk-place")" = "$(place)" ]
+}
+
+new_environment() {
+    if [ -d "$PYTHON_ENV" ]; then
+        # Somebody's own folder is never emptied.
+        for ours in "$PYTHON_ENV"/.turndesk*; do
+            [ -f "$ours" ] || { say "$PYTHON_ENV is there, but is no Python environment of TurnDesk: name another folder in TURNDESK_VENV, or take this one away."; exit 2; }
+            break
+        done
+        say "The Python environment was made by another Python or at another place; making it anew"
+        rm -rf "$PYTHON_ENV"
+    fi
+    # First its sign: what is broken off here is made anew next time.
+    { mkdir -p "$PYTHON_ENV" && place >"$PYTHON_ENV/.turndesk-place"; } 2>/dev/null \
+        || { say "$(id -un) may not write to $PYTHON_ENV: name a folder in TURNDESK_VENV, or start as its owner."; exit 2; }
+    make_environment
+}
+
+# pip_install WORDS: pip install of the environment, or uv's, which is quicker; what it says is kept in a file.
+pip_install() {
+    PIP_SAYS="$PYTHON_ENV/.turndesk-log"
+    if [ -x "$PYTHON_ENV/bin/pip" ]; then
+        "$PYTHON_ENV/bin/python" -m pip install -q --disable-pip-version-check "$@" >"$PIP_SAYS" 2>&1
+    else
+        uv pip install -q --python "$PYTHON_ENV/bin/python" "$@" >"$PIP_SAYS" 2>&1
+    fi
+}
+
+log_has() { grep -qiE "$1" "$PIP_SAYS"; }
+
+# not_fetched: one clear sentence for why pip gave up, told from what it wrote.
+not_fetched() {
+    if log_has 'do not match the hashes|hash mismatch|bad magic number|BadZipFile|not a zip file|invalid wheel'; then
+        say "A Python package that came is not the one TurnDesk was tested with: damaged on the way, or tampered with. It was not installed."
+        say "$(grep -iE '^ +[a-z0-9._-]+==|hash mismatch' "$PIP_SAYS" | sed 's/ (from -r .*//' | head -n 2)"
+        say "Start again; if it stays, find out what stands between here and the package index (a proxy, a mirror, a folder of wheels)."
+    elif log_has 'no space left'; then
+        say "No room left on the disk of $PYTHON_ENV: the Python packages need 500 MB. Make room, then start again."
+    elif log_has 'permission denied|read-only file system'; then
+        say "$(id -un) may not write to $PYTHON_ENV: name a folder in TURNDESK_VENV, or start as its owner."
+    elif log_has 'certificate'; then
+        say "The package index could not be trusted: is this computer's date right ($(date '+%Y-%m-%d %H:%M'))? A proxy that looks into"
+        say "encrypted traffic needs its certificate named in PIP_CERT (for uv: SSL_CERT_FILE)."
+    elif log_has 'name resolution|name or service|connection|network is unreachable|timed out|proxy|dns error|error sending request|could not connect'; then
+        say "The Python packages could not be fetched: is there a network, or a proxy to be named in https_proxy?"
+        say "Without one, bring the bundle in one file: docs/setup.md says how it is made on a computer that has a network."
+    elif log_has 'no matching distribution|no wheels with a matching|no usable wheels|has no wheels'; then
+        say "There are no Python packages for this computer ($(uname -m), $(getconf GNU_LIBC_VERSION 2>/dev/null || echo 'no glibc')): TurnDesk needs 64-bit x86"
+        say "with glibc 2.34 (Debian 12, Ubuntu 22.04) or 64-bit ARM with glibc 2.39 (Debian 13, Ubuntu 24.04), or newer."
+    else
+        say "The Python packages could not be installed. pip says:"
+        say "$(tail -n 4 "$PIP_SAYS")"
+    fi
+    say "All that it said is in $PIP_SAYS"
+    exit 2
+}
+
+# python_environment SET: makes or renews the environment by locked-SET.txt when that or TurnDesk's own list has changed.
+python_environment() {
+    locked="$ROOT/resources/setup/locked-$1.txt"
+    right_environment || new_environment
+    stamp="$PYTHON_ENV/.turndesk-$1"
+    wanted=$(cat "$ROOT/pyproject.toml" "$locked" "$ROOT/setup.cfg" | cksum)
+    [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$wanted" ] && return
+    say "Setting up Python packages in $PYTHON_ENV (about 130 MB to fetch, once)"
+    pip_install --require-hashes --only-binary :all: -r "$locked" || not_fetched
+    pip_install --no-deps --no-build-isolation -e "$ROOT" || not_fetched
     printf '%s\n' "$wanted" >"$stamp"
 }
 

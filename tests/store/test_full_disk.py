@@ -253,3 +253,31 @@ def test_a_count_put_to_nought_while_nothing_was_written(disk: Disk) -> None:
         disk.make_room()
         store.log_event("x", "z").result(60)
         assert store.parts("pin.nc") == 3
+
+
+# --- reading goes on ----------------------------------------------------------------------------------------
+
+
+def closed_store(folder: Path) -> Path:
+    """A store with one setting, closed: nothing lies beside the file but its lock."""
+    with Store.open(folder) as store:
+        store.set_setting("theme", "light").result(60)
+    assert sorted(each.name for each in folder.iterdir()) == ["turndesk.db", "turndesk.lock"]
+    return folder
+
+
+def test_a_full_disk_is_still_read(disk: Disk) -> None:
+    home = closed_store(disk.path / "home")
+    disk.fill()
+    with Store.open(home, read_only=True) as store:
+        assert store.setting("theme") == "light"
+    with pytest.raises(StoreError, match="the disk is full"):
+        Store.open(home)
+
+
+def test_a_log_that_cannot_be_read_is_not_passed_over(disk: Disk) -> None:
+    home = closed_store(disk.path / "home")
+    (home / "turndesk.db-wal").write_bytes(bytes(64))
+    disk.fill()
+    with pytest.raises(StoreError, match="the disk is full"):
+        Store.open(home, read_only=True)

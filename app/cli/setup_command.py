@@ -1,0 +1,92 @@
+"""``turndesk setup``: a machine's setup into one file and out of it; desktop entry, autostart, completion."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.desk.command_errors import EXIT_OK, CommandError
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+
+SHELLS = ("bash", "zsh", "fish")
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """The subcommand with its actions."""
+    parser = subparsers.add_parser("setup", help="copy a machine's setup; desktop entry, shell completion")
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    save = actions.add_parser("save", help="store, settings, programs and machine file into one FILE")
+    save.add_argument("file", metavar="FILE")
+    save.add_argument("--machine", metavar="FILE", help="machine file that goes with it")
+    load = actions.add_parser("load", help="take the setup of a FILE; what is here is kept beside it")
+    load.add_argument("file", metavar="FILE")
+    load.add_argument("--check", action="store_true", help="only look at the file, change nothing")
+    desktop = actions.add_parser("desktop", help="an entry for the desktop's menu, with icon")
+    desktop.add_argument(
+        "--autostart", action="store_true", help="the screen starts with the session, as a kiosk"
+    )
+    desktop.add_argument("--remove", action="store_true", help="take both away again")
+    completion = actions.add_parser("completion", help="what a shell needs to complete commands by Tab")
+    completion.add_argument("shell", metavar="SHELL", choices=SHELLS, help=", ".join(SHELLS))
+
+
+def run(args: argparse.Namespace) -> int:
+    """Does what ``args`` asks; raises CommandError with one sentence."""
+    return ACTIONS[args.action](args)
+
+
+def _save(args: argparse.Namespace) -> int:
+    from app.compose.setup_file import save_setup
+
+    told = save_setup(Path(args.file), args.machine)
+    sys.stdout.write(f"{args.file} holds the store, programs: {told.programs}, {told.machine}\n")
+    return EXIT_OK
+
+
+def _load(args: argparse.Namespace) -> int:
+    from app.compose.setup_file import check_setup, load_setup
+
+    if args.check:
+        told = check_setup(Path(args.file))
+        sys.stdout.write(f"{args.file} is whole: the store, programs: {told.programs}, {told.machine}\n")
+        return EXIT_OK
+    told, kept = load_setup(Path(args.file))
+    beside = f"; the store that was here is kept as {kept}" if kept else ""
+    sys.stdout.write(
+        f"taken from {args.file}: the store, programs: {told.programs}, {told.machine}{beside}\n"
+    )
+    if told.placed is not None:
+        sys.stdout.write(f"start with: turndesk --machine {told.placed}\n")
+    return EXIT_OK
+
+
+def _desktop(args: argparse.Namespace) -> int:
+    from app.cli.desktop_entry import install, remove
+
+    if args.remove and args.autostart:
+        raise CommandError("--remove takes the menu entry and the autostart away; leave --autostart out")
+    paths = remove() if args.remove else install(autostart=args.autostart)
+    verb = "removed" if args.remove else "written"
+    sys.stdout.write("".join(f"{verb}: {path}\n" for path in paths) or "there is no entry to remove\n")
+    return EXIT_OK
+
+
+def _completion(args: argparse.Namespace) -> int:
+    from app.cli.main import build_parser
+    from app.cli.shell_completion import script
+
+    sys.stdout.write(script(args.shell, build_parser()))
+    return EXIT_OK
+
+
+ACTIONS: dict[str, Callable[[argparse.Namespace], int]] = {
+    "save": _save,
+    "load": _load,
+    "desktop": _desktop,
+    "completion": _completion,
+}

@@ -1,0 +1,169 @@
+"""The queue of jobs as it is kept: programs, how many parts of each, and how many of these are made.
+
+A job counts nothing by itself: its parts are those that the store counts of its program while it is under
+way. One at most is under way, the one that the operator has put on the desk last.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from core.store import program_records, row_sums
+from core.store.store_errors import StoreError
+from core.store.store_rows import utc_now
+
+MOST_PARTS = 9_999_999
+MOST_JOBS = 200
+NOTE_LONGEST = 80
+
+
+class JobRow(NamedTuple):
+    """One job. ``base``: the count of its program from which it counts, None: it is not under way.
+
+    ``counted`` is what the store has counted of its program by now.
+    """
+
+    id: int
+    program: str
+    wanted: int
+    before: int = 0  # parts that were made of it before ``base``
+    base: int | None = None
+    note: str = ""
+    added: str = ""
+    counted: int = 0
+
+    @property
+    def under_way(self) -> bool:
+        """Whether parts of its program are counted for it."""
+        return self.base is not None
+
+    @property
+    def made(self) -> int:
+        """Parts of it that are made."""
+        return max(0, self.before + (self.counted - self.base if self.base is not None else 0))
+
+    @property
+    def left(self) -> int:
+        """Parts that are still to be made."""
+        return max(0, self.wanted - self.made)
+
+    @property
+    def done(self) -> bool:
+        """Whether all of them are made."""
+        return self.made >= self.wanted
+
+    @property
+    def target(self) -> int:
+        """The part count of its program at which it is done; 0 while it is not under way."""
+        return max(1, self.base + self.wanted - self.before) if self.base is not None else 0
+
+
+Held = Mapping[str, tuple[bool, int]]
+"""Counts that wait in memory, by program: put to nought first, and so many more."""
+
+
+def jobs(connection: sqlite3.Connection, held: Held | None = None) -> tuple[JobRow, ...]:
+    """The queue in its order; a job that is not as it was saved is left out."""
+    broken = row_sums.broken(connection, "jobs")
+    rows = connection.execute(
+        "SELECT id, program, wanted, made, base, note, added FROM jobs ORDER BY place, id"
+    )
+    return tuple(_job(connection, row, held or {}) for row in rows.fetchall() if row[0] not in broken)
+
+
+def _job(
+    connection: sqlite3.Connection, row: tuple[int, str, int, int, int | None, str, str], held: Held
+) -> JobRow:
+    """A count that is put to nought only in memory yet takes nothing from a job: ``base`` follows it then."""
+    program, base = row[1], row[4]
+    counted = program_records.parts(connection, program)
+    reset, more = held.get(program, (False, 0))
+    if reset and base is not None:
+        before = row[3] + counted - base
+        return JobRow(*row, counted=max(0, more))._replace(before=before, base=0)
+    return JobRow(*row, counted=max(0, counted + more))
+
+
+def add(connection: sqlite3.Connection, program: str, wanted: int, note: str = "") -> int:
+    """One more job at the end of the queue; answers its id. Raises StoreError."""
+    program_records.check_name(program)
+    _check(wanted, note)
+    count, last = connection.execute("SELECT count(*), coalesce(max(place), 0) FROM jobs").fetchone()
+    if count >= MOST_JOBS:
+        raise StoreError(f"there are {MOST_JOBS} jobs already; take those away that are done")
+    done = connection.execute(
+        "INSERT INTO jobs (place, program, wanted, note, added) VALUES (?, ?, ?, ?, ?)",
+        (last + 1, program, wanted, note, utc_now()),
+    )
+    return int(done.lastrowid or 0)
+
+
+def change(connection: sqlite3.Connection, job: int, wanted: int, note: str) -> None:
+    """Another number of parts, another note. Raises StoreError."""
+    _check(wanted, note)
+    _demand(connection, job)
+    connection.execute("UPDATE jobs SET wanted = ?, note = ? WHERE id = ?", (wanted, note, job))
+
+
+def move(connection: sqlite3.Connection, job: int, to: int) -> None:
+    """To this place of the queue, counted from 1. Raises StoreError."""
+    _demand(connection, job)
+    order = [number for (number,) in connection.execute("SELECT id FROM jobs ORDER BY place, id")]
+    order.remove(job)
+    order.insert(max(0, to - 1), job)
+    connection.executemany(
+        "UPDATE jobs SET place = ? WHERE id = ?", [(place, each) for place, each in enumerate(order, 1)]
+    )
+
+
+def remove(connection: sqlite3.Connection, job: int) -> None:
+    """Take it out of the queue; the counts of its program stay. Raises StoreError."""
+    _demand(connection, job)
+    connection.execute("DELETE FROM jobs WHERE id = ?", (job,))
+
+
+def clear(connection: sqlite3.Connection, *, everything: bool) -> int:
+    """Take out what is done, or everything; also what is not as it was saved. Answers how many went."""
+    whole = {row.id: row for row in jobs(connection)}
+    numbers = [number for (number,) in connection.execute("SELECT id FROM jobs")]
+    gone = [each for each in numbers if everything or each not in whole or whole[each].done]
+    connection.executemany("DELETE FROM jobs WHERE id = ?", [(each,) for each in gone])
+    return len(gone)
+
+
+def begin(connection: sqlite3.Connection, job: int) -> None:
+    """It is on the desk now: parts of its program count for it, and for no other job. Raises StoreError."""
+    _demand(connection, job)
+    put_away(connection)
+    row = next((row for row in jobs(connection) if row.id == job), None)
+    if row is None:
+        raise StoreError("that job is not as it was saved; clear it from the queue and enter it anew")
+    connection.execute("UPDATE jobs SET base = ? WHERE id = ?", (row.counted, job))
+
+
+def put_away(connection: sqlite3.Connection) -> None:
+    """None is under way; what was made of it stays."""
+    for row in jobs(connection):
+        if row.under_way:
+            connection.execute("UPDATE jobs SET made = ?, base = NULL WHERE id = ?", (row.made, row.id))
+
+
+def count_reset(connection: sqlite3.Connection, program: str) -> None:
+    """The part count of a program is about to be put to nought: its job keeps what was made."""
+    for row in jobs(connection):
+        if row.under_way and row.program == program:
+            connection.execute("UPDATE jobs SET made = ?, base = 0 WHERE id = ?", (row.made, row.id))
+
+
+def _check(wanted: int, note: str) -> None:
+    if not 1 <= wanted <= MOST_PARTS:
+        raise StoreError(f"a job has 1 to {MOST_PARTS} parts, not {wanted}")
+    if len(note) > NOTE_LONGEST or not note.isprintable():
+        raise StoreError(f"the note of a job has {NOTE_LONGEST} letters at most, on one line")
+
+
+def _demand(connection: sqlite3.Connection, job: int) -> None:
+    if connection.execute("SELECT 1 FROM jobs WHERE id = ?", (job,)).fetchone() is None:
+        raise StoreError("that job is not in the queue any more")

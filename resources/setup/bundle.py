@@ -1,0 +1,205 @@
+"""The bundle for a computer without a network, one file: ``python -m resources.setup.bundle [FOLDER]``.
+
+It holds the wheels of all supported Pythons by the lock, TurnDesk, licences, SBOM and ``install.sh``, and
+unpacks itself: ``sh turndesk-….run`` sets the desk up. ``--system-packages`` adds the libraries of Qt, for
+the release on which the bundle is made; ``--machine aarch64`` makes it for 64-bit ARM. Making it
+needs a network.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import platform
+import re
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from resources.setup.licences import PAGE, LicenceError
+from resources.setup.lock import HERE, HOUSE, PYTHONS, locked_file, project
+from resources.setup.sbom import Component, file_of_the_system, sbom
+
+GLIBC = {"x86_64": 34, "aarch64": 39}
+"""The newest glibc, as 2.n, for which packages are taken: that of Qt's, which needs the newest."""
+_OLD_NAMES = ("manylinux1", "manylinux2010", "manylinux2014")
+_TEXTS = Path("/usr/share/common-licenses")  # where Debian and Ubuntu have the licences that packages share
+_LICENCES = ("GPL-3", "LGPL-3")
+
+
+class BundleError(Exception):
+    """The bundle cannot be made; the sentence says why."""
+
+
+def run(*words: object, cwd: Path = HOUSE) -> str:
+    """A command's output. Raises BundleError with its last lines."""
+    done = subprocess.run([str(each) for each in words], cwd=cwd, capture_output=True, text=True, check=False)
+    if done.returncode:
+        last = "\n".join((done.stderr or done.stdout).strip().splitlines()[-4:])
+        raise BundleError(f"{' '.join(map(str, words[:4]))} …:\n{last}")
+    return done.stdout
+
+
+def version() -> str:
+    """What is in the bundle: the version, and the commit with its date where it is known."""
+    stated = str(project()["project"]["version"])
+    try:
+        day = run("git", "show", "--no-patch", "--format=%cd", "--date=format:%Y%m%d", "HEAD").strip()
+        return (
+            f"{stated}-{day}-" + run("git", "describe", "--always", "--dirty=-changed", "--exclude=*").strip()
+        )
+    except (BundleError, OSError):
+        return stated
+
+
+def platforms(machine: str) -> Iterator[str]:
+    """The platforms whose wheels run on this machine, as pip wants them named."""
+    yield from (f"--platform=manylinux_2_{n}_{machine}" for n in range(GLIBC[machine], 4, -1))
+    yield from (f"--platform={each}_{machine}" for each in reversed(_OLD_NAMES))
+
+
+def fetch_wheels(folder: Path, machine: str) -> None:
+    """All wheels of the desk for every supported Python; pip checks each against its locked hash."""
+    for python in PYTHONS:
+        for locked in ("desk", "installer"):
+            words = ["--quiet", "--disable-pip-version-check", "--require-hashes", "--only-binary=:all:"]
+            words += [f"--python-version={python}", *platforms(machine), f"--dest={folder}"]
+            run(sys.executable, "-m", "pip", "download", *words, "-r", locked_file(locked))
+
+
+def build_product(folder: Path) -> None:
+    """TurnDesk's own wheel, from a copy: nothing of an earlier build gets into it."""
+    with tempfile.TemporaryDirectory() as work:
+        copy = Path(work) / "turndesk"
+        copy.mkdir()
+        for room in ("app", "core", "drivers", "resources"):
+            shutil.copytree(HOUSE / room, copy / room, ignore=shutil.ignore_patterns("__pycache__"))
+        for name in ("pyproject.toml", "setup.cfg", "README.md", "LICENSE"):
+            shutil.copy(HOUSE / name, copy)
+        words = ("--quiet", "--no-deps", "--no-build-isolation", f"--wheel-dir={folder}", copy)
+        run(sys.executable, "-m", "pip", "wheel", *words)
+
+
+def fetch_system_packages(folder: Path) -> list[Component]:
+    """What the set-up asks Debian or Ubuntu for, with all that this needs, as a repository of packages."""
+    folder.mkdir()
+    wanted = re.findall(
+        r'^(?:QT|WINDOW|WAYLAND)_LIBRARIES="(.*)"$',
+        (HERE / "environment.sh").read_text(encoding="utf-8"),
+        re.MULTILINE,
+    )
+    with tempfile.TemporaryDirectory() as work:
+        (Path(work) / "partial").mkdir()
+        nothing = Path(work) / "status"
+        nothing.touch()
+        options = [f"Dir::State::status={nothing}", f"Dir::Cache::archives={work}", "Debug::NoLocking=1"]
+        words = [word for option in options for word in ("-o", option)]
+        words += ["--yes", "--no-install-recommends", "--download-only", "-qq", "install", "python3"]
+        run("apt-get", *words, *" ".join(wanted).split())
+        for path in sorted(Path(work).glob("*.deb")):
+            shutil.copy(path, folder)
+    distribution = re.findall(r"^ID=(.*)$", Path("/etc/os-release").read_text(encoding="utf-8"), re.MULTILINE)
+    index, components = [], []
+    for path in sorted(folder.glob("*.deb")):
+        control = run("dpkg-deb", "--field", path).strip()
+        digest = hashlib.sha256(path.read_bytes()).hexdigest()
+        index.append(f"{control}\nFilename: ./{path.name}\nSize: {path.stat().st_size}\nSHA256: {digest}\n")
+        fields = dict(re.findall(r"^(Package|Version): (.*)$", control, re.MULTILINE))
+        components.append(file_of_the_system(fields["Package"], fields["Version"], path, distribution[0]))
+    (folder / "Packages").write_text("\n".join(index), encoding="utf-8")
+    return components
+
+
+def release_name() -> str:
+    """The release of this system, such as ``debian12``."""
+    text = Path("/etc/os-release").read_text(encoding="utf-8")
+    found: dict[str, str] = dict(
+        re.findall(r'^(ID|VERSION_ID|VERSION_CODENAME)="?([^"\n]*)"?$', text, re.MULTILINE)
+    )
+    return found["ID"] + found.get("VERSION_ID", found.get("VERSION_CODENAME", ""))
+
+
+def gather(folder: Path, machine: str, *, system_packages: bool) -> None:
+    """Put all that the bundle holds into a folder."""
+    wheels = folder / "wheels"
+    wheels.mkdir()
+    fetch_wheels(wheels, machine)
+    build_product(folder)
+    system = fetch_system_packages(folder / "debs") if system_packages else []
+    shutil.copytree(
+        HERE, folder, dirs_exist_ok=True, ignore=lambda _, names: [n for n in names if not _goes_along(n)]
+    )
+    (folder / "VERSION").write_text(version(), encoding="utf-8")
+    document = sbom(version(), [*wheels.glob("*.whl")], system)
+    (folder / "sbom.cdx.json").write_text(json.dumps(document, indent=1), encoding="utf-8")
+    shutil.copy(PAGE, folder)
+    (folder / "licences").mkdir()
+    shutil.copy(HOUSE / "LICENSE", folder / "licences" / "TurnDesk")
+    for name in _LICENCES:
+        if not (text := _TEXTS / name).exists():
+            raise BundleError(f"{text} is missing: the bundle has to hold the licences of what it passes on")
+        shutil.copy(text, folder / "licences")
+
+
+def _goes_along(name: str) -> bool:
+    return name in {"environment.sh", "install.sh", "locked-desk.txt", "locked-installer.txt"}
+
+
+def pack(folder: Path, target: Path, machine: str) -> None:
+    """One file that unpacks itself: a script, and behind it everything, held by its SHA-256."""
+    with tempfile.TemporaryFile() as packed:
+        with tarfile.open(fileobj=packed, mode="w") as archive:
+            archive.add(folder, arcname=".", filter=_nobodys)
+        packed.seek(0)
+        digest = hashlib.file_digest(packed, "sha256").hexdigest()
+        megabytes = packed.seek(0, 2) // 1_000_000 + 1
+        words = {"VERSION": (folder / "VERSION").read_text(encoding="utf-8"), "MACHINE": machine}
+        words |= {"NAME": target.name, "SHA256": digest, "MEGABYTES": str(megabytes)}
+        start = len(_script(words | {"START": "0000"})) + 1
+        packed.seek(0)
+        with target.open("wb") as file:
+            file.write(_script(words | {"START": f"{start:04d}"}))
+            shutil.copyfileobj(packed, file)
+
+
+def _script(words: dict[str, str]) -> bytes:
+    """The script in front, with what it has to know; where the packed part starts has four digits."""
+    text = (HERE / "unpack.sh").read_text(encoding="utf-8")
+    return re.sub("@([A-Z0-9]+)@", lambda found: words[found[1]], text).encode()
+
+
+def _nobodys(member: tarfile.TarInfo) -> tarfile.TarInfo:
+    member.uid = member.gid = 0
+    member.uname = member.gname = "root"
+    return member
+
+
+def main(argv: list[str]) -> int:
+    """Make the bundle."""
+    parser = argparse.ArgumentParser(prog="python -m resources.setup.bundle", description=__doc__)
+    parser.add_argument("folder", nargs="?", type=Path, default=Path(), help="where it is put")
+    parser.add_argument("--machine", choices=GLIBC, default=platform.machine())
+    parser.add_argument("--system-packages", action="store_true", help="with the libraries of this release")
+    args = parser.parse_args(argv)
+    if args.system_packages and args.machine != platform.machine():
+        parser.error(f"--system-packages for {args.machine} can be had on such a computer only")
+    release = f"-{release_name()}" if args.system_packages else ""
+    target = args.folder / f"turndesk-{version()}-linux-{args.machine}{release}.run"
+    try:
+        with tempfile.TemporaryDirectory() as work:
+            gather(Path(work), args.machine, system_packages=args.system_packages)
+            pack(Path(work), target, args.machine)
+    except (BundleError, LicenceError, OSError) as error:
+        sys.stderr.write(f"No bundle: {error}\n")
+        return 1
+    sys.stdout.write(f"{target}: {target.stat().st_size // 1_000_000} MB\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,150 @@
+"""Lists the licences of all Python packages: ``python -m resources.setup.licences``.
+
+It reads what the installed packages say of themselves and writes the tables of ``docs/licences.md``. A
+package whose licence is not one that TurnDesk may be passed on with is named, and nothing is written.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator
+from importlib.metadata import Distribution, PackageNotFoundError, distribution
+from typing import NamedTuple
+
+from resources.setup.lock import HOUSE, LockedPackage, locked_packages
+
+PAGE = HOUSE / "docs" / "licences.md"
+COMPATIBLE = frozenset(
+    {
+        *(
+            "0BSD",
+            "Apache-2.0",
+            "BSD-2-Clause",
+            "BSD-3-Clause",
+            "CC0-1.0",
+            "MIT",
+            "PSF-2.0",
+            "ZPL-2.1",
+            "Zlib",
+        ),
+        *("LGPL-3.0-only", "MPL-2.0"),  # of a library that is used as it is and can be exchanged
+    }
+)
+"""Licences, by their SPDX names, under which a package may be used by TurnDesk and passed on with it."""
+_NAMES = {
+    "Apache 2.0": "Apache-2.0",
+    "Apache License, Version 2.0": "Apache-2.0",
+    "BSD 2-Clause License": "BSD-2-Clause",
+    "MIT License": "MIT",
+    "MIT license": "MIT",
+    "Mozilla Public License 2.0 (MPL 2.0)": "MPL-2.0",
+    "ZPL 2.1": "ZPL-2.1",
+}
+# What says no more than "BSD" of itself, by the text that it brings.
+_BY_TEXT = {
+    "colorama": "BSD-3-Clause",
+    "Jinja2": "BSD-3-Clause",
+    "partd": "BSD-3-Clause",
+    "pyserial": "BSD-3-Clause",
+    "wrapt": "BSD-2-Clause",
+    "zict": "BSD-3-Clause",
+}
+# The locked packages by what they are for: a heading of the page, the set, the set that is listed already.
+TABLES = (
+    ("On every desk", "desk", None),
+    ("Only for `prove --scheduler`", "scheduler", "desk"),
+    ("Only for tests", "tests", "desk"),
+)
+_ROW = re.compile(r"^\| (?P<name>[a-z0-9-]+) \| (?P<version>\d\S*) \| (?P<licence>[^|]+) \|", re.MULTILINE)
+
+
+class LicenceError(Exception):
+    """A package that may not be passed on, or says nothing of it."""
+
+
+class Licensed(NamedTuple):
+    """A package, its version, its licence as an SPDX expression."""
+
+    name: str
+    version: str
+    licence: str
+
+
+def licence_of(package: Distribution) -> str:
+    """The licence that a package states, as an SPDX expression. Raises LicenceError."""
+
+    def stated(field: str) -> list[str]:
+        return package.metadata.get_all(field) or []
+
+    name = stated("Name")[0]
+    if name in _BY_TEXT:
+        return _BY_TEXT[name]
+    offered = stated("License-Expression") + [each.partition("\n")[0].strip() for each in stated("License")]
+    offered += [each.rpartition(" :: ")[2] for each in stated("Classifier") if each.startswith("License ::")]
+    said = next((each for each in offered if each), "")
+    expression = _NAMES.get(said, said)
+    if not compatible(expression):
+        raise LicenceError(
+            f"{name}: {said or 'no licence stated'}: read its text; see COMPATIBLE in {__name__}"
+        )
+    return expression
+
+
+def compatible(expression: str) -> bool:
+    """Whether one of the licences that are offered (OR), with all that it joins (AND), is compatible."""
+    return any(
+        all(each.strip() in COMPATIBLE for each in choice.split(" AND "))
+        for choice in expression.split(" OR ")
+    )
+
+
+def listed(name: str, without: str | None) -> Iterator[LockedPackage]:
+    """The packages of a set of the lock that are not in another."""
+    others = locked_packages(without) if without else {}
+    return (each for each in locked_packages(name).values() if each.name not in others)
+
+
+def rows(page: str) -> list[Licensed]:
+    """The packages that the page lists."""
+    return [Licensed(*found.groups()) for found in _ROW.finditer(page)]
+
+
+def tables(known: dict[str, str]) -> str:
+    """The tables of the page. ``known`` are licences of packages that are not installed here."""
+    lines = []
+    for heading, name, without in TABLES:
+        lines += [f"## {heading}", "", "| package | version | licence |", "|---|---|---|"]
+        for package in listed(name, without):
+            try:
+                licence = licence_of(distribution(package.name))
+            except PackageNotFoundError:
+                licence = known[package.name]
+            lines.append(f"| {package.name} | {package.version} | {licence} |")
+        lines.append("")
+    return "\n".join(lines)
+
+
+def page(old: str) -> str:
+    """The page with its tables made anew: all from its first table on."""
+    known = {row.name: row.licence for row in rows(old)}
+    return old.partition(f"## {TABLES[0][0]}")[0] + tables(known)
+
+
+def main() -> int:
+    """Write the page."""
+    try:
+        PAGE.write_text(page(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+    except LicenceError as error:
+        sys.stderr.write(f"{error}\n")
+        return 1
+    except KeyError as error:
+        sys.stderr.write(
+            f"{error} is not installed here: pip install --require-hashes -r its locked file first\n"
+        )
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

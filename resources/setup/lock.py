@@ -1,0 +1,116 @@
+"""Locks the Python packages by version and hash: ``python -m resources.setup.lock [--upgrade]``.
+
+From the requirements of ``pyproject.toml`` come the files ``locked-*.txt``, which the set-up gives to
+``pip install --require-hashes``: one for every supported Python, for Linux, macOS and Windows. Versions stay
+as they are unless ``--upgrade`` is said. It needs ``uv`` (``pipx install uv``) and a network.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).parent
+HOUSE = HERE.parents[1]
+PYTHONS = ("3.11", "3.12", "3.13", "3.14")
+"""The versions of Python for which the packages are locked and tried."""
+# The tests' first: what the others share with them has the same versions then.
+SETS: dict[str, tuple[str, ...]] = {
+    "tests": ("dev",),
+    "desk": ("canopen", "shop"),
+    "scheduler": ("scheduler",),
+}
+"""The locked files and the optional dependencies that are in them."""
+INSTALLER = "installer"
+"""The locked file of pip itself, which goes along where no network is."""
+_HEAD = """\
+# Python packages at the versions that were tested together, with the SHA-256 of every file of them.
+# Made from pyproject.toml by `python -m resources.setup.lock`; not to be changed by hand.
+"""
+_PIN = re.compile(
+    r"^(?P<name>[a-z0-9-]+)==(?P<version>[^\s;]+)(?: ; (?P<marker>[^\\]+?))? \\\n", re.MULTILINE
+)
+_HASH = re.compile(r"--hash=sha256:([0-9a-f]{64})\b")
+
+
+@dataclass(frozen=True)
+class LockedPackage:
+    """A package as it is locked: name in lower case, version, SHA-256 of its files, where it is needed."""
+
+    name: str
+    version: str
+    hashes: tuple[str, ...]
+    marker: str = ""
+
+
+def locked_file(name: str) -> Path:
+    """The file of locked packages of one of SETS."""
+    return HERE / f"locked-{name}.txt"
+
+
+def locked_packages(name: str) -> dict[str, LockedPackage]:
+    """The packages of one of SETS, by name."""
+    return {package.name: package for package in read_locked(locked_file(name).read_text(encoding="utf-8"))}
+
+
+def read_locked(text: str) -> Iterator[LockedPackage]:
+    """The packages of a locked file."""
+    starts = list(_PIN.finditer(text))
+    ends = [each.start() for each in starts[1:]] + [len(text)]
+    for found, end in zip(starts, ends, strict=True):
+        hashes = tuple(_HASH.findall(text, found.end(), end))
+        yield LockedPackage(found["name"], found["version"], hashes, found["marker"] or "")
+
+
+def project() -> dict[str, Any]:
+    """What pyproject.toml says."""
+    return tomllib.loads((HOUSE / "pyproject.toml").read_text(encoding="utf-8"))
+
+
+def build_packages() -> list[str]:
+    """What TurnDesk itself is put in place with: it is locked too, nothing is fetched beside the lock."""
+    return [str(each) for each in project()["build-system"]["requires"]]
+
+
+def main(argv: list[str]) -> int:
+    """Write all locked files."""
+    if (uv := shutil.which("uv")) is None:
+        sys.stderr.write("uv is not installed; it resolves the packages: pipx install uv\n")
+        return 2
+    for name in (*SETS, INSTALLER):
+        path = locked_file(name)
+        extras = SETS.get(name, ())
+        command = [uv, "pip", "compile", "--quiet", "--universal", "--generate-hashes", "--no-header"]
+        command += [
+            "--no-annotate",
+            "--no-emit-index-url",
+            "--no-emit-find-links",
+            "--python-version",
+            PYTHONS[0],
+        ]
+        command += [*argv, *(f"--extra={each}" for each in extras), "--output-file", str(path)]
+        if name != "tests":
+            command += ["--constraints", str(locked_file("tests"))]
+        done = subprocess.run(
+            [*command, *(["pyproject.toml"] if name in SETS else []), "-"],
+            cwd=HOUSE,
+            input="\n".join(build_packages() if name in SETS else ["pip"]),
+            text=True,
+            stdout=subprocess.DEVNULL,
+            check=False,
+        )
+        if done.returncode:
+            return done.returncode
+        path.write_text(_HEAD + path.read_text(encoding="utf-8"), encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

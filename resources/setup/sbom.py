@@ -1,0 +1,111 @@
+"""The SBOM, CycloneDX 1.6 in JSON: all packages and files of a desk, licence, hash, what they need."""
+
+from __future__ import annotations
+
+import hashlib
+import uuid
+from collections.abc import Iterable
+from datetime import UTC, datetime
+from importlib.metadata import distribution
+from pathlib import Path
+from typing import Any
+
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name, parse_wheel_filename
+
+from resources.setup.licences import licence_of
+from resources.setup.lock import PYTHONS, locked_packages, project
+
+Component = dict[str, Any]
+_ROOT = "turndesk"
+
+
+def sbom(version: str, wheels: Iterable[Path], system: Iterable[Component] = ()) -> dict[str, Any]:
+    """The document for a version of TurnDesk, the wheels that go with it and components of the system.
+
+    Raises LicenceError for a package that may not be passed on.
+    """
+    files = _files(wheels)
+    names = sorted(locked_packages("desk"))
+    packages = [_package(name, files.get(name, [])) for name in names]
+    others = [*_brought_along(), *system]
+    needs = {name: sorted(_needs(name) & set(names)) for name in names}
+    asked = {str(canonicalize_name(Requirement(each).name)) for each in project()["project"]["dependencies"]}
+    product = {"type": "application", "bom-ref": _ROOT, "name": _ROOT, "version": version}
+    product["purl"] = f"pkg:generic/{_ROOT}@{version}"
+    depends = [{"ref": _ROOT, "dependsOn": sorted(asked | {each["bom-ref"] for each in others})}]
+    depends += [{"ref": name, "dependsOn": needed} for name, needed in needs.items()]
+    document: dict[str, Any] = {"bomFormat": "CycloneDX", "specVersion": "1.6", "version": 1}
+    document["serialNumber"] = f"urn:uuid:{uuid.uuid4()}"
+    document["metadata"] = {
+        "timestamp": datetime.now(UTC).isoformat(timespec="seconds"),
+        "component": product | {"licenses": [{"license": {"id": "MIT"}}]},
+    }
+    document["components"] = packages + others
+    document["dependencies"] = depends
+    return document
+
+
+def file_of_the_system(name: str, version: str, path: Path, distribution_name: str) -> Component:
+    """A system package that is brought along: ``distribution_name`` is debian or ubuntu."""
+    return {
+        "type": "library",
+        "bom-ref": f"deb:{name}",
+        "name": name,
+        "version": version,
+        "purl": f"pkg:deb/{distribution_name}/{name}@{version}",
+        "hashes": [_sha256(path)],
+    }
+
+
+def _package(name: str, files: list[Path]) -> Component:
+    """A locked package with its licence and the files of it that are there."""
+    locked = locked_packages("desk")[name]
+    component: Component = {"type": "library", "bom-ref": name, "name": name, "version": locked.version}
+    component["purl"] = f"pkg:pypi/{name}@{locked.version}"
+    component["licenses"] = [{"expression": licence_of(distribution(name))}]
+    if inside := [*_qt(name, locked.version), *map(_file, files)]:
+        component["components"] = inside
+    return component
+
+
+def _qt(name: str, version: str) -> list[Component]:
+    """Qt itself, which lies in its Python package and has its version; its CPE says what is known of it."""
+    if name != "pyside6-essentials":
+        return []
+    cpe = f"cpe:2.3:a:qt:qt:{version}:*:*:*:*:*:*:*"
+    return [{"type": "framework", "name": "Qt", "version": version, "cpe": cpe}]
+
+
+def _brought_along() -> list[Component]:
+    """What lies in TurnDesk's own files and is somebody else's."""
+    font: Component = {"type": "data", "bom-ref": "b612", "name": "B612", "description": "the fonts"}
+    return [font | {"licenses": [{"license": {"id": "OFL-1.1"}}]}]
+
+
+def _needs(name: str) -> set[str]:
+    """What an installed package needs on Linux, on any Python that TurnDesk runs on."""
+    places = [{"python_version": each, "python_full_version": f"{each}.0", "extra": ""} for each in PYTHONS]
+    wanted = map(Requirement, distribution(name).requires or ())
+    return {
+        str(canonicalize_name(each.name))
+        for each in wanted
+        if each.marker is None or any(each.marker.evaluate(place) for place in places)
+    }
+
+
+def _files(wheels: Iterable[Path]) -> dict[str, list[Path]]:
+    """The wheels by their packages."""
+    found: dict[str, list[Path]] = {}
+    for path in sorted(wheels):
+        found.setdefault(str(parse_wheel_filename(path.name)[0]), []).append(path)
+    return found
+
+
+def _file(path: Path) -> Component:
+    return {"type": "file", "name": path.name, "hashes": [_sha256(path)]}
+
+
+def _sha256(path: Path) -> dict[str, str]:
+    with path.open("rb") as file:
+        return {"alg": "SHA-256", "content": hashlib.file_digest(file, "sha256").hexdigest()}

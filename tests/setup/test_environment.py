@@ -1,0 +1,194 @@
+"""The set-up of a fresh machine (``environment.sh``): one true sentence for what is missing or damaged."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import sys
+import zipfile
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from resources.setup.lock import HERE
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="the set-up is a shell script")
+needs_pip = pytest.mark.skipif(find_spec("pip") is None, reason="this environment was made without pip")
+STUB = """#!/bin/sh
+case $2 in *"sys.exit"*) exit {unsupported} ;; *ensurepip*) exit {bare} ;; *) echo {version} ;; esac
+"""
+
+
+def tell(script: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Sources environment.sh and runs a line behind it, as app/start.sh does."""
+    return subprocess.run(
+        ["/bin/sh", "-euc", f'. "{HERE / "environment.sh"}"; {script}', "start.sh"],
+        env={"PATH": os.environ["PATH"], "LC_ALL": "C", "ROOT": str(HERE.parents[1])} | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def executable(path: Path, text: str) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    path.chmod(0o755)
+    return path
+
+
+def python_named(folder: Path, name: str, version: str, *, supported: bool, bare: bool = False) -> None:
+    """A stand-in for a Python of some version, with or without venv."""
+    executable(folder / name, STUB.format(unsupported=int(not supported), bare=int(bare), version=version))
+
+
+@pytest.mark.parametrize("version", ["3.10", "3.15"])
+def test_a_python_outside_is_one_sentence(tmp_path: Path, version: str) -> None:
+    python_named(tmp_path, "python3", version, supported=False)
+    told = tell("find_python", PATH=str(tmp_path))
+    assert told.returncode == 2
+    assert told.stderr == (
+        f"TurnDesk needs Python 3.11, 3.12, 3.13 or 3.14; here is {version}. "
+        "Install one of them, then start again.\n"
+    )
+
+
+def test_another_python_beside_it_is_taken(tmp_path: Path) -> None:
+    python_named(tmp_path, "python3", "3.15", supported=False)
+    python_named(tmp_path, "python3.13", "3.13", supported=True)
+    assert tell('find_python; echo "$PYTHON"', PATH=str(tmp_path)).stdout == "python3.13\n"
+
+
+def test_the_running_python_is_supported() -> None:
+    assert tell(f'supported "{sys.executable}"').returncode == 0
+
+
+def test_all_that_is_missing_is_asked_for_at_once(tmp_path: Path) -> None:
+    assert tell("python_packages", PATH=str(tmp_path)).stdout == "python3 python3-venv\n"
+    python_named(tmp_path, "python3", "3.13", supported=True, bare=True)
+    assert tell("python_packages", PATH=str(tmp_path)).stdout == "python3-venv\n"
+    python_named(tmp_path, "python3", "3.13", supported=True)
+    assert tell("python_packages", PATH=str(tmp_path)).stdout == ""
+
+
+def test_who_may_not_install_is_told_what_to_ask_for(tmp_path: Path) -> None:
+    executable(tmp_path / "id", "#!/bin/sh\n[ $1 = -u ] && echo 1000 || echo anna\n")
+    executable(tmp_path / "dpkg-query", "#!/bin/sh\nexit 1\n")
+    executable(tmp_path / "apt-get", "#!/bin/sh\nexit 100\n")
+    executable(tmp_path / "sudo", "#!/bin/sh\nexit 1\n")
+    told = tell("system_packages libegl1 python3", PATH=f"{tmp_path}:{os.environ['PATH']}")
+    assert told.returncode == 2
+    assert told.stderr == (
+        "These packages are missing, and anna may not install them. "
+        "Ask whoever looks after this computer for\n"
+        "  apt-get install libegl1 python3\nas root; then start again.\n"
+    )
+
+
+@pytest.fixture
+def shop(tmp_path: Path) -> Path:
+    """A clone of a product that needs one package, its environment made, its packages in a folder."""
+    wheel = tmp_path / "wheels" / "tiny-1.0-py3-none-any.whl"
+    wheel.parent.mkdir()
+    with zipfile.ZipFile(wheel, "w") as archive:
+        archive.writestr("tiny.py", "")
+        archive.writestr("tiny-1.0.dist-info/METADATA", "Metadata-Version: 2.1\nName: tiny\nVersion: 1.0\n")
+        archive.writestr("tiny-1.0.dist-info/WHEEL", "Wheel-Version: 1.0\nRoot-Is-Purelib: true\n")
+        archive.writestr("tiny-1.0.dist-info/RECORD", "")
+    setup = tmp_path / "resources" / "setup"
+    setup.mkdir(parents=True)
+    digest = hashlib.sha256(wheel.read_bytes()).hexdigest()
+    (setup / "locked-desk.txt").write_text(f"tiny==1.0 \\\n    --hash=sha256:{digest}\n", encoding="utf-8")
+    (tmp_path / "pyproject.toml").touch()
+    (tmp_path / "setup.cfg").touch()
+    version = f"{sys.version_info.major}.{sys.version_info.minor}"
+    (tmp_path / ".venv" / "lib" / f"python{version}").mkdir(parents=True)
+    # Only asked, never installed into: what is tried here is refused before.
+    executable(tmp_path / ".venv" / "bin" / "python", f'#!/bin/sh\nexec "{sys.executable}" "$@" --dry-run\n')
+    executable(tmp_path / ".venv" / "bin" / "pip", "#!/bin/sh\nexit 1\n")
+    return tmp_path
+
+
+def set_up(shop: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    offline = {"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(shop / "wheels"), "ROOT": str(shop)}
+    return tell("python_environment desk", **offline | environment)
+
+
+@needs_pip
+def test_a_package_that_was_tampered_with_is_refused(shop: Path) -> None:
+    with zipfile.ZipFile(shop / "wheels" / "tiny-1.0-py3-none-any.whl", "a") as archive:
+        archive.writestr("more.py", "import os")
+    told = set_up(shop)
+    assert told.returncode == 2
+    assert "damaged on the way, or tampered with. It was not installed." in told.stderr
+    assert "tiny" in told.stderr
+    assert "Traceback" not in told.stderr
+    assert not (shop / ".venv" / ".turndesk-desk").exists()
+
+
+@needs_pip
+def test_a_package_that_was_cut_short_is_refused(shop: Path) -> None:
+    wheel = shop / "wheels" / "tiny-1.0-py3-none-any.whl"
+    wheel.write_bytes(wheel.read_bytes()[:-9])
+    assert "damaged on the way" in set_up(shop).stderr
+
+
+@needs_pip
+def test_a_network_that_does_not_answer_is_told_as_one(shop: Path) -> None:
+    # Port 9 of this computer: nobody is there.
+    told = set_up(
+        shop, PIP_NO_INDEX="0", PIP_INDEX_URL="http://127.0.0.1:9/", PIP_RETRIES="1", PIP_FIND_LINKS=""
+    )
+    assert told.returncode == 2
+    assert "is there a network" in told.stderr
+    assert "docs/setup.md" in told.stderr
+
+
+@needs_pip
+def test_no_package_for_this_computer(shop: Path) -> None:
+    (shop / "wheels" / "tiny-1.0-py3-none-any.whl").unlink()
+    told = set_up(shop)
+    assert told.returncode == 2
+    assert "There are no Python packages for this computer (" in told.stderr
+
+
+@pytest.mark.parametrize(
+    ("pip_says", "sentence"),
+    [
+        ("OSError: [Errno 28] No space left on device", "No room left on the disk"),
+        ("[Errno 13] Permission denied: '/x'", "may not write to"),
+        ("[SSL: CERTIFICATE_VERIFY_FAILED] certificate is not yet valid", "is this computer's date right"),
+        ("  x Failed to download\n  Hash mismatch for `tiny==1.0`", "tampered with"),
+        ("error: something new", "pip says:\nerror: something new"),
+    ],
+)
+def test_the_cause_told_is_the_cause(shop: Path, pip_says: str, sentence: str) -> None:
+    python = shop / ".venv" / "bin" / "python"
+    pip = f"#!/bin/sh\n[ $1 = -m ] && {{ printf '%s\\n' '{pip_says.replace(chr(39), '')}' >&2; exit 1; }}\n"
+    executable(python, f'{pip}exec "{sys.executable}" "$@"\n')
+    told = set_up(shop)
+    assert told.returncode == 2
+    assert sentence in told.stderr
+
+
+def test_an_environment_of_another_place_is_made_anew(shop: Path) -> None:
+    place = shop / ".venv" / ".turndesk-place"
+    place.write_text(f"{shop} {shop / '.venv'}", encoding="utf-8")
+    assert tell("right_environment", ROOT=str(shop)).returncode == 0
+    place.write_text("/home/old/turndesk /home/old/turndesk/.venv", encoding="utf-8")
+    assert tell("right_environment", ROOT=str(shop)).returncode == 1
+
+
+def test_an_environment_whose_python_is_gone_is_made_anew(shop: Path) -> None:
+    (shop / ".venv" / "bin" / "python").unlink()
+    assert tell("right_environment", ROOT=str(shop)).returncode == 1
+
+
+def test_a_folder_of_somebody_is_not_emptied(tmp_path: Path) -> None:
+    (tmp_path / "letters").touch()
+    told = tell("new_environment", TURNDESK_VENV=str(tmp_path))
+    assert told.returncode == 2
+    assert "is no Python environment of TurnDesk" in told.stderr
+    assert (tmp_path / "letters").exists()

@@ -1,0 +1,120 @@
+"""Every package has a licence that TurnDesk may be passed on with; the page and the SBOM name them all."""
+
+from __future__ import annotations
+
+from email.message import Message
+from hashlib import sha256
+from importlib.metadata import Distribution, PackageNotFoundError, distribution
+from pathlib import Path
+from typing import cast
+
+import pytest
+
+from resources.setup.licences import PAGE, LicenceError, compatible, licence_of, page, rows
+from resources.setup.lock import SETS, locked_packages
+from resources.setup.sbom import file_of_the_system, sbom
+
+MAKE = "run: python -m resources.setup.licences"
+
+
+def _installed(name: str) -> bool:
+    try:
+        distribution(name)
+    except PackageNotFoundError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize("name", ["desk", "tests"])
+def test_every_licence_is_compatible(name: str) -> None:
+    for package in locked_packages(name):
+        assert compatible(licence_of(distribution(package)))
+
+
+@pytest.mark.parametrize(
+    ("expression", "may_be"),
+    [
+        ("GPL-3.0-only", False),
+        ("MIT AND GPL-2.0-only", False),
+        ("AGPL-3.0-or-later", False),
+        ("", False),
+        ("GPL-3.0-only OR LGPL-3.0-only", True),
+        ("MIT AND Zlib", True),
+    ],
+)
+def test_what_is_compatible(expression: str, may_be: bool) -> None:
+    assert compatible(expression) is may_be
+
+
+class Stated:
+    """A package that states what it is given."""
+
+    def __init__(self, **fields: str) -> None:
+        self.metadata = Message()
+        for name, value in ({"Name": "tiny"} | fields).items():
+            self.metadata[name.replace("_", "-")] = value
+
+
+@pytest.mark.parametrize(
+    "stated", [{}, {"License": "BSD"}, {"License_Expression": "GPL-3.0-only"}, {"License": "Proprietary"}]
+)
+def test_a_package_that_may_not_be_passed_on_is_named(stated: dict[str, str]) -> None:
+    with pytest.raises(LicenceError, match=r"^tiny: "):
+        licence_of(cast(Distribution, Stated(**stated)))
+
+
+def test_the_page_is_in_step() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    listed = {(row.name, row.version) for row in rows(text)}
+    assert listed == {
+        (each.name, each.version) for name in SETS for each in locked_packages(name).values()
+    }, MAKE
+    for row in rows(text):
+        if _installed(row.name):
+            assert row.licence == licence_of(distribution(row.name)), MAKE
+    assert page(text) == text, MAKE
+
+
+@pytest.fixture
+def document(tmp_path: Path) -> dict[str, object]:
+    """The SBOM of a bundle with one wheel and one package of the system."""
+    wheel = tmp_path / "pyserial-3.5-py2.py3-none-any.whl"
+    wheel.write_bytes(b"abc")
+    package = tmp_path / "libegl1_1.7.0-1_amd64.deb"
+    package.write_bytes(b"")
+    return sbom("0.1.0", [wheel], [file_of_the_system("libegl1", "1.7.0-1", package, "debian")])
+
+
+def test_the_sbom_names_all_with_licence_and_version(document: dict[str, list[dict[str, object]]]) -> None:
+    components = {each["bom-ref"]: each for each in document["components"]}
+    for package in locked_packages("desk").values():
+        assert components[package.name]["version"] == package.version
+        assert components[package.name]["purl"] == f"pkg:pypi/{package.name}@{package.version}"
+        assert components[package.name]["licenses"] == [
+            {"expression": licence_of(distribution(package.name))}
+        ]
+    assert set(components) == {*locked_packages("desk"), "b612", "deb:libegl1"}
+    known = {"turndesk", *components}
+    assert {each["ref"] for each in document["dependencies"]} <= known
+    for each in document["dependencies"]:
+        assert set(cast(list[str], each["dependsOn"])) <= known
+
+
+def test_the_sbom_has_the_hash_of_every_file(document: dict[str, list[dict[str, object]]]) -> None:
+    components = {each["bom-ref"]: each for each in document["components"]}
+    # FIPS 180-2, appendix B.1: the SHA-256 of "abc".
+    abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+    assert components["pyserial"]["components"] == [
+        {
+            "type": "file",
+            "name": "pyserial-3.5-py2.py3-none-any.whl",
+            "hashes": [{"alg": "SHA-256", "content": abc}],
+        }
+    ]
+    assert components["deb:libegl1"]["hashes"] == [{"alg": "SHA-256", "content": sha256(b"").hexdigest()}]
+
+
+def test_the_sbom_says_who_needs_whom(document: dict[str, list[dict[str, object]]]) -> None:
+    needs = {each["ref"]: each["dependsOn"] for each in document["dependencies"]}
+    assert needs["pyside6-essentials"] == ["shiboken6"]
+    assert needs["numpy"] == []

@@ -1,0 +1,130 @@
+"""The locked packages are in step with pyproject.toml, whole, and the same in all files."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator
+from importlib.metadata import PackageNotFoundError, distribution
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
+from packaging.utils import canonicalize_name
+
+from resources.setup.lock import (
+    HERE,
+    PYTHONS,
+    SETS,
+    build_packages,
+    locked_file,
+    locked_packages,
+    project,
+    read_locked,
+)
+
+SYSTEMS = (("linux", "Linux"), ("darwin", "Darwin"), ("win32", "Windows"))
+LOCK = "run: python -m resources.setup.lock"
+
+
+def _asked(extras: tuple[str, ...]) -> Iterator[Requirement]:
+    """What pyproject.toml asks for with these optional dependencies."""
+    optional = project()["project"]["optional-dependencies"]
+    yield from map(Requirement, project()["project"]["dependencies"] + build_packages())
+    for extra in extras:
+        for each in map(Requirement, optional[extra]):
+            if each.name == "turndesk":
+                yield from _asked(tuple(each.extras))
+            else:
+                yield each
+
+
+def _needs(name: str) -> set[str]:
+    """What an installed package needs on some Python and system that TurnDesk runs on."""
+    found = set()
+    for each in map(Requirement, distribution(name).requires or ()):
+        for python in PYTHONS:
+            for platform, system in SYSTEMS:
+                place = {
+                    "python_version": python,
+                    "python_full_version": f"{python}.1",
+                    "sys_platform": platform,
+                    "platform_system": system,
+                    "extra": "",
+                }
+                if each.marker is None or each.marker.evaluate(place):
+                    found.add(canonicalize_name(each.name))
+    return found
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_what_pyproject_asks_for_is_locked(name: str) -> None:
+    locked = locked_packages(name)
+    for each in _asked(SETS[name]):
+        package = locked.get(canonicalize_name(each.name))
+        assert package, f"{each} is not in {locked_file(name).name}; {LOCK}"
+        assert each.specifier.contains(package.version), f"{package.name} {package.version}: {each}; {LOCK}"
+
+
+@pytest.mark.parametrize("name", ["tests", "desk"])
+def test_with_all_that_these_need_and_nothing_else(name: str) -> None:
+    locked = locked_packages(name)
+    reached: set[str] = set()
+    ahead = {str(canonicalize_name(each.name)) for each in _asked(SETS[name])}
+    while ahead:
+        reached |= ahead
+        ahead = {needed for each in ahead for needed in _needs(each)} - reached
+    assert reached == set(locked), f"{reached ^ set(locked)}; {LOCK}"
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_every_package_has_its_hashes(name: str) -> None:
+    text = locked_file(name).read_text(encoding="utf-8")
+    packages = list(read_locked(text))
+    assert all(package.hashes for package in packages)
+    assert sum(len(package.hashes) for package in packages) == text.count("--hash=")
+    assert len(packages) == len(re.findall(r"^\S+==", text, re.MULTILINE))
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_no_place_to_fetch_from_is_written_down(name: str) -> None:
+    text = locked_file(name).read_text(encoding="utf-8")
+    assert "://" not in text
+    assert not re.search(r"^--(?!hash)", text, re.MULTILINE)
+
+
+def test_the_same_package_is_the_same_everywhere() -> None:
+    tests = locked_packages("tests")
+    for name in SETS:
+        for package in locked_packages(name).values():
+            assert package == tests.get(package.name, package), LOCK
+
+
+def test_what_runs_here_is_what_is_locked() -> None:
+    for package in locked_packages("tests").values():
+        if package.name in {Requirement(each).name for each in build_packages()}:
+            continue
+        try:
+            here = distribution(package.name).version
+        except PackageNotFoundError:
+            assert package.marker, f"{package.name} is locked and not installed: sh tests/run.sh"
+        else:
+            assert here == package.version, "sh tests/run.sh sets up what is locked"
+
+
+def test_one_list_of_pythons() -> None:
+    """lock.py, pyproject.toml and the set-up's own question say the same."""
+    asked = SpecifierSet(project()["project"]["requires-python"])
+    minors = [f"3.{minor}" for minor in range(8, 20)]
+    assert tuple(each for each in minors if asked.contains(f"{each}.1")) == PYTHONS
+    first, last = (tuple(map(int, each.split("."))) for each in (PYTHONS[0], PYTHONS[-1]))
+    assert f"{first} <= sys.version_info[:2] <= {last}" in (HERE / "environment.sh").read_text(
+        encoding="utf-8"
+    )
+    assert first <= sys.version_info[:2] <= last
+
+
+def test_a_spoilt_lock_is_not_read_as_whole() -> None:
+    text = locked_file("desk").read_text(encoding="utf-8")
+    spoilt = text.replace("--hash=sha256:", "--hash=md5:", 1)
+    assert sum(len(each.hashes) for each in read_locked(spoilt)) < spoilt.count("--hash=")

@@ -1,0 +1,84 @@
+"""Cutting edges of a tool in the one table: kept, undone, exported, read again; and what is refused."""
+
+from __future__ import annotations
+
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from app.offsets.offsets_file import read_rows
+from core.store import database, offset_tables
+from core.store.offset_tables import Reason
+from core.store.store import Store
+from core.store.store_errors import StoreError
+from core.store.store_export import export
+from core.store.store_rows import Kind, ToolRow
+from core.tool_edges import edge_key, edge_name, edge_of, tool_of
+
+WHY = {"why": "test", "who": "test"}
+T3_D2 = edge_key(3, 2)
+
+
+def test_the_numbers_of_rows() -> None:
+    assert (edge_key(3, 1), T3_D2) == (3, 200_003)
+    assert (tool_of(T3_D2), edge_of(T3_D2), edge_name(T3_D2)) == (3, 2, "T3 D2")
+    assert (tool_of(3), edge_of(3), edge_name(3)) == (3, 1, "T3")
+
+
+def test_an_edge_is_kept_undone_and_exported(tmp_path: Path) -> None:
+    with Store.open(tmp_path / "data") as store:
+        store.set_offset(Kind.TOOL, 3, values={"x": 10.0, "z": 20.0}, **WHY).result()
+        row = store.set_offset(Kind.TOOL, T3_D2, values={"x": 10.0, "z": 17.0, "quadrant": 4}, **WHY).result()
+        assert row == ToolRow(10.0, 17.0, quadrant=4)
+        assert set(store.tools()) == {3, T3_D2}
+        export(store, tmp_path / "out")
+        tools, _, _ = read_rows(tmp_path / "out" / "offsets.toml")
+        assert tools[T3_D2] == pytest.approx(row[:6] + row[6:])
+        store.undo_offset(kind=Kind.TOOL, **WHY).result()
+        assert set(store.tools()) == {3}
+
+
+@pytest.mark.parametrize(
+    ("number", "values", "said"),
+    [
+        (T3_D2, {"x": 1.0, "z": 1.0}, "T3 was never set"),
+        (edge_key(33, 2), {"x": 1.0}, "does not exist"),
+        (edge_key(3, 10), {"x": 1.0}, "does not exist"),
+        (100_003, {"x": 1.0}, "does not exist"),
+    ],
+)
+def test_refused(tmp_path: Path, number: int, values: dict[str, float], said: str) -> None:
+    with Store.open(tmp_path) as store, pytest.raises(StoreError, match=said):
+        store.set_offset(Kind.TOOL, number, values=values, **WHY).result()
+
+
+def test_an_edge_is_no_master(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        store.set_offset(Kind.TOOL, 3, values={"x": 1.0, "z": 1.0}, **WHY).result()
+        with pytest.raises(StoreError, match="master by its D1"):
+            store.set_offset(Kind.TOOL, T3_D2, values={"x": 1.0, "z": 1.0, "master": True}, **WHY).result()
+
+
+def test_what_was_kept_before_is_kept() -> None:
+    """A store of the version before keeps every field, its master and its shapes."""
+    scripts = database.migrations()
+    before = next(at for at, text in enumerate(scripts) if "with_edges" in text)
+    with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:
+        database.migrate(connection, scripts[:before])
+        connection.execute(
+            "INSERT INTO tool_offsets (number, x, z, r, wear_x, wear_z, quadrant, remark, master)"
+            " VALUES (7, 1.5, -2.5, 0.4, 0.01, -0.02, 3, 'FINISHER', 1)"
+        )
+        connection.execute(
+            "INSERT INTO tool_shapes VALUES"
+            " (7, 'turning', 'right', 'DNMG', '', 0, 0, 0, 0, 0, 0, 0, 93, 0, '')"
+        )
+        database.migrate(connection, scripts)
+        assert offset_tables.tools(connection)[7] == ToolRow(1.5, -2.5, 0.4, 0.01, -0.02, 3, "FINISHER", True)
+        (shape,) = offset_tables.current(connection, Kind.SHAPE).values()
+        assert shape[:3] == ("turning", "right", "DNMG")
+        offset_tables.change(connection, Kind.TOOL, 200_007, Reason("t", "t"), {"x": 1.0, "z": 2.0})
+        with pytest.raises(sqlite3.IntegrityError):
+            connection.execute("INSERT INTO tool_offsets (number, x, z, r) VALUES (100007, 0, 0, 0)")

@@ -1,0 +1,203 @@
+"""The queue of jobs: its counts are the store's own, whatever becomes of them and of the process."""
+
+from __future__ import annotations
+
+import sqlite3
+import subprocess
+import sys
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from core.store import database, job_queue
+from core.store.job_queue import JobRow
+from core.store.store import Store, StoreError
+
+
+def added(store: Store, program: str, wanted: int, note: str = "") -> int:
+    return store.write(lambda c: job_queue.add(c, program, wanted, note)).result()
+
+
+def begun(store: Store, job: int) -> None:
+    store.write(lambda c: job_queue.begin(c, job)).result()
+
+
+def made(store: Store) -> list[tuple[str, int, int]]:
+    return [(row.program, row.made, row.wanted) for row in store.jobs()]
+
+
+def count(store: Store, program: str, parts: int) -> None:
+    store.correct_parts(program, parts).result()
+
+
+def test_only_parts_of_the_job_under_way_are_counted_for_it(store: Store) -> None:
+    count(store, "pin.nc", 40)
+    job = added(store, "pin.nc", 5, "order 12")
+    count(store, "pin.nc", 2)  # before it is on the desk
+    assert made(store) == [("pin.nc", 0, 5)]
+    begun(store, job)
+    count(store, "pin.nc", 3)
+    count(store, "cap.nc", 9)
+    (row,) = store.jobs()
+    assert (row.made, row.left, row.done, row.target, row.note) == (3, 2, False, 47, "order 12")
+    count(store, "pin.nc", -1)  # scrap
+    assert store.jobs()[0].made == 2
+    count(store, "pin.nc", 4)
+    (row,) = store.jobs()
+    assert (row.made, row.left, row.done) == (6, 0, True)
+
+
+def test_another_job_on_the_desk_leaves_what_was_made(store: Store) -> None:
+    pins, caps = added(store, "pin.nc", 5), added(store, "cap.nc", 2)
+    begun(store, pins)
+    count(store, "pin.nc", 3)
+    begun(store, caps)
+    count(store, "cap.nc", 1)
+    count(store, "pin.nc", 7)  # for nobody's job
+    assert made(store) == [("pin.nc", 3, 5), ("cap.nc", 1, 2)]
+    begun(store, pins)
+    count(store, "pin.nc", 1)
+    assert made(store) == [("pin.nc", 4, 5), ("cap.nc", 1, 2)]
+    assert [row.under_way for row in store.jobs()] == [True, False]
+    assert store.damaged() == ()
+
+
+def test_a_count_that_is_put_to_nought_takes_nothing_from_the_job(store: Store) -> None:
+    count(store, "pin.nc", 10)
+    begun(store, added(store, "pin.nc", 5))
+    count(store, "pin.nc", 3)
+    store.reset_parts("pin.nc").result()
+    (row,) = store.jobs()
+    assert (row.made, row.target) == (3, 2)
+    count(store, "pin.nc", 2)
+    assert store.jobs()[0].done
+
+
+def test_two_jobs_of_one_program_do_not_count_together(store: Store) -> None:
+    first, second = added(store, "pin.nc", 2), added(store, "pin.nc", 3)
+    begun(store, first)
+    count(store, "pin.nc", 2)
+    begun(store, second)
+    count(store, "pin.nc", 1)
+    assert made(store) == [("pin.nc", 2, 2), ("pin.nc", 1, 3)]
+
+
+def test_moved_changed_removed_cleared(store: Store) -> None:
+    a, b, c = (added(store, name, 1) for name in ("a.nc", "b.nc", "c.nc"))
+    store.write(lambda con: job_queue.move(con, c, 1)).result()
+    store.write(lambda con: job_queue.move(con, a, 99)).result()
+    assert [row.program for row in store.jobs()] == ["c.nc", "b.nc", "a.nc"]
+    store.write(lambda con: job_queue.change(con, b, 7, "blue")).result()
+    store.write(lambda con: job_queue.remove(con, c)).result()
+    begun(store, a)
+    count(store, "a.nc", 1)
+    assert store.write(lambda con: job_queue.clear(con, everything=False)).result() == 1
+    assert [(row.program, row.wanted, row.note) for row in store.jobs()] == [("b.nc", 7, "blue")]
+    assert store.write(lambda con: job_queue.clear(con, everything=True)).result() == 1
+
+
+def test_a_renamed_program_keeps_its_job(store: Store) -> None:
+    begun(store, added(store, "pin.nc", 5))
+    count(store, "pin.nc", 2)
+    store.rename_program("pin.nc", "pin2.nc").result()
+    assert made(store) == [("pin2.nc", 2, 5)]
+
+
+@pytest.mark.parametrize(
+    ("program", "wanted", "note", "why"),
+    [
+        ("a/b.nc", 1, "", "cannot name a program"),
+        ("a.nc", 0, "", "a job has 1 to 9999999 parts, not 0"),
+        ("a.nc", 10_000_000, "", "not 10000000"),
+        ("a.nc", 1, "x" * 81, "80 letters at most"),
+        ("a.nc", 1, "two\nlines", "on one line"),
+    ],
+)
+def test_what_is_no_job_is_refused(store: Store, program: str, wanted: int, note: str, why: str) -> None:
+    with pytest.raises(StoreError, match=why):
+        added(store, program, wanted, note)
+    assert store.jobs() == ()
+
+
+def test_a_job_that_has_gone_is_told(store: Store) -> None:
+    for operation in (
+        lambda c: job_queue.begin(c, 7),
+        lambda c: job_queue.move(c, 7, 1),
+        lambda c: job_queue.remove(c, 7),
+        lambda c: job_queue.change(c, 7, 1, ""),
+    ):
+        with pytest.raises(StoreError, match="not in the queue any more"):
+            store.write(operation).result()
+
+
+def test_a_full_queue_takes_no_more(store: Store) -> None:
+    for _ in range(job_queue.MOST_JOBS):
+        store.write(lambda c: job_queue.add(c, "a.nc", 1))
+    with pytest.raises(StoreError, match="200 jobs already"):
+        added(store, "a.nc", 1)
+
+
+def test_counts_that_wait_in_memory_count(store: Store) -> None:
+    begun(store, added(store, "pin.nc", 9))
+    count(store, "pin.nc", 2)
+    with store.read() as connection:
+        assert job_queue.jobs(connection, {"pin.nc": (False, 3)})[0].made == 5
+        assert job_queue.jobs(connection, {"pin.nc": (True, 3)})[0].made == 5  # put to nought, then three
+
+
+def test_a_damaged_job_is_left_out_told_and_cleared(folder: Path) -> None:
+    with Store.open(folder) as store:
+        added(store, "a.nc", 3)
+        added(store, "b.nc", 4)
+    with closing(sqlite3.connect(folder / database.FILE_NAME)) as outside:
+        outside.execute("UPDATE jobs SET wanted = 300 WHERE program = 'a.nc'")
+        outside.commit()
+    with Store.open(folder) as store:
+        assert [row.program for row in store.jobs()] == ["b.nc"]
+        (told,) = store.damaged()
+        assert told.startswith("the job 1 is not as it was saved")
+        assert "turndesk jobs clear" in told
+        assert store.write(lambda c: job_queue.clear(c, everything=False)).result() == 1
+        assert store.damaged() == ()
+
+
+def test_an_older_store_gets_its_queue(tmp_path: Path) -> None:
+    with closing(sqlite3.connect(tmp_path / database.FILE_NAME, isolation_level=None)) as connection:
+        connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
+        database.migrate(connection, database.migrations()[:11])
+        connection.execute("INSERT INTO part_counts VALUES ('pin.nc', 4, '2026-11-20T10:00:00.000Z')")
+    with Store.open(tmp_path) as store:
+        assert store.jobs() == ()
+        assert store.parts("pin.nc") == 4
+        assert store.damaged() == ()
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from core.store import job_queue
+from core.store.store import Store
+
+store = Store.open(Path(sys.argv[1]))
+job = store.write(lambda c: job_queue.add(c, "pin.nc", 50)).result()
+store.write(lambda c: job_queue.begin(c, job)).result()
+for _ in range(7):
+    store.count_part("pin.nc").result()
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_a_killed_control_has_its_queue_with_its_counts(folder: Path) -> None:
+    ended = subprocess.run([sys.executable, "-c", KILLED, str(folder)], check=False)
+    assert ended.returncode == -9
+    with Store.open(folder) as store:
+        (row,) = store.jobs()
+        assert (row.program, row.made, row.wanted, row.under_way) == ("pin.nc", 7, 50, True)
+
+
+def test_a_row_reckons_by_the_count_from_which_it_began() -> None:
+    row = JobRow(1, "pin.nc", 50, before=10, base=100, counted=117)
+    assert (row.made, row.left, row.target) == (27, 23, 140)
+    assert row._replace(base=None).made == 10
+    assert row._replace(counted=80).made == 0

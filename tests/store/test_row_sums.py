@@ -1,0 +1,229 @@
+"""A sum beside every row: what was flipped on the disk is put right, or not used and told."""
+
+from __future__ import annotations
+
+import sqlite3
+import struct
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from pathlib import Path
+
+import pytest
+
+from app.compose.stored_offsets import stored_offsets
+from app.desk.command_errors import CommandError
+from core.store import backup, database, program_records, row_sums
+from core.store.store import Store
+from core.store.store_rows import ToolRow
+from core.store.tool_lives import LifeRow, lives, set_use
+
+FILE = database.FILE_NAME
+
+
+@pytest.fixture
+def kept(folder: Path) -> Path:
+    """T1 and T3, D2, G54, a setting, a count, a tool's life."""
+    with Store.open(folder) as store:
+        store.set_tool(1, "touched", x=1.0, z=2.0).result()
+        store.set_tool(3, "touched", x=-12.7, z=-2.5, remark="FINISHER").result()
+        store.set_secondary(2, "wear", x=0.01).result()
+        store.set_setting("units", "metric").result()
+        store.count_part("pin.nc").result()
+        store.count_part("pin.nc").result()
+        store.write(lambda c: set_use(c, 3, 40, 120.5)).result()
+    return folder
+
+
+@contextmanager
+def outside(folder: Path) -> Iterator[sqlite3.Connection]:
+    """Another program, or a bad sector: nothing of ours looks on."""
+    with closing(sqlite3.connect(folder / FILE)) as connection:
+        yield connection
+        connection.commit()
+
+
+def flipped(value: float) -> float:
+    """One bit of it, the lowest of the exponent: half as much, or twice."""
+    bits = struct.unpack("<Q", struct.pack("<d", value))[0] ^ (1 << 52)
+    return float(struct.unpack("<d", struct.pack("<Q", bits))[0])
+
+
+def flip(folder: Path, table: str, column: str, where: str) -> None:
+    with outside(folder) as connection:
+        before = connection.execute(f"SELECT {column} FROM {table} WHERE {where}").fetchone()[0]
+        connection.execute(f"UPDATE {table} SET {column} = ? WHERE {where}", (flipped(before),))
+
+
+def test_what_is_whole_is_told_whole(kept: Path) -> None:
+    assert backup.problems(kept / FILE) == ()
+    with Store.open(kept) as store:
+        assert (store.repaired, store.damaged()) == ((), ())
+
+
+def test_a_flipped_bit_is_no_other_offset(kept: Path) -> None:
+    flip(kept, "tool_offsets", "z", "number = 3")
+    with Store.open(kept, read_only=True) as store:
+        assert set(store.tools()) == {1}
+        assert store.damaged() == (
+            "T3 is not as it was saved, and is not used; enter it anew, or restore a backup",
+        )
+    assert "T3 is not as it was saved" in backup.problems(kept / FILE)[0]
+
+
+def test_the_history_puts_it_right_when_the_desk_opens(kept: Path) -> None:
+    flip(kept, "tool_offsets", "z", "number = 3")
+    with Store.open(kept) as store:
+        assert store.tools()[3] == ToolRow(-12.7, -2.5, remark="FINISHER")
+        assert store.repaired == ("T3 was damaged in the store; it is again as it was entered",)
+        assert store.events("damaged in the store")[0].kind == "warning"
+    with Store.open(kept) as store:
+        assert store.repaired == ()
+
+
+def test_a_row_that_has_gone_comes_back(kept: Path) -> None:
+    with outside(kept) as connection:
+        connection.execute("DELETE FROM tool_offsets WHERE number = 1")
+    with Store.open(kept) as store:
+        assert store.tools()[1] == ToolRow(1.0, 2.0)
+
+
+def test_a_damaged_sum_loses_nothing(kept: Path) -> None:
+    with outside(kept) as connection:
+        connection.execute("UPDATE row_sums SET sha256 = 'ab' || substr(sha256, 3)")
+    with Store.open(kept) as store:
+        assert store.tools()[3].x == -12.7
+        assert store.secondary()[2].x == 0.01
+
+
+def test_a_row_and_its_history_damaged_alike_are_not_believed(kept: Path) -> None:
+    with outside(kept) as connection:
+        connection.execute("UPDATE tool_offsets SET x = 5.0 WHERE number = 3")
+        connection.execute("UPDATE offset_changes SET new_x = 6.0 WHERE number = 3")
+    with Store.open(kept) as store:
+        assert set(store.tools()) == {1}
+        store.set_tool(3, "entered anew", x=-12.7, z=-2.5).result()
+        assert store.damaged() == ()
+        assert store.tools()[3].z == -2.5
+
+
+def test_nothing_is_proved_with_a_damaged_offset(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TURNDESK_HOME", str(kept))
+    assert 3 in stored_offsets().tools
+    flip(kept, "secondary_offsets", "x", "number = 2")
+    with pytest.raises(CommandError, match="D2 is not as it was saved"):
+        stored_offsets()
+
+
+def test_a_mill_is_not_moved_to_another_zero(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TURNDESK_HOME", str(kept))
+    with Store.open(kept) as store:
+        store.set_setting("preset", 3).result()
+    stored_offsets()
+    with outside(kept) as connection:
+        connection.execute("UPDATE settings SET value = '2' WHERE key = 'preset'")
+    with pytest.raises(CommandError, match="the setting preset is not as it was saved"):
+        stored_offsets()
+
+
+@pytest.mark.parametrize("damage", ["'abc'", "x'ff00'", "NULL || ''"])
+def test_a_value_of_another_type_is_refused_by_itself(kept: Path, damage: str) -> None:
+    with outside(kept) as connection:
+        connection.execute("PRAGMA ignore_check_constraints = ON")
+        connection.execute(f"UPDATE tool_offsets SET x = coalesce({damage}, '') WHERE number = 3")
+    with Store.open(kept, read_only=True) as store:
+        assert store.tools() == {1: ToolRow(1.0, 2.0)}
+
+
+def test_a_text_that_is_none_any_more_hides_no_other_row(kept: Path) -> None:
+    with outside(kept) as connection:
+        connection.execute("UPDATE tool_offsets SET remark = CAST(x'46ff4e' AS TEXT) WHERE number = 3")
+        connection.execute("UPDATE settings SET value = CAST(x'22ff22' AS TEXT) WHERE key = 'units'")
+    with Store.open(kept, read_only=True) as store:
+        assert store.tools() == {1: ToolRow(1.0, 2.0)}
+        assert store.setting("units") is None
+    with Store.open(kept) as store:
+        assert store.tools()[3].remark == "FINISHER"
+
+
+def test_settings_counts_and_lives_are_not_believed_either(kept: Path) -> None:
+    with outside(kept) as connection:
+        connection.execute("UPDATE settings SET value = '\"inch\"' WHERE key = 'units'")
+        connection.execute("UPDATE part_counts SET count = 66")
+        connection.execute("UPDATE tool_lives SET parts = 8")
+    with Store.open(kept) as store:
+        assert (store.setting("units"), store.parts("pin.nc")) == (None, 0)
+        told = store.damaged()
+        assert [each.split(" is not")[0] for each in told] == [
+            "the life of tool 3",
+            "the part count of pin.nc",
+            "the setting units",
+        ]
+        store.set_setting("units", "metric").result()
+        store.reset_parts("pin.nc").result()
+        store.write(lambda c: set_use(c, 3, 40, 120.5)).result()
+        assert store.damaged() == ()
+        assert (store.setting("units"), store.parts("pin.nc")) == ("metric", 0)
+
+
+def test_many_changes_in_one_transaction_see_each_other(kept: Path) -> None:
+    def twice(connection: sqlite3.Connection) -> int:
+        program_records.add_parts(connection, "pin.nc", 3, "2026-11-23T00:00:00Z")
+        program_records.add_parts(connection, "pin.nc", 3, "2026-11-23T00:00:00Z")
+        return program_records.parts(connection, "pin.nc")
+
+    with Store.open(kept) as store:
+        assert store.write(twice).result() == 8
+        assert store.damaged() == ()
+
+
+def test_a_transaction_taken_back_takes_its_sums_back(kept: Path) -> None:
+    def fails(connection: sqlite3.Connection) -> None:
+        connection.execute("UPDATE tool_offsets SET x = 9 WHERE number = 1")
+        raise RuntimeError("no")
+
+    with Store.open(kept) as store:
+        with pytest.raises(RuntimeError, match="no"):
+            store.write(fails).result()
+        assert store.damaged() == ()
+        assert store.tools()[1].x == 1.0
+
+
+def test_a_program_that_is_renamed_keeps_whole_rows(kept: Path) -> None:
+    with Store.open(kept) as store:
+        store.save_program("pin.nc", b"M30\n", "kept").result()
+        store.keep_stock("pin.nc", "bar:1").result()
+        store.rename_program("pin.nc", "pin2.nc").result()
+        assert store.parts("pin2.nc") == 2
+        assert store.stock_of("pin2.nc") == "bar:1"
+        assert store.damaged() == ()
+
+
+def test_an_older_store_gets_its_sums(tmp_path: Path) -> None:
+    old = database.migrations()[:10]
+    with closing(sqlite3.connect(tmp_path / FILE, isolation_level=None)) as connection:
+        connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
+        database.migrate(connection, old)
+        connection.execute("INSERT INTO tool_offsets (number, x, z, r) VALUES (7, 1.5, -2.5, 0.4)")
+    with Store.open(tmp_path) as store:
+        assert store.tools()[7].x == 1.5
+        assert store.damaged() == ()
+    flip(tmp_path, "tool_offsets", "x", "number = 7")
+    with Store.open(tmp_path) as store:  # it has no history
+        assert store.tools() == {}
+        assert len(store.damaged()) == 1
+
+
+def test_what_was_damaged_before_a_newer_version_stays_so(kept: Path) -> None:
+    with outside(kept) as connection:
+        connection.execute("UPDATE tool_lives SET parts = 8")
+    newer = (*database.migrations(), "ALTER TABLE tool_lives ADD COLUMN more REAL NOT NULL DEFAULT 0;")
+    with closing(sqlite3.connect(kept / FILE, isolation_level=None)) as connection:
+        database.migrate(connection, newer)
+        assert row_sums.all_broken(connection) == {("tool_lives", 3)}
+        set_use(connection, 3, 40, 1.0)
+        assert row_sums.all_broken(connection) == frozenset()
+
+
+def test_a_life_is_read_as_it_was_kept(kept: Path) -> None:
+    with Store.open(kept) as store, store.read() as connection:
+        assert lives(connection)[3] == LifeRow(3, parts=40, seconds=120.5)
