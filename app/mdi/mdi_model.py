@@ -5,29 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import partial
 
 from app.desk import prompt_line
-from app.desk.latest import Latest, Watch
 from app.desk.persistence import Persistence
-from app.desk.program_loading import Proved
+from app.desk.prepared_line import PreparedLine, ProveLine
 from app.desk.translation import tr
-from core.executor.commands import Command, Prepare, SpindleStop
-from core.executor.job import Job
-from core.executor.snapshot import CYCLE, Snapshot, Starts, State
-from core.language.diagnostics import Diagnostic, Severity
+from core.executor.commands import Command, SpindleStop
+from core.executor.snapshot import CYCLE, Snapshot, State
+from core.language.diagnostics import Diagnostic
 from core.store.store_errors import StoreError
-
-
-def never_set(job: Job, proved: Proved) -> tuple[Diagnostic, ...]:
-    """An error for each tool that the line calls and nobody has set."""
-    missing = sorted(set(proved.proof.tools) - job.tools_set)
-    text = "Tool {number} was never set."
-    return tuple(
-        Diagnostic(1, 0, Severity.ERROR, "tool-never-set", text.format(number=number), "Set it with F8.")
-        for number in missing
-    )
-
 
 # --- the line and its history -------------------------------------------------------------------------
 
@@ -45,6 +31,9 @@ class MdiLine:
     text: str = ""
     at: int = 0  # the cursor stands before this character
     history: list[str] = field(default_factory=list)  # oldest first
+    refused: dict[str, int] = field(
+        default_factory=dict
+    )  # lines of it that do not run: column, from 1; 0: whole
     back: int = 0  # how far up the history the text comes from, 0: it is being typed
     _draft: str = ""
 
@@ -94,20 +83,27 @@ class MdiLine:
 
     def done(self) -> None:
         """The line has been started: it goes into the history, and an empty one begins."""
+        self.refused.pop(self.text, None)
+        self._remember()
+        self.put("")
+        self.back, self._draft = 0, ""
+
+    def refuse(self, column: int) -> None:
+        """The line does not run: it stays to be mended, and stands in the history with its word marked."""
+        self._remember()
+        self.refused[self.text] = column
+        self.refused = {line: at for line, at in self.refused.items() if line in self.history}
+        self.back = 0
+
+    def _remember(self) -> None:
         if self.text.strip() and (not self.history or self.history[-1] != self.text):
             self.history = [*self.history, self.text][-KEPT:]
             with suppress(StoreError):  # the desk says by itself that nothing is kept
                 self.persistence.save_setting(KEY, self.history)
-        self.put("")
-        self.back, self._draft = 0, ""
 
     def _cut(self, index: int) -> None:
         if 0 <= index < len(self.text):
             self.put(self.text[:index] + self.text[index + 1 :], index)
-
-
-ProveLine = Callable[[str, Snapshot, Watch], tuple[Job, Proved]]
-"""From a line and the machine as it stands to its job and its proof; called on the worker."""
 
 
 @dataclass(slots=True)
@@ -121,10 +117,10 @@ class MdiModel:
     clear: Callable[[], None]
     typing: MdiLine = field(default_factory=MdiLine)
     open: bool = False
-    found: tuple[Diagnostic, ...] = ()  # what proving had to say of the line
-    ready: Job | None = None  # proved and prepared
-    worker: Latest = field(default_factory=lambda: Latest("loading-mdi"))
-    _begun: int = 0  # lines that the executor has begun, as far as they were seen
+    line: PreparedLine = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.line = PreparedLine(self.prove, self.post, refused=self._refused)
 
     # --- page ----------------------------------------------------------------------------------------
 
@@ -139,7 +135,7 @@ class MdiModel:
         """From now on Cycle Start begins lines, and no program."""
         self.open = True
         self.typing.reload()
-        self._unready()
+        self.line.take_back()
 
     def leave(self) -> bool:
         """Whether it may be left; the spindle stays on, and Cycle Start begins programs again."""
@@ -148,14 +144,13 @@ class MdiModel:
         if self.snapshot().state in CYCLE:
             self.say(tr("A LINE IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R"))
             return False
-        self._withdraw()
         self.open = False
-        self.post(Prepare(Starts.PROGRAM))
+        self.line.leave()
         return True
 
     def close(self) -> None:
         """End the thread that proves."""
-        self.worker.close()
+        self.line.close()
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -179,7 +174,7 @@ class MdiModel:
         taken = self.typing.type(key)
         if self.typing.text != before:
             self.clear()
-            self._unready()
+            self.line.take_back()
         return taken
 
     def enter(self) -> None:
@@ -192,23 +187,22 @@ class MdiModel:
         if not self.typing.text.strip():
             self.say(tr("TYPE A LINE FIRST; ARROW UP BRINGS EARLIER ONES BACK"))
             return
-        self._unready()
-        self.worker.ask(partial(self.prove, self.typing.text, snapshot), self._proved, self._failed)
+        self.line.ask(self.typing.text, snapshot, self._failed)
 
     def recall(self, back: int) -> None:
         """Take up the line that stands so far up the history."""
         self.typing.recall(back)
         self.clear()
-        self._unready()
+        self.line.take_back()
 
     def escape(self) -> bool:
         """Take a ready line back, then what is typed; False when there was neither."""
-        begun = self.ready or self.typing.text or self.busy
+        begun = self.line.ready or self.typing.text or self.line.busy
         if self.snapshot().state in prompt_line.UNDER_WAY or not begun:
             return False
-        if self.ready is None and not self.busy:
+        if self.line.ready is None and not self.line.busy:
             self.typing.put("")
-        self._unready()
+        self.line.take_back()
         return True
 
     def stop_spindle(self) -> None:
@@ -220,21 +214,10 @@ class MdiModel:
 
     def look(self, snapshot: Snapshot) -> None:
         """Take up what the worker has found; a line that was started goes into the history."""
-        begun, self._begun = snapshot.lines > self._begun, snapshot.lines
-        if self.ready is not None and begun:
-            self.ready, self.found = None, ()
+        if self.open:
+            self.line.keep(snapshot)
+        if self.line.look(snapshot):
             self.typing.done()
-        self.worker.poll()
-
-    @property
-    def busy(self) -> bool:
-        """Whether the proof of a line is still to come."""
-        return self.worker.busy
-
-    @property
-    def errors(self) -> tuple[Diagnostic, ...]:
-        """What keeps the line from running."""
-        return tuple(each for each in self.found if each.severity is Severity.ERROR)
 
     def prompt(self, snapshot: Snapshot, start: str) -> str:
         """What can be done now; ``start`` names what starts a cycle here."""
@@ -242,34 +225,22 @@ class MdiModel:
             return tr("DRIVES ARE OFF: PRESS F5 FOR DRIVES ON; A LINE CAN BE TYPED MEANWHILE")
         if snapshot.state is not State.IDLE:
             return ""
-        if self.busy:
+        if self.line.busy:
             return tr("PROVING THE LINE")
-        if self.errors:
+        if self.line.errors:
             return tr("THE LINE DOES NOT RUN: MEND IT, OR ESC TO CLEAR IT")
-        if self.ready is not None:
+        if self.line.ready is not None:
             return tr("TO RUN THE LINE {start}; ESC TAKES IT BACK").format(start=start)
         return tr("TYPE A LINE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS")
 
     def barred(self) -> str:
         """Why the palms start nothing now; empty when they may."""
-        if self.snapshot().state is State.IDLE and self.ready is None:
+        if self.snapshot().state is State.IDLE and self.line.ready is None:
             return tr("NO LINE IS READY: TYPE ONE AND PRESS ENTER")
         return ""
 
     def _failed(self, why: str) -> None:
         self.say(tr("THE LINE CANNOT BE PROVED: {why}").format(why=why))
 
-    def _proved(self, answer: tuple[Job, Proved]) -> None:
-        job, proved = answer
-        self.found = (*proved.diagnostics, *never_set(job, proved))
-        if not self.errors:
-            self.ready = job
-            self.post(Prepare(Starts.LINE, job, proved.proof))
-
-    def _unready(self) -> None:
-        self._withdraw()
-        self.post(Prepare(Starts.LINE))
-
-    def _withdraw(self) -> None:
-        self.worker.give_up()
-        self.ready, self.found = None, ()
+    def _refused(self, error: Diagnostic) -> None:
+        self.typing.refuse(error.column)

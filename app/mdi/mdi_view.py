@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import partial
 
@@ -16,7 +17,7 @@ from app.desk.translation import tr
 from app.mdi.mdi_model import MdiModel
 from app.screen import page_table
 from app.screen.letter_keys import LINES, LetterPad
-from app.screen.look import Look, Painter
+from app.screen.look import RIGHT, Look, Painter
 from app.screen.page_base import Host, KeyActions, ModelPage
 from app.screen.panel import Panel, Press, Shown
 from core.executor.snapshot import CYCLE, Snapshot, Starts
@@ -90,6 +91,7 @@ class HistoryPanel(Panel):
 
     lines: Shown[tuple[str, ...]] = Shown(())  # oldest first
     back = Shown(0)
+    refused: Shown[tuple[tuple[str, int], ...]] = Shown(())  # lines that do not run, and where
 
     def __init__(self, look: Look, choose: Callable[[int], None], parent: QWidget) -> None:
         super().__init__(look, parent)
@@ -99,6 +101,7 @@ class HistoryPanel(Panel):
         self.frame(painter, tr("HISTORY  ·  ARROW UP AND DOWN"))
         u, room = self.look.u, self.inside()
         rows = max(1, int(room.height() / (ROW * u)))
+        refused = dict(self.refused)
         bottom = max(rows, len(self.lines) - max(0, self.back - rows))
         for place, number in enumerate(range(max(0, bottom - rows), min(bottom, len(self.lines)))):
             back = len(self.lines) - number
@@ -106,11 +109,24 @@ class HistoryPanel(Panel):
             if back == self.back:
                 painter.fill(row, "here")
             line, text = row.adjusted(0.8 * u, 0, -0.8 * u, 0), self.lines[number]
+            if text in refused:
+                self._refused(painter, line, text, refused[text])
             painter.write(line, text, 2.2, "text", bold=back == self.back, raw=True, fit=False)
             self.place(row, partial(self._choose, back))
         if not self.lines:
             empty = QRectF(room.x(), room.y(), room.width(), 3 * u)
             painter.write(empty, tr("No line was run yet."), 2.0, "soft", bold=False)
+
+    def _refused(self, painter: Painter, row: QRectF, text: str, column: int) -> None:
+        """A line that does not run: the word in question is underlined, and it says so at the right."""
+        u = self.look.u
+        metrics = QFontMetricsF(self.look.font(2.2))
+        start = max(0, column - 1)
+        left = row.x() + metrics.horizontalAdvance(text[:start])
+        word = re.match(r"\s*[^\W\d_]*[^\sA-Za-z]*", text[start:]) if column else None
+        wide = metrics.horizontalAdvance((word.group() if word else "") or text[start:])
+        painter.fill(QRectF(left, row.bottom() - 0.6 * u, wide, 0.35 * u), "alarm")
+        painter.write(row, tr("REFUSED"), 1.5, "alarm", at=RIGHT)
 
 
 # --- what is in force ---------------------------------------------------------------------------------
@@ -200,10 +216,12 @@ class MdiPage(ModelPage):
         text = snapshot.block_text if running and not typing.text else typing.text
         line, history = self.line, self.history
         line.text, line.at = text, len(text) if running else typing.at
-        line.found, line.ready = model.found, model.ready is not None
+        line.found, line.ready = model.line.found, model.line.ready is not None
         history.lines, history.back = tuple(typing.history), typing.back
+        history.refused = tuple(typing.refused.items())
         angle = snapshot.demand[2] - snapshot.modal.offset_c
-        self.inforce.rows = rows_of(Checkpoint(snapshot.modal, c=angle))
+        point = Checkpoint(snapshot.modal, c=angle, kept=snapshot.kept)
+        self.inforce.rows = rows_of(point, self.desk.language)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """The line over the history, what is in force at their right."""

@@ -9,13 +9,25 @@ from typing import TYPE_CHECKING, Any
 
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.store.store_errors import StoreError
-from core.store.store_rows import Change, Kind, Row, SecondaryRow, ShapeRow, ToolRow, Value, ZeroRow
+from core.store.store_rows import (
+    Change,
+    Kind,
+    MillRow,
+    PresetRow,
+    Row,
+    SecondaryRow,
+    ShapeRow,
+    ToolRow,
+    Value,
+    ZeroRow,
+)
 from core.store.touch_off import Touch
 
 if TYPE_CHECKING:
     from core.store.store import Store
 
 NONE_KEPT = "NO OFFSETS ARE KEPT HERE"
+PRESET = "preset"  # the setting that keeps which one is in force
 SAVING = "STILL SAVING THE CHANGE BEFORE: PRESS RETURN AGAIN"
 
 
@@ -33,6 +45,9 @@ class OffsetBook:
     secondary: dict[int, SecondaryRow] = field(default_factory=dict)
     zero: dict[int, ZeroRow] = field(default_factory=dict)  # by the number of its G code
     shapes: dict[int, ShapeRow] = field(default_factory=dict)
+    mill_tools: dict[int, MillRow] = field(default_factory=dict)
+    presets: dict[int, PresetRow] = field(default_factory=dict)
+    preset: int = 0  # the one in force on a mill; 0: that of the machine file
     at: int = 1  # the tool that the pages of tools stand at
     changes: int = 0  # how many were saved
     _saving: Future[Any] | None = None
@@ -50,6 +65,8 @@ class OffsetBook:
             Kind.SECONDARY: self.secondary,
             Kind.ZERO: self.zero,
             Kind.SHAPE: self.shapes,
+            Kind.MILL_TOOL: self.mill_tools,
+            Kind.PRESET: self.presets,
         }
         return tables[kind]
 
@@ -68,6 +85,8 @@ class OffsetBook:
             store = self.store
             self.tools, self.secondary, self.zero = store.tools(), store.secondary(), store.zero_offsets()
             self.shapes = store.shapes()
+            self.mill_tools, self.presets = store.mill_tools(), store.presets()
+            self.preset = preset_of(store.setting(PRESET), self.presets)
 
     # --- changes: each answers why not, or nothing ----------------------------------------------------
 
@@ -82,6 +101,10 @@ class OffsetBook:
     def choose_master(self, number: int, why: str) -> str:
         """Make this tool the master; 0: no tool is."""
         return self._post(lambda store: store.choose_master(number, why))
+
+    def choose_preset(self, number: int) -> str:
+        """Another preset is in force; 0: that of the machine file."""
+        return self._post(lambda store: store.set_setting(PRESET, number))
 
     def remove_shape(self, number: int, why: str) -> str:
         """A tool without a shape again."""
@@ -143,12 +166,17 @@ class OffsetBook:
         return ""
 
 
+def preset_of(kept: object, presets: Mapping[int, PresetRow]) -> int:
+    """The number of the preset in force; one that is not in the table is none."""
+    return kept if isinstance(kept, int) and kept in presets else 0
+
+
 # --- from the rows of the store to what the interpreter counts with --------------------------------------
 
 
 def tool_offsets(rows: Mapping[int, ToolRow]) -> dict[int, ToolOffset]:
     """Of the tools: geometry and wear together."""
-    return {n: ToolOffset(*row.offset, row.nose_radius) for n, row in rows.items()}
+    return {n: ToolOffset(*row.offset, row.nose_radius, row.quadrant, row.remark) for n, row in rows.items()}
 
 
 def secondary_offsets(rows: Mapping[int, SecondaryRow]) -> dict[int, SecondaryOffset]:

@@ -16,8 +16,16 @@ from app.offsets.offset_values import Mode, from_to
 from core.executor.snapshot import Snapshot, State
 from core.store.store_errors import StoreError
 from core.store.store_rows import Change, Kind
+from core.tool_edges import edge_name
 
-LETTERS = {Kind.TOOL: "T", Kind.SHAPE: "T", Kind.SECONDARY: "D", Kind.ZERO: "G"}
+LETTERS = {
+    Kind.TOOL: "T",
+    Kind.SHAPE: "T",
+    Kind.SECONDARY: "D",
+    Kind.ZERO: "G",
+    Kind.MILL_TOOL: "T",
+    Kind.PRESET: "PRESET ",
+}
 CORRECTIONS = frozenset({"wear_x", "wear_z", "remark"})  # of a tool; all of a secondary offset
 
 
@@ -90,22 +98,26 @@ class OffsetHistory:
         self.last = tuple(change for change in changes if fresh and change.step == changes[0].step)
         if self.listed is not None:
             self.listed = changes
-        self.desk.say(self._saved() + _behind_saved(snapshot))
+        self.desk.done(self._saved() + _behind_saved(snapshot))
 
     def _saved(self) -> str:
         if not self.last:
             return tr("SAVED")
-        names = " ".join(f"{LETTERS[self.kind]}{change.number}" for change in reversed(self.last))
+        names = " ".join(self._named(change) for change in reversed(self.last))
         if len(self.last) > 1 and self.kind is not Kind.ZERO:
             names = tr("{count} OFFSETS").format(count=len(self.last))
         taken_back = self.last[0].undoes is not None
         return (tr("{names} TAKEN BACK") if taken_back else tr("{names} SAVED")).format(names=names)
 
+    def _named(self, change: Change) -> str:
+        letter = LETTERS[self.kind]
+        return edge_name(change.number) if letter == "T" else f"{letter}{change.number}"
+
     def in_words(self, change: Change) -> tuple[str, str, str, str]:
         """Of one change: when (local time), which, from → to in the control's unit, why and by whom."""
         at = local_time(change.at)
         who = "" if change.who == "operator" else f" ({change.who})"
-        which = f"{LETTERS[self.kind]}{change.number}"
+        which = self._named(change)
         return at, which, from_to(change.old, change.new, self.mode), f"{change.why}{who}"
 
     @property

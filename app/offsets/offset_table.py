@@ -27,6 +27,7 @@ class OffsetTable(ABC):
 
     kind: ClassVar[Kind]
     clears: ClassVar[str] = ""  # what C asks before it clears the whole table; empty: C is no key here
+    own_key: str = ""  # a letter that does something on this page, for the pad of a finger
     why_cleared: ClassVar[str] = ""  # in the history
     text: str = ""  # what is typed as the answer
 

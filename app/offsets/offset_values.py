@@ -12,7 +12,18 @@ from app.desk.arithmetic import EntryError, value_of
 from app.desk.formats import MINUS, MM_PER_INCH
 from app.desk.translation import tr
 from core.store.offset_fields import Field, Sort
-from core.store.store_rows import FIELDS, Kind, Row, SecondaryRow, ShapeRow, ToolRow, Value
+from core.store.store_rows import (
+    FIELDS,
+    Kind,
+    MillRow,
+    PresetRow,
+    Row,
+    SecondaryRow,
+    ShapeRow,
+    ToolRow,
+    Value,
+    ZeroRow,
+)
 
 TOOL_FIELDS = {**FIELDS[Kind.TOOL], **FIELDS[Kind.SHAPE]}  # of a tool: of its offset and of its shape
 ZERO_PLACES = 3
@@ -84,7 +95,33 @@ def in_words(offset: Row | None, mode: Mode) -> str:
         return f"X {signed(x, mode.metric)}  Z {signed(z, mode.metric)}  R {formats.length(r, mode.metric)}"
     if isinstance(offset, ShapeRow):
         return _shape_in_words(offset, mode)
-    return "  ".join(f"{name} {signed_zero_offset(value)}" for name, value in zip("XZC", offset, strict=True))
+    if isinstance(offset, ZeroRow):
+        both = zip("XZC", offset, strict=True)
+        return "  ".join(f"{name} {signed_zero_offset(value)}" for name, value in both)
+    return stated_fields(offset)
+
+
+def stated_fields(row: MillRow | PresetRow) -> str:
+    """Of a mill's tool or preset: the fields that say something, by the control's own words."""
+    fields = FIELDS[Kind.MILL_TOOL if isinstance(row, MillRow) else Kind.PRESET]
+    values: tuple[Value, ...] = tuple(row)
+    told = [
+        field.word if field.sort is Sort.FLAG else f"{field.word} {cell_text(field, value)}"
+        for field, value in zip(fields.values(), values, strict=True)
+        if value or field.name in {"x", "y", "z", "rotation"}
+    ]
+    return "  ".join(told) or formats.NOTHING
+
+
+def cell_text(field: Field, value: Value) -> str:
+    """A value as a table of a mill shows it: mm, degrees, minutes."""
+    if isinstance(value, str):
+        return value
+    if field.sort is Sort.FLAG:
+        return field.word if value else formats.NOTHING
+    if field.sort in {Sort.WHOLE, Sort.MINUTES}:
+        return f"{value:g}"
+    return signed_zero_offset(value) if field.low < 0 else formats.fixed(value, ZERO_PLACES)
 
 
 def _pair(x: float, z: float, metric: bool, diameter: bool) -> str:

@@ -1,8 +1,8 @@
 """The offsets file that a person writes: [tool.1] and [secondary.1] in inches, [zero.54] in mm and degrees.
 
 It is part of an export. A tools file has the shapes of tools under the same [tool.1], which may stand in the
-offsets file too: lengths in inches, angles in degrees, outlines (holder, profile) as texts in mm. Every
-mistake is named at once.
+offsets file too: lengths in inches, angles in degrees, outlines (holder, profile) as texts in mm. Further
+cutting edges of a tool are [tool.1.d2] to [tool.1.d9]. Every mistake is named at once.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from core.store.store_rows import (
     ZeroRow,
     with_fields,
 )
+from core.tool_edges import EDGES, edge_key, edge_of, tool_of
 
 if TYPE_CHECKING:
     from core.part.tool_shape import ToolShape
@@ -44,6 +45,7 @@ _EXPECTED = {
     Sort.FLAG: "true or false",
 }
 TOOL_KEYS: Mapping[str, Field] = {**FIELDS[Kind.TOOL], **FIELDS[Kind.SHAPE]}
+_EDGE_KEYS = frozenset(f"d{edge}" for edge in EDGES[1:])
 ALIASES = {"tip": "quadrant"}  # what a tool sheet calls it
 
 
@@ -60,6 +62,11 @@ def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], 
         n: with_fields(SecondaryRow(), values) for n, values in _table(data, Kind.SECONDARY, mistakes)
     }
     masters = [f"tool.{n}" for n, row in tools.items() if row.master]
+    mistakes += [
+        f"[tool.{tool_of(n)}.d{edge_of(n)}] is an edge of T{tool_of(n)}, which has no X and Z of its own"
+        for n in tools
+        if tool_of(n) not in tools
+    ]
     if len(masters) > 1:
         mistakes.append(f"{' and '.join(masters)} are both master; one tool at most is")
     refuse(path, mistakes)
@@ -141,7 +148,20 @@ def _table(
         elif not isinstance(entry, dict):
             mistakes.append(f"{kind}.{name} must be a table, [{kind}.{name}]")
         else:
-            yield numbers[name], _values(entry, kind, name, mistakes)
+            edges = _edges(entry) if kind is Kind.TOOL else {}
+            own = {key: value for key, value in entry.items() if key not in edges}
+            if own or not edges:
+                yield numbers[name], _values(own, kind, name, mistakes)
+            for key, values in edges.items():
+                if not isinstance(values, dict):
+                    mistakes.append(f"tool.{name}.{key} must be a table, [tool.{name}.{key}]")
+                    continue
+                yield edge_key(numbers[name], int(key[1])), _values(values, kind, f"{name}.{key}", mistakes)
+
+
+def _edges(entry: dict[str, object]) -> dict[str, object]:
+    """The further cutting edges of a tool, [tool.1.d2] to [tool.1.d9], by their keys."""
+    return {key: value for key, value in entry.items() if key in _EDGE_KEYS}
 
 
 def _values(entry: dict[str, object], kind: Kind, name: str, mistakes: list[str]) -> dict[str, Value]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from functools import partial
 
-from PySide6.QtCore import QRectF
+from PySide6.QtCore import QEvent, QObject, QRectF
 from PySide6.QtGui import QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
@@ -125,12 +125,27 @@ class OffsetPage(ModelPage):
         self.effect = EffectView(self.look, self.effect_model, self)
         self.features = SheetPanel(self.look, lambda _row: None, self)
         self.features.hide()
-        own = ("C", "C") if model.clears else None
+        own = (model.own_key, model.own_key) if model.own_key else None
         self.pad = KeyPad(self.look, self.touched, own=own, parent=self)
+        self.pad.hide()
+        self.asked.installEventFilter(self)
 
-    def show_table(self, snapshot: Snapshot) -> None:
-        """The table as it is now."""
-        raise NotImplementedError
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """A finger on the table brings the keys for fingers, one on the entry takes them away and back."""
+        if event.type() == QEvent.Type.MouseButtonPress:
+            self.show_pad(watched is not self.asked or self.pad.isHidden())
+        return super().eventFilter(watched, event)
+
+    def show_pad(self, shown: bool) -> None:
+        """The keys for fingers, or the whole width for the table."""
+        if shown is self.pad.isHidden():
+            self.pad.setVisible(shown)
+            self._lay_out()
+
+    def opened(self) -> None:
+        """The page comes up; a finger on its table brings the keys for fingers."""
+        super().opened()
+        self.table.installEventFilter(self)
 
     def key_actions(self) -> KeyActions:
         """Undo, history, effect, and the other tables."""
@@ -144,6 +159,11 @@ class OffsetPage(ModelPage):
             "F9": partial(self._go, page_table.SECCMP),
             "F10": partial(self._go, page_table.ZERO),
         }
+
+    def labels(self) -> tuple[str, ...]:
+        """Two keys to one table are one key."""
+        shown = super().labels()
+        return shown if shown[8] != shown[9] else (*shown[:9], "")
 
     def _go(self, name: str) -> None:
         self.host.go(name)
@@ -193,7 +213,7 @@ class OffsetPage(ModelPage):
         return True
 
     def refresh(self, snapshot: Snapshot, _status: MachineStatus, _loaded: Loaded) -> None:
-        """The table as the store has it, and the question."""
+        """What is seen, and the question; each page shows its table beside."""
         model, effect = self.model, self.effect_model
         model.look(snapshot)
         changes = model.history.listed
@@ -208,16 +228,18 @@ class OffsetPage(ModelPage):
             self.effect.show_effect()
         if changes is not None:
             self.history.show_entries(tuple(model.history.in_words(change) for change in changes))
-        self.show_table(snapshot)
         words = (model.heading, model.question, model.entered, model.old_to_new, model.foot)
         self.asked.asked = EntryWords(*words)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Table over the line that is typed, the pad at their right."""
+        self._lay_out()
+
+    def _lay_out(self) -> None:
         u = self.look.u
         pad, high, gap = round(PAD * u), round(ASKED * u), max(4, round(0.7 * u))
-        wide, table = self.width() - pad - gap, self.height() - high - gap
+        wide, table = self.width() - (0 if self.pad.isHidden() else pad + gap), self.height() - high - gap
         for part in (self.table, self.history, self.effect, self.features):
             part.setGeometry(0, 0, wide, table)
         self.asked.setGeometry(0, table + gap, wide, high)
-        self.pad.setGeometry(wide + gap, 0, pad, self.height())
+        self.pad.setGeometry(self.width() - pad, 0, pad, self.height())

@@ -42,6 +42,7 @@ class SecondaryOffsets(OffsetTable):
     """The dialogue: which number, which step, what is typed, and what was answered so far."""
 
     kind = Kind.SECONDARY
+    own_key = "C"
     clears = "PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, ESC TO KEEP THEM"
     why_cleared = "C: all offsets cleared"
 

@@ -9,6 +9,8 @@ from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QWidget
 
 from app.desk.formats import length
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
 from app.desk.translation import tr
 from app.offsets.offset_values import Mode, signed
 from app.offsets.offsets_view import OffsetPage
@@ -153,8 +155,9 @@ class SecondaryOffsetsPage(OffsetPage):
         self.table.bring_near(0)
         return super().leave()
 
-    def show_table(self, _snapshot: Snapshot) -> None:
+    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: Loaded) -> None:
         """The table as it is now."""
+        super().refresh(snapshot, status, loaded)
         model = self.model
         marked = {change.number for change in model.history.last}
         self.table.show_offsets(model.book.secondary, model.number, marked, model.mode)

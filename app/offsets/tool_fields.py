@@ -14,6 +14,7 @@ from app.offsets.offset_table import OffsetTable
 from app.offsets.offset_values import TOOL_FIELDS, heading, shown_value, value_added, value_typed, word
 from core.store.offset_fields import Sort
 from core.store.store_rows import Kind, ToolRow, Value
+from core.tool_edges import edge_name, edge_number
 
 
 @dataclass(slots=True)
@@ -49,7 +50,7 @@ class ToolFields:
     def never_set(self, number: int) -> str:
         """Why a tool that nobody has set has no fields."""
         text = tr("T{number} WAS NEVER SET: TYPE X AND Z FIRST, OR TOUCH IT OFF ON THE JOG PAGE")
-        return text.format(number=number)
+        return text.format(number=edge_number(number))
 
     def save(self, number: int, name: str, text: str, *, adding: bool = False) -> str:
         """Set a field to what is typed, or add that to it. Raises EntryError for a text that is no value."""
@@ -58,7 +59,7 @@ class ToolFields:
             return self._first(number, name, value_typed(name, text, mode))
         value = value_added(name, row, text, mode) if adding else value_typed(name, text, mode)
         if value == getattr(row, name):
-            self.history.desk.say(tr("T{number} IS AS IT WAS").format(number=number))
+            self.history.desk.say(tr("T{number} IS AS IT WAS").format(number=edge_number(number)))
             return ""
         typed = f"{'MM ' if mode.metric else ''}{word(name)} {'+ ' if adding else ''}{text.strip()}"
         return self.history.book.change(Kind.TOOL, number, {name: value}, typed)
@@ -70,7 +71,7 @@ class ToolFields:
         values = self.new.add(number, name, value)
         if len(values) < 2:
             text = tr("NOW {axis}: T{number} IS SET WHEN BOTH ARE THERE")
-            self.history.desk.say(text.format(axis=word(self.new.missing), number=number))
+            self.history.desk.say(text.format(axis=word(self.new.missing), number=edge_number(number)))
             return ""
         why = self.history.book.change(Kind.TOOL, number, values, tr("entered by hand"))
         if not why:
@@ -126,7 +127,7 @@ class ToolEntry(OffsetTable):
     @property
     def question(self) -> str:
         """The tool and the field under the cursor."""
-        return f"T{self.number}  {heading(self.name, self.mode)}?"
+        return f"{edge_name(self.number)}  {heading(self.name, self.mode)}?"
 
     @property
     def old_to_new(self) -> str:
@@ -196,7 +197,7 @@ class ToolEntry(OffsetTable):
         if not self.entering:
             return False
         self.drop()
-        self.desk.say(tr("T{number} IS AS IT WAS").format(number=self.number))
+        self.desk.say(tr("T{number} IS AS IT WAS").format(number=edge_number(self.number)))
         return True
 
     def drop(self) -> None:

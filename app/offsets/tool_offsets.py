@@ -15,9 +15,11 @@ from app.offsets.offset_values import (
 from app.offsets.tool_fields import ToolEntry, ToolFields
 from core.executor.snapshot import Snapshot
 from core.store.store_rows import OFFSETS, Kind, with_fields
+from core.tool_edges import EDGES, edge_key, edge_number, tool_of
 
 COLUMNS = ("x", "z", "nose_radius", "quadrant", "wear_x", "wear_z", "master", "remark")
-PAGE = 5  # rows that are shown, each of a finger's height, and that Page up and Page down go
+PAGE = 5  # rows that are shown on the smallest glass, each of a finger's height
+EDGE_KEY = "D"  # one more cutting edge of the tool, where the language has some
 _MOVES = {"Up": (-1, 0), "Down": (1, 0), "Left": (0, -1), "Right": (0, 1), "Tab": (0, 1)}
 
 
@@ -29,11 +31,28 @@ class ToolOffsets(ToolEntry):
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
+        self.own_key = EDGE_KEY if desk.language == "sinumerik" else ""
         self.fields = ToolFields(self.history)
         self.column = 0
+        self.page = PAGE  # rows that fit now, which Page up and Page down go
         self.relative = False  # X and Z are shown from the master
+        self.opened_edge = 0  # a further cutting edge that is still to be typed
 
     # --- what is shown -------------------------------------------------------------------------------
+
+    @property
+    def rows(self) -> tuple[int, ...]:
+        """The rows of the table: every tool, and behind it its further cutting edges."""
+        edges = sorted({key for key in (*self.book.tools, self.opened_edge) if key not in OFFSETS and key})
+        return tuple(
+            key for tool in OFFSETS for key in (tool, *(each for each in edges if tool_of(each) == tool))
+        )
+
+    @property
+    def row(self) -> int:
+        """Which of them the cursor stands in, from 0."""
+        rows = self.rows
+        return rows.index(self.number if self.number in rows else tool_of(self.number))
 
     @property
     def name(self) -> str:
@@ -61,6 +80,10 @@ class ToolOffsets(ToolEntry):
     @property
     def foot(self) -> str:
         """What F2, F3 and Esc do here."""
+        if self.own_key:
+            return tr(
+                "F2 adds what is typed; F3: X and Z from the master; F8: shape; D: another edge; Esc leaves"
+            )
         return tr(
             "F2 adds what is typed; F3 shows X and Z from the master; F8: shape of the tool; Esc leaves"
         )
@@ -115,10 +138,11 @@ class ToolOffsets(ToolEntry):
     def enter_key(self, key: str) -> bool:
         """Arrows go from cell to cell, Return sets what is typed."""
         if key in {"Page up", "Page down"}:
-            self._go(self.number + (PAGE if key == "Page down" else -PAGE), self.column)
+            self._step(self.page if key == "Page down" else -self.page, 0)
         elif key in _MOVES:
-            down, right = _MOVES[key]
-            self._go(self.number + down, self.column + right)
+            self._step(*_MOVES[key])
+        elif self.own_key and key.upper() == self.own_key and not self.writing:
+            self.open_edge()
         else:
             return super().enter_key(key)
         return True
@@ -144,15 +168,39 @@ class ToolOffsets(ToolEntry):
             return
         self.relative = not self.relative
 
+    def _step(self, down: int, right: int) -> None:
+        rows = self.rows
+        self._go(rows[max(0, min(len(rows) - 1, self.row + down))], self.column + right)
+
+    def open_edge(self) -> None:
+        """D: a row for the next cutting edge of this tool, which its X and Z set."""
+        tool = tool_of(self.number)
+        free = (edge_key(tool, edge) for edge in EDGES if edge_key(tool, edge) not in self.book.tools)
+        key = next(free, 0)
+        if self.left_open():
+            return
+        if tool not in self.book.tools:
+            self.desk.say(self.fields.never_set(tool))
+        elif not key:
+            self.desk.say(tr("T{number} HAS ALL ITS CUTTING EDGES, D1 TO D9").format(number=tool))
+        else:
+            self.opened_edge = key
+            self._go(key, COLUMNS.index("x"))
+            self.desk.say(tr("T{number}: TYPE ITS X AND Z").format(number=edge_number(key)))
+
     def _go(self, number: int, column: int) -> None:
         """The cursor there; what was typed and not entered stays behind, and that is said."""
         if self.left_open():
             return
-        self.book.at = max(OFFSETS[0], min(OFFSETS[-1], number))
+        if self.opened_edge not in {0, number} and self.fields.new.number != self.opened_edge:
+            self.opened_edge = 0
+        self.book.at = number
         self.column = max(0, min(len(COLUMNS) - 1, column))
         new = self.fields.new
         if new.number and self.number != new.number:
-            self.desk.say(tr("T{number} IS NOT SET: X AND Z BELONG TOGETHER").format(number=new.number))
+            self.desk.say(
+                tr("T{number} IS NOT SET: X AND Z BELONG TOGETHER").format(number=edge_number(new.number))
+            )
             self.drop()
 
     def enter(self) -> None:

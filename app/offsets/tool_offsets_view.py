@@ -9,17 +9,19 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPolygonF, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
 from app.desk.translation import tr
 from app.offsets.offset_values import heading, not_set
 from app.offsets.offsets_view import OffsetPage
-from app.offsets.tool_offsets import COLUMNS, PAGE, ToolOffsets
+from app.offsets.tool_offsets import COLUMNS, ToolOffsets
 from app.screen import page_table
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter
 from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Panel, Shown
 from app.screen.tool_tip_drawing import draw_tip
 from core.executor.snapshot import Snapshot
-from core.store.store_rows import OFFSETS
+from core.tool_edges import edge_of, tool_of
 
 NUMBER, SCROLL = 5.4, 7.4  # units: width of the column of numbers, of the arrows that leaf
 HEAD = 3.2  # units: height of the names of the columns
@@ -44,20 +46,27 @@ class ToolTable(Panel):
     def __init__(self, look: Look, model: ToolOffsets, parent: QWidget) -> None:
         super().__init__(look, parent)
         self._model = model
-        self.top = 1  # the first number that is shown
+        self.top = 0  # the first row that is shown
         self.choose: Callable[[int, int], None] = model.choose
 
     def show_tools(self) -> None:
         """The model as it is now; the cursor is always in sight."""
         model = self._model
-        last = OFFSETS[-1] - PAGE + 1
-        self.top = max(model.number - PAGE + 1, min(self.top, model.number, last), 1)
+        row, page = model.row, self._fit()
+        model.page = page
+        self.top = max(row - page + 1, min(self.top, row, len(model.rows) - page), 0)
         self._shown = (
             model.book.tools,
-            (model.number, model.column, self.top, model.relative, model.mode),
+            (model.number, model.column, self.top, model.relative, model.mode, model.opened_edge),
             dict(model.fields.new.values),
             tuple(change.number for change in model.history.last),
         )
+
+    def _fit(self) -> int:
+        """How many rows of a fingertip fit."""
+        u = self.look.u
+        room = self.inside().height() + 0.7 * u - HEAD * u
+        return max(1, min(len(self._model.rows), int(room / self.look.row(7.0, 9.0, touch=True))))
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """A row a notch."""
@@ -77,10 +86,10 @@ class ToolTable(Panel):
         self._leaf(painter, strip)
         columns = self._columns(head)
         self._head(painter, head, columns)
-        high = strip.height() / PAGE
-        for place in range(PAGE):
+        high = strip.height() / model.page
+        for place, number in enumerate(model.rows[self.top : self.top + model.page]):
             row = QRectF(head.x(), head.bottom() + place * high, head.width(), high)
-            self._row(painter, row, self.top + place, columns)
+            self._row(painter, row, number, columns)
 
     def _head(self, painter: Painter, head: QRectF, columns: dict[str, tuple[float, float]]) -> None:
         u, mode = self.look.u, self._model.mode
@@ -126,7 +135,8 @@ class ToolTable(Panel):
         if number in {change.number for change in model.history.last}:
             painter.fill(QRectF(row.x(), row.y(), 0.5 * u, row.height()), "lit")
         margin = QRectF(row.x(), row.y(), (NUMBER - 0.8) * u, row.height())
-        painter.write(margin, f"T{number}", 2.2, "accent", at=RIGHT)
+        name = f"T{number}" if number == tool_of(number) else f"D{edge_of(number)}"
+        painter.write(margin, name, 2.2 * self._scale(row), "accent", at=RIGHT)
         unset = number not in model.book.tools
         for at, (name, (left, wide)) in enumerate(columns.items()):
             cell = QRectF(left, row.y(), wide, row.height())
@@ -136,18 +146,31 @@ class ToolTable(Panel):
             self.place(cell, partial(self.choose, number, at))
         if unset and number != model.fields.new.number:
             empty = QRectF(columns["x"][0] + u, row.y(), 14 * u, row.height())
-            painter.write(empty, not_set(), 1.9, "soft", bold=False)
+            painter.write(empty, not_set(), 1.9 * self._scale(row), "soft", bold=False)
+
+    def _scale(self, row: QRectF) -> float:
+        """Of the letters, by the height of the row."""
+        return min(1.0, row.height() / (4.2 * self.look.u))
 
     def _cell(self, painter: Painter, cell: QRectF, number: int, name: str) -> None:
         u = self.look.u
         text = self._model.cell(number, name)
         room = cell.adjusted(0.8 * u, 0, -0.9 * u, 0)
         if name == "quadrant" and text:
-            draw_tip(painter, room.adjusted(room.width() - 2.6 * u, 0.2 * u, 0, -0.2 * u), int(text))
-            room.setRight(room.right() - 3.0 * u)
+            wide = 2.6 * u * self._scale(cell)
+            draw_tip(painter, room.adjusted(room.width() - wide, 0.2 * u, 0, -0.2 * u), int(text))
+            room.setRight(room.right() - wide - 0.4 * u)
         worn = name.startswith("wear") and text.strip("+0.") == ""
         ink, at = "soft" if worn else "text", LEFT if name == "remark" else RIGHT
-        painter.write(room, text, 2.0, ink, at=at, bold=not worn and name != "remark")
+        painter.write(
+            room,
+            text,
+            2.0 * self._scale(cell),
+            ink,
+            at=at,
+            bold=not worn and name != "remark",
+            raw=name == "remark",
+        )
 
 
 class ToolOffsetsPage(OffsetPage):
@@ -171,6 +194,7 @@ class ToolOffsetsPage(OffsetPage):
         }
         return {**super().key_actions(), **own}
 
-    def show_table(self, _snapshot: Snapshot) -> None:
+    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: Loaded) -> None:
         """The table as it is now."""
+        super().refresh(snapshot, status, loaded)
         self.table.show_tools()

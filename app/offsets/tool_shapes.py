@@ -14,6 +14,7 @@ from core.part.tool_outline import ToolOutline, outline
 from core.part.tool_shape import ToolKind
 from core.store.offset_fields import Sort
 from core.store.store_rows import OFFSETS, Kind, ShapeRow, ToolRow, Value, with_fields
+from core.tool_edges import edge_name, edge_number, tool_of
 
 _OF_THE_OFFSET = {"tip": "quadrant", "nose_radius": "nose_radius"}  # kept with the tool's offset
 _MOVES = {"Up": -1, "Down": 1, "Tab": 1}
@@ -95,7 +96,7 @@ class ToolShapes(ToolEntry):
     def hint(self, _snapshot: Snapshot) -> str:
         """What cannot be in the shape; else how the field under the cursor is entered."""
         if self.mistakes and not (self.text or self.writing):
-            return f"T{self.number}: {tr(self.mistakes[0].text)}"
+            return f"{edge_name(self.number)}: {tr(self.mistakes[0].text)}"
         if self.writing:
             return tr("TYPE IT; RETURN KEEPS IT, ESC LEAVES IT AS IT WAS; F-KEYS STILL WORK")
         if self.chosen_from:
@@ -124,7 +125,7 @@ class ToolShapes(ToolEntry):
         elif key in _TURNS:
             self.turn(_TURNS[key])
         elif key in {"Page up", "Page down"}:
-            self.go_to_tool(self.number + (1 if key == "Page down" else -1))
+            self.go_to_tool(tool_of(self.number) + (1 if key == "Page down" else -1))
         elif len(key) == 1 and self.takes(key) and self.chosen_from:
             self.desk.say(tr("LEFT AND RIGHT TURN THROUGH WHAT THERE IS"))
         else:
@@ -188,7 +189,7 @@ class ToolShapes(ToolEntry):
         if of_offset and self.tool is None:
             return ToolFields(self.history).never_set(self.number)
         if (self.row is not None or of_offset) and value == self.value(name):
-            self.desk.say(tr("T{number} IS AS IT WAS").format(number=self.number))
+            self.desk.say(tr("T{number} IS AS IT WAS").format(number=edge_number(self.number)))
             return ""
         self._check(name, value)
         typed = f"{'MM ' if self.mode.metric else ''}{word(name)} {self.text.strip()}"
@@ -210,12 +211,14 @@ class ToolShapes(ToolEntry):
     def remove(self) -> None:
         """F3: the tool has no shape any more, after asking."""
         if self.row is None:
-            self.desk.say(tr("T{number} HAS NO SHAPE").format(number=self.number))
+            self.desk.say(tr("T{number} HAS NO SHAPE").format(number=edge_number(self.number)))
         elif why := self.cell_barred():
             self.desk.say(why)
         else:
             number = self.number
-            question = tr("PRESS Y TO FORGET THE SHAPE OF T{number}, ESC TO KEEP IT").format(number=number)
+            question = tr("PRESS Y TO FORGET THE SHAPE OF T{number}, ESC TO KEEP IT").format(
+                number=edge_number(number)
+            )
             self.desk.ask(question, lambda: self._remove(number))
 
     def _remove(self, number: int) -> None:

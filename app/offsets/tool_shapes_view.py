@@ -7,7 +7,9 @@ from functools import partial
 from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QWidget
 
-from app.desk.translation import tr
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
+from app.desk.translation import data, tr
 from app.offsets.offset_values import heading, word
 from app.offsets.offsets_view import OffsetPage
 from app.offsets.tool_shapes import ToolShapes
@@ -18,6 +20,7 @@ from app.screen.panel import Panel, Shown
 from app.screen.tool_outline_drawing import draw_outline
 from app.screen.tool_tip_drawing import draw_tip
 from core.executor.snapshot import Snapshot
+from core.tool_edges import edge_number
 
 ROWS = 6  # fields in one of the two columns
 FIELDS = 0.6  # of the width, for both columns
@@ -41,9 +44,9 @@ class ShapeTable(Panel):
     def draw(self, painter: Painter) -> None:
         u, model = self.look.u, self._model
         unit = tr("MM") if model.mode.metric else tr("INCH")
-        title = f"{tr('SHAPE OF T{number}').format(number=model.number)}  ·  {unit}"
+        title = f"{tr('SHAPE OF T{number}').format(number=edge_number(model.number))}  ·  {unit}"
         if model.tool is not None and model.tool.remark:
-            title += f"  ·  {model.tool.remark}"
+            title += f"  ·  {data(model.tool.remark)}"
         self.frame(painter, title)
         room = self.inside().adjusted(-0.7 * u, 0, 0.7 * u, 0.5 * u)
         fields = QRectF(room.x(), room.y(), FIELDS * room.width(), room.height())
@@ -122,8 +125,9 @@ class ToolShapePage(OffsetPage):
         super().opened()
         self.model.place = 0
 
-    def show_table(self, _snapshot: Snapshot) -> None:
-        """The tool as it is now."""
+    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: Loaded) -> None:
+        """The table as it is now."""
+        super().refresh(snapshot, status, loaded)
         self.table.show_shape()
 
     def escape(self) -> bool:

@@ -13,7 +13,10 @@ from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_lines import Interruption, NoRestart, RestartPoint
 
 if TYPE_CHECKING:
+    from core.interpreter.restart.program_search import ProgramSearch
     from core.interpreter.restart.state_rebuild import StateRebuild
+
+    Search = StateRebuild | ProgramSearch
 
 Answer = RestartPoint | NoRestart | CutRecord | tuple[Job, Proved]
 
@@ -25,12 +28,12 @@ class LineFinder:
     ``found`` and ``failed`` are called with what has come, when the worker is polled.
     """
 
-    rebuild: Callable[[Job, Watch], StateRebuild]
+    rebuild: Callable[[Job, Watch], Search]
     prove: Callable[[Job, Watch], Proved]
     found: Callable[[Answer], None]
     failed: Callable[[str], None]
     worker: Latest = field(default_factory=lambda: Latest("loading-search"))
-    _rebuild: tuple[Job, StateRebuild] | None = None  # the worker's alone
+    _rebuild: tuple[Job, Search] | None = None  # the worker's alone
 
     def find(self, job: Job, line: int, visit: int = 0, broken: Interruption | None = None) -> None:
         """Have a line of this job's program found; 0: in the pass that was interrupted, or in the first."""
@@ -44,10 +47,10 @@ class LineFinder:
         """Have the job of a restart proved."""
         self.worker.ask(lambda watch: (job, self.prove(job, watch)), self.found, self.failed)
 
-    def _ask(self, job: Job, ask: Callable[[StateRebuild], Answer]) -> None:
+    def _ask(self, job: Job, ask: Callable[[Search], Answer]) -> None:
         self.worker.ask(lambda watch: self._with(job, watch, ask), self.found, self.failed)
 
-    def _with(self, job: Job, watch: Watch, ask: Callable[[StateRebuild], Answer]) -> Answer:
+    def _with(self, job: Job, watch: Watch, ask: Callable[[Search], Answer]) -> Answer:
         """Work that is given up leaves nothing behind: a pass stopped within a line is worth nothing."""
         kept, self._rebuild = self._rebuild, None
         if kept is not None and kept[0] is job:

@@ -19,10 +19,10 @@ from core.executor.snapshot import CYCLE, Snapshot, Starts, State
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_approach import Choices
 from core.interpreter.restart.restart_lines import NoRestart, RestartPoint
-from core.language.source import Dialect, Source
+from core.language.source import Source
 
 if TYPE_CHECKING:
-    from core.interpreter.restart.state_rebuild import StateRebuild
+    from app.searchto.searchto_finder import Search
 
 WAY_OUT = "(WAY OUT OF THE PART)"
 
@@ -47,7 +47,7 @@ class SearchtoModel:
     snapshot: Callable[[], Snapshot]
     say: Callable[[str], None]
     clear: Callable[[], None]
-    rebuild: Callable[[Job, Watch], StateRebuild]  # what goes through a program; called on the worker
+    rebuild: Callable[[Job, Watch], Search]  # what goes through a program; called on the worker
     choices: Choices = field(default_factory=Choices)
     cursor: LineCursor = field(default_factory=LineCursor)
     stage: SearchtoStage = SearchtoStage.CHOOSE
@@ -111,8 +111,6 @@ class SearchtoModel:
             return tr("A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE SEARCHTO")
         if loaded.source is None or loaded.job is None:
             return tr("CHOOSE A PROGRAM FIRST (F2)")
-        if loaded.source.dialect is not Dialect.OMNITURN:
-            return tr("SEARCHTO READS OMNITURN PROGRAMS ONLY; THIS ONE STARTS FROM ITS FIRST LINE")
         if loaded.phase is not Phase.READY:
             return tr("THE PROGRAM IS NOT PROVED WITHOUT ERRORS: SEARCHTO NEEDS THAT")
         return ""
@@ -208,7 +206,11 @@ class SearchtoModel:
         job = self.session.now.job
         self._forget()
         self.clear()
-        if job is not None:
+        if job is not None and job.setup.kinematics is not None:
+            self.say(
+                tr("ON A MILL THE TOOL IS DRAWN OUT ALONG ITS AXIS BEFORE EVERY RESTART, OR BY HAND IN JOG")
+            )
+        elif job is not None:
             self.stage, self._of = SearchtoStage.SEARCHING, job
             self.finder.cut(job)
 

@@ -5,7 +5,8 @@ Where the tool stands in the part: the way out of it, or in words how the operat
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from app.desk import formats
 from app.desk.modal_rows import NONE, ModalRow, rows_of
@@ -14,9 +15,11 @@ from app.path.path_aspects import DrawnLeg as Drawn
 from core.executor.interrupted_job import CONTROL_LOST
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot
+from core.geometry.rotary_axes import Kinematics
 from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleRun
-from core.interpreter.checkpoint import ApproachStep, Begin, Checkpoint, Leg
+from core.interpreter.checkpoint import ApproachStep, AxesLeg, Begin, Checkpoint, FunctionStep, Leg
 from core.interpreter.restart.cut_record import CutRecord
+from core.interpreter.restart.mill_approach import begin_on_mill, goal_of, why_no_way
 from core.interpreter.restart.restart_approach import (
     Choices,
     MachineNow,
@@ -107,6 +110,9 @@ def _towards(x: int, z: int) -> str:
     return tr("HOW T{tool} CAME TO STAND HERE IS NOT KNOWN: JOG IT CLEAR OF THE PART BY THE WAY IT CAME")
 
 
+TURNED = 0.01  # degrees
+
+
 @dataclass(frozen=True, slots=True)
 class StateRow:
     """One row: what is wanted at the line, what is active now, and whether they differ."""
@@ -132,10 +138,14 @@ class Plan:
     legs: tuple[Drawn, ...]
     trouble: str = ""  # why it cannot be started as the machine stands
     warning: str = ""  # what is left out
+    way: tuple[str, ...] = ()  # on a mill, in words: which axes move, one leg after the other
+    axes: Mapping[str, float] = field(default_factory=dict)  # on a mill: where the line begins, from home
 
 
 def plan_of(found: RestartPoint, snapshot: Snapshot, job: Job, choices: Choices) -> Plan:
     """The plan from where the machine stands now."""
+    if job.setup.kinematics is not None:
+        return _on_mill(found, snapshot, job, choices, job.setup.kinematics)
     now = now_of(snapshot, job)
     begin = begin_at(found, now, choices)
     modal = begin.checkpoint.modal
@@ -143,12 +153,57 @@ def plan_of(found: RestartPoint, snapshot: Snapshot, job: Job, choices: Choices)
     return Plan(
         found=found,
         begin=begin,
-        rows=(*_passes(found), *_rows(begin.checkpoint, snapshot)),
-        starts=tuple(_words(step, found.checkpoint) for step in starting(found, now, choices)),
-        legs=() if out else drawn(begin.approach, snapshot, (modal.tool_x, modal.tool_z)),
+        rows=(*_passes(found), *_rows(begin.checkpoint, snapshot, job.source.dialect)),
+        starts=tuple(
+            _words(step, found.checkpoint, job.source.dialect) for step in starting(found, now, choices)
+        ),
+        legs=() if out else drawn(begin.approach, snapshot, (modal.base_x, modal.base_z)),
         warning=_left_out(found),
         trouble=_collet(found.checkpoint, snapshot) or out,
     )
+
+
+def _on_mill(
+    found: RestartPoint, snapshot: Snapshot, job: Job, choices: Choices, machine: Kinematics
+) -> Plan:
+    now = now_of(snapshot, job)
+    begin = begin_on_mill(found, now, choices, machine)
+    goal = goal_of(found, now, machine)
+    places = tuple(
+        StateRow(tr("{axis} MACHINE").format(axis=name), _place(name, goal[name]), _place(name, at))
+        for name, at in zip(machine.names, now.at, strict=True)
+    )
+    no_way = tr(
+        "ON THIS MACHINE THE SLIDES HAVE NO LIMITS, SO NO SAFE WAY IS KNOWN: START FROM THE FIRST LINE"
+    )
+    return Plan(
+        found=found,
+        begin=begin,
+        rows=(*places, *_state_rows(begin.checkpoint, snapshot, job.source.dialect)),
+        starts=tuple(
+            _words(step, found.checkpoint, job.source.dialect) for step in starting(found, now, choices)
+        ),
+        legs=(),
+        way=tuple(step.text for step in begin.approach if isinstance(step, AxesLeg | FunctionStep)),
+        axes=goal,
+        warning=_left_out(found) or _turned(found, now, machine),
+        trouble=no_way if why_no_way(machine) else "",
+    )
+
+
+def _turned(found: RestartPoint, now: MachineNow, machine: Kinematics) -> str:
+    """Rotary axes that the program has not positioned, and that stand turned: nobody knows how they stood."""
+    names = {axis.name for axis in machine.rotaries}
+    for name, wanted, at in zip(machine.names, found.axes, now.at, strict=True):
+        if name in names and wanted is None and abs(at) > TURNED:
+            return tr("LOOK: {axis} STANDS AT {at} AND NO LINE BEFORE HAS TURNED IT; IT STAYS THERE").format(
+                axis=name, at=formats.angle(at)
+            )
+    return ""
+
+
+def _place(axis: str, at: float) -> str:
+    return formats.angle(at) if axis in "ABC" else formats.length(at, True)
 
 
 def _passes(found: RestartPoint) -> tuple[StateRow, ...]:
@@ -183,15 +238,21 @@ def _left_out(found: RestartPoint) -> str:
     )
 
 
-def _rows(point: Checkpoint, snapshot: Snapshot) -> tuple[StateRow, ...]:
-    wanted = (*_places(point, *point.machine), *rows_of(point))
-    now = (*_places(point, *snapshot.demand[:2]), *rows_of(_now(snapshot)))
+def _rows(point: Checkpoint, snapshot: Snapshot, language: str) -> tuple[StateRow, ...]:
+    wanted, now = _places(point, *point.machine), _places(point, *snapshot.demand[:2])
     both = zip(wanted, now, strict=True)
+    places = (StateRow(w.label, w.value, n.value) for w, n in both)
+    return (*places, *_state_rows(point, snapshot, language))
+
+
+def _state_rows(point: Checkpoint, snapshot: Snapshot, language: str) -> tuple[StateRow, ...]:
+    """What is in force at the line beside what is in force now, in the words of the program's language."""
+    both = zip(rows_of(point, language), rows_of(_now(snapshot), language), strict=True)
     return tuple(StateRow(w.label, w.value, n.value) for w, n in both if w.key != "comment" or w.value)
 
 
 def _now(snapshot: Snapshot) -> Checkpoint:
-    return Checkpoint(snapshot.modal, c=snapshot.demand[2] - snapshot.modal.offset_c)
+    return Checkpoint(snapshot.modal, c=snapshot.demand[2] - snapshot.modal.offset_c, kept=snapshot.kept)
 
 
 def _places(point: Checkpoint, x: float, z: float) -> tuple[ModalRow, ...]:
@@ -204,13 +265,13 @@ def _places(point: Checkpoint, x: float, z: float) -> tuple[ModalRow, ...]:
     )
 
 
-def _words(step: ApproachStep, point: Checkpoint) -> str:
+def _words(step: ApproachStep, point: Checkpoint, language: str) -> str:
     action = getattr(step, "action", None)
     modal = point.modal
     match action:
         case SpindleRun():
             way = tr("SPINDLE FORWARD") if modal.spindle > 0 else tr("SPINDLE REVERSE")
-            speed = next(row.value for row in rows_of(point) if row.key == "speed")
+            speed = next(row.value for row in rows_of(point, language) if row.key == "speed")
             return f"{way} {speed}"
         case SpindleLock():
             return tr("SPINDLE LOCKED AS C, TURNED TO ITS ANGLE")

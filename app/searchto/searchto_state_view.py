@@ -12,10 +12,13 @@ from PySide6.QtWidgets import QWidget
 from app.desk.translation import tr
 from app.screen.look import CENTRE, LEFT, Look, Painter
 from app.screen.panel import Panel, Shown
+from app.screen.window_layout import FINGER
 from app.searchto.searchto_plan import StateRow
 
 DIFFERS = "≠"
 PASS_BEFORE, PASS_AFTER = "Pass before", "Pass after"
+FOLD = "Fold"
+_FOLD, _LARGE, _PLAIN, _LETTERS = 4.4, 4.0, 2.7, 2.6  # units
 _PASSES = 4.4  # units: what a finger hits
 _LABEL, _SIGN = 0.25, 0.61  # shares of a row: where the label ends, where the sign stands
 
@@ -39,6 +42,7 @@ class StateShown:
     why: str = ""
     near: tuple[NearestGood, ...] = ()
     passes: str = ""  # which pass of how many, of a line that is run more than once
+    whole: bool = False  # equal rows are shown too
 
 
 class StatePanel(Panel):
@@ -73,13 +77,38 @@ class StatePanel(Panel):
         painter.write(words, self.shown.passes, 2.0, "text", at=CENTRE)
 
     def _table(self, painter: Painter, room: QRectF) -> None:
-        u = self.look.u
-        high = min(2.7 * u, room.height() / (len(self.shown.rows) + 1))
-        size = min(1.9, high / u * 0.78)
-        head = StateRow("", tr("AT THE LINE"), tr("NOW"))
-        for number, row in enumerate((head, *self.shown.rows)):
+        """What differs, large; below it what is equal: folded into one row, or each in a row of its own."""
+        u, shown = self.look.u, self.shown
+        other = tuple(row for row in shown.rows if row.differs)
+        equal = tuple(row for row in shown.rows if not row.differs)
+        fold = _FOLD * u if equal else 0.0
+        rows = (StateRow("", tr("AT THE LINE"), tr("NOW")), *other)
+        least = room.height() / (len(shown.rows) + 2) if shown.whole else 0.0
+        high = min(_LARGE * u, (room.height() - fold) / len(rows)) if not least else min(_PLAIN * u, least)
+        for number, row in enumerate(rows):
             box = QRectF(room.x(), room.y() + number * high, room.width(), high)
-            self._row(painter, box, row, size, head=number == 0)
+            self._row(painter, box, row, min(_LETTERS, high / u * 0.78), head=number == 0)
+        if not equal:
+            return
+        foot = QRectF(room.x(), room.y() + len(rows) * high, room.width(), high if shown.whole else fold)
+        if not other:
+            painter.write(foot, tr("NOTHING DIFFERS FROM NOW"), 2.2, "text")
+            foot.translate(0, foot.height())
+        self._fold(painter, foot, equal)
+        for number, row in enumerate(equal if shown.whole else (), start=1):
+            self._row(painter, foot.translated(0, number * high), row, min(1.9, high / u * 0.78), head=False)
+
+    def _fold(self, painter: Painter, box: QRectF, equal: tuple[StateRow, ...]) -> None:
+        """The row of what is equal, by name; a finger opens and closes it."""
+        u = self.look.u
+        painter.fill(box.adjusted(0, 0.2 * u, 0, -0.2 * u), "key")
+        words = tr("{count} EQUAL").format(count=len(equal))
+        sign = "▲" if self.shown.whole else "▼"
+        painter.write(box.adjusted(u, 0, 0, 0), f"{sign}  Tab  {words}", 1.7, "accent", raw=True)
+        names = ", ".join(tr(row.label) for row in equal)
+        painter.write(box.adjusted(19 * u, 0, -u, 0), names, 1.6, "soft", bold=False, raw=True, fit=False)
+        short = max(0.0, FINGER - box.height())
+        self.place(box.adjusted(0, -short, 0, 0), partial(self._press, FOLD))
 
     def _row(self, painter: Painter, box: QRectF, row: StateRow, size: float, *, head: bool) -> None:
         u = self.look.u

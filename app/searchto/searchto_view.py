@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from textwrap import wrap
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QResizeEvent
@@ -24,8 +26,21 @@ from app.screen.panel import Panel, Shown
 from app.screen.program_listing import Listing
 from app.searchto.searchto_model import SearchtoModel, SearchtoStage
 from app.searchto.searchto_plan import Plan, WayOut
-from app.searchto.searchto_state_view import PASS_AFTER, PASS_BEFORE, NearestGood, StatePanel, StateShown
+from app.searchto.searchto_state_view import (
+    FOLD,
+    PASS_AFTER,
+    PASS_BEFORE,
+    NearestGood,
+    StatePanel,
+    StateShown,
+)
+from app.working_plane.plane_instant import at_line, plane_words
+from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
+
+if TYPE_CHECKING:
+    from app.path.path_picture import Picture
+    from app.working_plane.plane_scene import Scene
 
 # --- line or text -------------------------------------------------------------------------------------
 
@@ -73,7 +88,7 @@ class StartsPanel(Panel):
         self.frame(painter, title, "lit" if self.confirmed else "frame", 0.3 if self.confirmed else 0.16)
         u, room = self.look.u, self.inside()
         lines = [(text, "text", True) for text in self.starts]
-        lines += [(text, "soft", False) for text in self.choices]
+        lines += [(text, "soft", False) for choice in self.choices for text in wrap(choice, ACROSS)]
         lines += [(text, "alarm", True) for text in wrap(self.trouble, ACROSS)]
         high = min(ROW * u, room.height() / max(1, len(lines)))
         for number, (text, colour, bold) in enumerate(lines):
@@ -111,7 +126,9 @@ class SearchtoPage(ModelPage):
         self.state = StatePanel(self.look, host.press, self)
         self.path = PathView(self.look, self, player=player_of(host.desk))
         self.starts = StartsPanel(self.look, self)
+        self.space = WorkingPlaneView(self.look, self)  # takes the path's place where the machine is a mill
         self._loaded: Loaded | None = None
+        self._whole = False  # rows that are equal are shown too
         self._stood: tuple[object, int] = (None, 0)  # picture and blocks that the part was shown after
 
     def key_actions(self) -> KeyActions:
@@ -126,10 +143,11 @@ class SearchtoPage(ModelPage):
             "F8": partial(model.nearest, -1),
             "F9": partial(model.nearest, 1),
             "F10": model.confirm,
+            FOLD: self._turn_fold,
             PASS_BEFORE: partial(model.turn_pass, -1),
             PASS_AFTER: partial(model.turn_pass, 1),
-            "Zoom in": partial(self.path.zoom, 1),
-            "Zoom out": partial(self.path.zoom, -1),
+            "Zoom in": partial(self._looked_at.zoom, 1),
+            "Zoom out": partial(self._looked_at.zoom, -1),
         }
 
     def typed(self, key: str) -> bool:
@@ -140,6 +158,9 @@ class SearchtoPage(ModelPage):
         if key in steps:
             self.model.move(steps[key])
             return True
+        if key == "Tab":
+            self._turn_fold()
+            return True
         if key in {"Left", "Right"}:
             self.model.turn_pass(-1 if key == "Left" else 1)
             return True
@@ -147,6 +168,9 @@ class SearchtoPage(ModelPage):
             self.model.enter()
             return True
         return self.model.typed(key)
+
+    def _turn_fold(self) -> None:
+        self._whole = not self._whole
 
     def has_field(self) -> bool:
         """The question has it, but while the tool is on its way out."""
@@ -185,14 +209,38 @@ class SearchtoPage(ModelPage):
         if loaded is not self._loaded:
             self._loaded = loaded
             self.listing.show_source(model.cursor.lines, {})
-            self.path.show_picture(loaded.picture)
+            self._show_program(loaded)
         self.asked.text = model.cursor.text
         self.listing.show_run(model.cursor.line, "", "")
         self.state.shown = self._shown()
         self._show_plan()
+        if self.space.scene is not None and loaded.picture is not None:
+            self._show_plane(self.space.scene, loaded.picture)
+            return
         self._show_stock(loaded)
         self.path.show_tip(self._tip(snapshot))
         self.path.advance()
+
+    def _show_program(self, loaded: Loaded) -> None:
+        """Its path, or on a mill table and workpiece."""
+        scene = loaded.picture.scene if loaded.picture is not None else None
+        self.space.show_scene(scene)
+        self.space.setVisible(scene is not None)
+        self.path.show_picture(loaded.picture if scene is None else None)
+
+    def _show_plane(self, scene: Scene, picture: Picture) -> None:
+        """Axes and plane as the line finds them; drawn as done is what lies before it."""
+        plan, line = self.model.plan, self.model.cursor.line
+        here = at_line(scene, line - 1)
+        axes, done = here.axes, picture.blocks_before(line)
+        if plan is not None:
+            axes, done = {**axes, **plan.axes}, plan.found.checkpoint.blocks
+        self.space.show_instant(replace(here, axes=axes, block=done), plane_words(here.swivel))
+
+    @property
+    def _looked_at(self) -> PathView | WorkingPlaneView:
+        """Which of the two the keys of looking around are for."""
+        return self.path if self.space.scene is None else self.space
 
     def _tip(self, snapshot: Snapshot) -> Tip:
         """With a plan, the tip of the tool that the line works with: the way begins there."""
@@ -219,9 +267,9 @@ class SearchtoPage(ModelPage):
     def _state(self, plan: Plan) -> StateShown:
         title, visit = tr("STATE AT LINE {line}").format(line=plan.found.line), plan.found.visit
         if visit.of < 2:
-            return StateShown(title, plan.rows)
+            return StateShown(title, plan.rows, whole=self._whole)
         words = tr("PASS {number} OF {count}").format(number=visit.number, count=visit.of)
-        return StateShown(f"{title}, {words}", plan.rows, passes=words)
+        return StateShown(f"{title}, {words}", plan.rows, passes=words, whole=self._whole)
 
     def _near(self, key: str, label: str, line: int) -> NearestGood:
         if not line:
@@ -242,6 +290,8 @@ class SearchtoPage(ModelPage):
         choices: list[str] = []
         if plan.found.checkpoint.modal.coolant:
             choices.append(tr("F5: WITH COOLANT") if model.choices.coolant else tr("F5: WITHOUT COOLANT"))
+        if plan.way:
+            choices.append(tr("WAY: {legs}").format(legs=", ".join(plan.way)))
         trouble = plan.trouble or plan.warning
         starts = plan.starts or (tr("NOTHING BUT THE SLIDES"),)
         self.starts.show_starts(starts, choices, trouble, confirmed=model.stage is SearchtoStage.READY)
@@ -275,5 +325,6 @@ class SearchtoPage(ModelPage):
         self.asked.setGeometry(0, 0, left, asked)
         self.listing.setGeometry(0, asked + gap, left, high - asked - gap)
         self.state.setGeometry(left + gap, 0, state, high)
-        self.path.setGeometry(right, 0, wide - right, high - starts - gap)
+        for part in (self.path, self.space):
+            part.setGeometry(right, 0, wide - right, high - starts - gap)
         self.starts.setGeometry(right, high - starts, wide - right, starts)

@@ -231,15 +231,22 @@ class _Picture:
         self._size = width, height
         chain = scene.kinematics
         self._angles = {axis.name: instant.axes.get(axis.name, 0.0) for axis in chain.rotaries}
-        self._part = chain.place(self._angles, chain.basic)
+        # Where the workpiece stands: a place counts slides, and a head that leans takes those elsewhere.
+        self._tables = {axis.name: self._angles[axis.name] for axis in chain.rotaries if axis.table}
+        self._part = chain.place(self._tables, chain.basic)
 
     def table(self) -> list[tuple[float, Face]]:
-        """The disc that carries the workpiece."""
-        machine_parallel = self._scene.kinematics.place(self._angles)
+        """The disc that carries the workpiece: behind all else from above, before it from below.
+
+        Its middle says nothing of that: a small blank near the far rim has its own behind it.
+        """
+        machine_parallel = self._scene.kinematics.place(self._tables)
         zero = self._scene.kinematics.place({})
         flat = carried(machine_parallel, np.array([zero.point(spot(row)) for row in table_rim(self._scene)]))
         up = np.cross(flat[1] - flat[0], flat[2] - flat[1])
-        return [self._face("table" if up @ self._camera.axes[2] > 0.0 else "table-under", flat)]
+        if up @ self._camera.axes[2] > 0.0:
+            return [(-math.inf, self._face("table", flat)[1])]
+        return [(math.inf, self._face("table-under", flat)[1])]
 
     def blank(self) -> list[tuple[float, Face]]:
         """Those faces of the blank that look at the eye."""
@@ -317,7 +324,7 @@ class _Picture:
         for number, axis in enumerate(rotaries):
             if not axis.table:
                 continue
-            outer = {each.name: self._angles[each.name] for each in rotaries[number + 1 :]}
+            outer = {each.name: self._angles[each.name] for each in rotaries[number + 1 :] if each.table}
             place, zero = scene.kinematics.place(outer), scene.kinematics.place({})
             middle = np.array(zero.machine(middle_of(scene)))
             along, point = np.array(axis.direction), np.array(axis.point)

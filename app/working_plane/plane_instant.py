@@ -40,7 +40,8 @@ def at_line(scene: Scene, line: int) -> Instant:
     axes = dict(zip("XYZ", swivel.slides, strict=True))
     shown = zip(_AXES, swivel.rotary, swivel.system.targets, strict=True)
     tilted = line in scene.planes and swivel.system.tilted
-    axes |= {name: (target if tilted else at) for name, at, target in shown if at is not None}
+    zero = scene.kinematics.zero
+    axes |= {name: zero[name] + (target if tilted else at) for name, at, target in shown if at is not None}
     return Instant(axes, swivel)
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPen, QPolygonF, QWheelEvent
+from PySide6.QtGui import QMouseEvent, QPainter, QPen, QPolygonF, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
@@ -59,6 +59,11 @@ class WorkingPlaneView(Panel):
     def scene(self) -> Scene | None:
         """The scene that is shown; None while there is none."""
         return self._scene
+
+    @property
+    def instant(self) -> Instant | None:
+        """What is shown of it: axes, plane, and the block up to which the way is done."""
+        return self._instant
 
     @property
     def camera(self) -> Camera | None:
@@ -149,7 +154,7 @@ class WorkingPlaneView(Panel):
 
     def _face(self, painter: Painter, face: Face) -> None:
         fill, share, edge = _FILLS[face.role]
-        colour = QColor(self.look.colour(fill))
+        colour = self.look.colour(fill)
         colour.setAlpha(share)
         painter.setBrush(colour)
         painter.setPen(self.look.pen(edge, 0.10))

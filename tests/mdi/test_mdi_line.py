@@ -82,3 +82,18 @@ def test_a_store_that_fails_takes_no_line_away() -> None:
     typing.put("X1")
     typing.done()
     assert typing.history == ["X1"]
+
+
+def test_a_refused_line_stays_in_the_history_with_its_place() -> None:
+    typing = MdiLine()
+    press(typing, "G01X")
+    typing.refuse(4)
+    assert (typing.history, typing.refused) == (["G01X"], {"G01X": 4})
+    assert typing.text == "G01X"  # to be mended where it stands
+    press(typing, "1")
+    typing.done()
+    assert typing.history == ["G01X", "G01X1"]
+    assert "G01X1" not in typing.refused
+    press(typing, "G01X")
+    typing.done()  # what was wrong with it has been put right elsewhere, such as a tool that was never set
+    assert not typing.refused

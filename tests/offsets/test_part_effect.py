@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from app.compose.machine_files import load_machine
+from app.compose.stored_offsets import Offsets
 from app.compose.workshop import drawer, part_comparer, workshop
 from app.desk.desk import Desk
 from app.offsets.offset_effect import Effect, EffectDisplay
@@ -34,7 +35,7 @@ def shown(room: Room) -> EffectDisplay:
 
 
 def put(desk: Desk, text: str) -> None:
-    steps = workshop(load_machine(None), lambda: (TOOLS, {}, {}))
+    steps = workshop(load_machine(None), lambda: Offsets(TOOLS, {}, {}))
     job = steps.make_job(Source("part.nc", text), False)
     steps.prove(job, lambda _count: None)
     picture = steps.draw(job, lambda _count: None)

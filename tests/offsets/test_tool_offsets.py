@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from app.compose.machine_files import shipped_machine
 from app.offsets.tool_offsets import ToolOffsets
 from core.executor.snapshot import State
 from core.store.store_rows import ToolRow
@@ -273,3 +274,52 @@ def test_c_and_letters_are_not_taken(room: Room) -> None:
     grid = room.grid()
     assert not grid.typed("C")
     assert not grid.typed("H")
+
+
+def test_d_is_no_key_where_the_language_has_no_edges(room: Room) -> None:
+    set_tools(room)
+    grid = at(room, 1, "z")
+    assert not grid.typed("D")
+    assert grid.rows[:2] == (1, 2)
+    assert "edge" not in grid.foot
+
+
+@pytest.fixture
+def with_edges(room: Room) -> Room:
+    """At a lathe whose programs are SINUMERIK's."""
+    room.desk.lathe = shipped_machine("sinumerik-modulo")
+    return room
+
+
+def test_d_opens_another_cutting_edge(with_edges: Room) -> None:
+    room = with_edges
+    set_tools(room)
+    grid = at(room, 1, "z")
+    assert grid.typed("d")
+    assert (grid.number, grid.name, grid.rows[:3]) == (200_001, "x", (1, 200_001, 2))
+    room.enter(grid, ".5")
+    room.enter(grid, "-3.2")
+    assert room.store.tools()[200_001] == pytest.approx(ToolRow(0.5 * INCH, -3.2 * INCH))
+    assert room.desk.notice == "T1 D2 SAVED"
+    assert grid.typed("Down")
+    assert grid.number == 2
+    assert grid.typed("Up")
+    assert grid.question.startswith("T1 D2 ")
+
+
+def test_an_edge_that_nobody_has_typed_goes_again(with_edges: Room) -> None:
+    room = with_edges
+    set_tools(room)
+    grid = at(room, 1, "x")
+    grid.typed("D")
+    grid.typed("Down")
+    assert (grid.number, grid.rows[:2]) == (2, (1, 2))
+
+
+def test_no_edge_of_a_tool_that_was_never_set(with_edges: Room) -> None:
+    room = with_edges
+    set_tools(room)
+    grid = at(room, 5, "x")
+    assert grid.typed("D")
+    assert grid.number == 5
+    assert "T5 WAS NEVER SET" in room.desk.notice

@@ -1,0 +1,179 @@
+"""Tables that are entered cell by cell: zero offsets of a lathe, tools and presets of a mill."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+
+from PySide6.QtCore import QRectF
+from PySide6.QtWidgets import QWidget
+
+from app.desk.machine_status import MachineStatus, Tone
+from app.desk.program_loading import Loaded
+from app.offsets.cell_table import CellTable
+from app.offsets.mill_tools import MillTools
+from app.offsets.offset_values import cell_text
+from app.offsets.offsets_view import OffsetPage
+from app.offsets.presets import Presets
+from app.offsets.zero_offsets import ZeroOffsets
+from app.screen import page_table
+from app.screen.look import CENTRE, RIGHT, Look, Painter
+from app.screen.page_base import Host, KeyActions
+from app.screen.panel import Panel, Shown
+from core.executor.snapshot import Snapshot
+from core.quality.tool_life import ToolLife
+from core.store.store_rows import Row
+
+ROWS = 10  # at least, and as many more as fit; the others are leafed to
+_NAME = 0.1  # share of the width for the number
+
+
+class CellPanel(Panel):
+    """Each cell is a target for a finger. The chosen one is filled, the row in force has a bar."""
+
+    rows: Shown[Mapping[int, Row]] = Shown({})
+    lives: Shown[Mapping[int, ToolLife]] = Shown({})  # of the tools of a mill
+    cell = Shown((0, 0))
+    in_force = Shown(0)  # number of a row; 0: none
+
+    def __init__(self, look: Look, table: CellTable, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._heading, self._words, self._model = table.title, table.words, table
+        self._kind, self._numbers, self._columns = table.kind, table.numbers, table.columns
+        self._choose: Callable[[int, int], None] = table.choose
+        self._wide = [_WIDE.get(name, 1.0) for name in table.columns]
+
+    def draw(self, painter: Painter) -> None:
+        self.frame(painter, self._heading)
+        room, u = self.inside(), self.look.u
+        fit = int(room.height() / self.look.row(8.0, 10.0, touch=True)) - 1
+        shown = min(max(ROWS, fit), len(self._numbers))
+        top = max(0, min(self.cell[0] - shown // 2, len(self._numbers) - shown))
+        high = min(room.height() / (shown + 1), 8.0 * u)
+        self._head(painter, QRectF(room.x(), room.y(), room.width(), high))
+        for place in range(shown):
+            y = room.y() + (place + 1) * high
+            self._row(painter, QRectF(room.x(), y, room.width(), high - 0.5 * u), top + place)
+
+    def _cells(self, row: QRectF) -> list[QRectF]:
+        one = row.width() * (1.0 - _NAME) / sum(self._wide)
+        left, found = row.x() + row.width() * _NAME, []
+        for share in self._wide:
+            found.append(QRectF(left, row.y(), share * one - 0.5 * self.look.u, row.height()))
+            left += share * one
+        return found
+
+    def _head(self, painter: Painter, row: QRectF) -> None:
+        for word, cell in zip(self._words, self._cells(row), strict=True):
+            painter.write(cell, word, 2.2, "soft", at=CENTRE)
+
+    def _row(self, painter: Painter, box: QRectF, row: int) -> None:
+        u, number = self.look.u, self._numbers[row]
+        if number == self.in_force:
+            painter.fill(QRectF(box.x(), box.y(), 0.6 * u, box.height()), "lit")
+        painter.write(box.adjusted(1.6 * u, 0, 0, 0), f"{_LETTER[self._kind]}{number}", 2.4, "accent")
+        offset, size = self.rows.get(number), min(3.0, 0.5 * box.height() / u)
+        for column, (name, cell) in enumerate(zip(self._columns, self._cells(box), strict=True)):
+            here = (row, column) == self.cell
+            painter.fill(cell, "here" if here else "key")
+            text, tone = name in _TEXTS, self._model.tone_at(number, name)
+            if tone is not Tone.OFF:
+                painter.box(cell, tone.value, 0.3, "here" if here else "key")
+            value = self._model.value_at(number, name)
+            ink = "text" if offset is not None or here else "soft"
+            place = cell.adjusted(0.6 * u, 0, -0.8 * u, 0)
+            at = CENTRE if text else RIGHT
+            painter.write(
+                place,
+                cell_text(self._model.field_of(name), value),
+                size,
+                ink,
+                at=at,
+                bold=offset is not None,
+                raw=text,
+            )
+            self.place(cell, partial(self._choose, row, column))
+
+
+_WIDE = {"name": 1.7, "remark": 2.0, "length": 1.35, "teeth": 0.65, "point": 0.9, "stops": 0.85}  # columns
+_TEXTS = frozenset({"name", "remark"})
+_LETTER = {ZeroOffsets.kind: "G", MillTools.kind: "T", Presets.kind: ""}
+
+
+class CellTablePage(OffsetPage):
+    """What the three pages have in common: F2 touches off, and no effect is drawn of these tables."""
+
+    model: CellTable
+    table: CellPanel
+
+    def __init__(self, host: Host, parent: QWidget, model: CellTable) -> None:
+        super().__init__(host, parent, model)
+        self.table = CellPanel(self.look, model, self)
+
+    def key_actions(self) -> KeyActions:
+        """The other tables of this machine; F6 and F10 are none of its keys."""
+        return {key: act for key, act in super().key_actions().items() if key not in {"F6", "F10"}}
+
+    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: Loaded) -> None:
+        """The table as it is now."""
+        super().refresh(snapshot, status, loaded)
+        model = self.model
+        self.table.rows, self.table.cell = model.book.of(model.kind), (model.row, model.column)
+        self.table.in_force = model.in_force(snapshot)
+
+
+class ZeroOffsetsPage(CellTablePage):
+    """G54 to G59: a row each, X, Z and C."""
+
+    NAME = page_table.ZERO
+    LABELS = ("MENU", "HERE", "", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "")
+    model: ZeroOffsets
+
+    def __init__(self, host: Host, parent: QWidget) -> None:
+        super().__init__(host, parent, ZeroOffsets(host.desk))
+
+    def labels(self) -> tuple[str, ...]:
+        """A SINUMERIK lathe has no secondary offsets."""
+        return (*self.LABELS[:8], "", "") if self.desk.language == "sinumerik" else self.LABELS
+
+    def key_actions(self) -> KeyActions:
+        """The position of the machine."""
+        return {**super().key_actions(), "F2": self.model.here}
+
+
+class MillToolsPage(CellTablePage):
+    """TOOL.T: a row a tool."""
+
+    NAME = page_table.MILL_TOOLS
+    LABELS = ("MENU", "TOUCH L", "", "UNDO", "HISTORY", "", "ALARMS", "", "PRESETS", "")
+    model: MillTools
+
+    def __init__(self, host: Host, parent: QWidget) -> None:
+        super().__init__(host, parent, MillTools(host.desk))
+
+    def key_actions(self) -> KeyActions:
+        """The length of a tool whose tip touches."""
+        rest = {key: act for key, act in super().key_actions().items() if key not in {"F8", "F9"}}
+        return {**rest, "F2": self.model.here, "F9": partial(self._go, page_table.PRESETS)}
+
+    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: Loaded) -> None:
+        """What the tools have cut counts on while the page is open."""
+        super().refresh(snapshot, status, loaded)
+        self.table.lives = self.model.lives.lives()
+
+
+class PresetsPage(CellTablePage):
+    """The workpiece's zero, a row each."""
+
+    NAME = page_table.PRESETS
+    LABELS = ("MENU", "TOUCH", "IN FORCE", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "", "")
+    model: Presets
+
+    def __init__(self, host: Host, parent: QWidget) -> None:
+        super().__init__(host, parent, Presets(host.desk))
+
+    def key_actions(self) -> KeyActions:
+        """Where the tip touches the workpiece, and which preset is in force."""
+        rest = {key: act for key, act in super().key_actions().items() if key not in {"F8", "F9"}}
+        own = {"F2": self.model.here, "F3": self.model.activate}
+        return {**rest, **own, "F8": partial(self._go, page_table.MILL_TOOLS)}

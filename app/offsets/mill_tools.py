@@ -1,0 +1,94 @@
+"""The tool table of a mill (TOOL.T): name, L, R, R2, oversizes, teeth, point angle, tool life; touch-off."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from app.desk.arithmetic import value_of
+from app.desk.machine_status import Tone
+from app.desk.translation import tr
+from app.offsets.cell_table import CellTable
+from app.offsets.mill_lives import MillLives
+from app.offsets.mill_touch import MillTouch
+from core.executor.snapshot import Snapshot
+from core.quality.tool_life import LifeState
+from core.store.offset_fields import LIFE_REACH, Field, Sort
+from core.store.store_rows import MILL_TOOLS, Kind, Value
+
+USED = "used"  # the column of what was cut, which is counted and no part of the row
+_USED = Field("CUR.TIME", 0.0, LIFE_REACH, Sort.MINUTES, name=USED)
+_TONES = {LifeState.WARNED: Tone.PAUSE, LifeState.SPENT: Tone.ALARM}
+
+
+class MillTools(CellTable):
+    """The cell that is chosen, and what is typed over it."""
+
+    kind = Kind.MILL_TOOL
+    numbers = MILL_TOOLS
+
+    @property
+    def lives(self) -> MillLives:
+        """What the tools have cut."""
+        return MillLives.of(self.desk)
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The fields, and what was cut behind what may be."""
+        *fields, stops = super().columns
+        return (*fields, USED, stops)
+
+    def field_of(self, name: str) -> Field:
+        """What a column takes."""
+        return _USED if name == USED else super().field_of(name)
+
+    def value_at(self, number: int, name: str) -> Value:
+        """A cell; of CUR.TIME minutes at feed since the tool was fresh."""
+        if name != USED:
+            return super().value_at(number, name)
+        life = self.lives.lives().get(number)
+        return round(life.seconds / 60.0, 1) if life is not None else 0.0
+
+    def tone_at(self, number: int, name: str) -> Tone:
+        """CUR.TIME tells when the life comes to its end."""
+        life = self.lives.lives().get(number) if name == USED else None
+        return Tone.OFF if life is None else _TONES.get(life.state, Tone.OFF)
+
+    @property
+    def title(self) -> str:
+        """What the table is, and its units."""
+        return tr("TOOL TABLE  ·  MM, DEGREES, MINUTES")
+
+    def in_force(self, snapshot: Snapshot) -> int:
+        """The tool in the spindle."""
+        return snapshot.modal.tool
+
+    @property
+    def foot(self) -> str:
+        """What F2 and Esc do here; of the columns of tool life what they mean."""
+        if self.name in {"life", USED}:
+            return tr("TIME2: minutes at feed, 0 no limit        CUR.TIME: cut so far, 0 of a fresh tool")
+        if self.name == "stops":
+            return tr("STOP: no other part begins when TIME2 is reached        Return turns it on and off")
+        return tr("F2: the tip stands at the height that is typed: L follows        Esc: exit")
+
+    def keep(self, values: Mapping[str, Value], why: str) -> str:
+        """CUR.TIME goes to what counts it, all else to the table; answers why not, or nothing."""
+        if USED not in values:
+            return super().keep(values, why)
+        if self.stored is None:
+            return tr("T{number} IS NOT IN THE TABLE YET: ENTER ITS LENGTH FIRST").format(number=self.number)
+        self.lives.set_used(self.number, 60.0 * float(values[USED]))
+        return ""
+
+    def here(self) -> None:
+        """F2: the tip stands at the height of the preset that was typed, or 0: the length follows."""
+        if self.name != "length":
+            self.desk.say(tr("CHOOSE THE COLUMN L FIRST: F2 TOUCHES THE LENGTH OFF"))
+            return
+        touch = MillTouch.of(self.desk)
+        nose = touch.nose_height()
+        if isinstance(nose, str):
+            self.desk.say(nose)
+            return
+        reads = self.text.strip() or "0"
+        self.save(lambda: self.checked(nose - value_of(reads)), tr("at {value}").format(value=reads))

@@ -1,0 +1,158 @@
+"""The preset table of a mill: the workpiece's zero in X Y Z A B C, its basic rotation; touch-off."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import atan2, degrees, hypot, remainder
+
+from app.desk.arithmetic import EntryError, value_of
+from app.desk.desk import Desk
+from app.desk.translation import tr
+from app.offsets.cell_table import CellTable
+from app.offsets.mill_offsets import zeros_of
+from app.offsets.mill_touch import MillTouch
+from core.executor.snapshot import Snapshot
+from core.geometry.rotation_frames import Vector
+from core.store.store_rows import PRESETS, Kind, PresetRow, Value
+
+_ROTARY = {"a": "A", "b": "B", "c": "C"}
+_APART = 1.0  # mm: points of an edge that are nearer tell no direction
+
+
+class Presets(CellTable):
+    """The cell that is chosen, and what is typed over it. ``edge`` is the first point of a basic rotation."""
+
+    kind = Kind.PRESET
+    numbers = PRESETS
+
+    def __init__(self, desk: Desk) -> None:
+        super().__init__(desk)
+        self.edge: Vector | None = None
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The fields, and of the rotary axes those that this machine has."""
+        absent = {name for name, axis in _ROTARY.items() if axis not in MillTouch.of(self.desk).rotary_axes}
+        return tuple(name for name in super().columns if name not in absent)
+
+    @property
+    def title(self) -> str:
+        """What the table is, and its units."""
+        return tr("PRESETS  ·  MACHINE POSITION OF THE WORKPIECE'S ZERO, MM AND DEGREES")
+
+    def in_force(self, _snapshot: Snapshot) -> int:
+        """The preset that was chosen."""
+        return self.book.preset
+
+    @property
+    def foot(self) -> str:
+        """What F2, F3 and Esc do here, and which preset is in force."""
+        told = tr("F2: the tip stands where the part reads what is typed")
+        if self.name in _ROTARY:
+            told = tr("F2: the axis stands where it shall read what is typed")
+        elif self.name == "rotation":
+            told = tr("F2 at one point of an edge, then at another: the edge shall read what is typed")
+        active = self.book.preset
+        now = tr("in force: {preset}").format(preset=active or tr("0, of the machine file"))
+        return f"{told}        {tr('F3: in force')}        {now}"
+
+    @property
+    def row_now(self) -> PresetRow:
+        """The chosen row; one that was never set is empty."""
+        return self.book.presets.get(self.number, PresetRow())
+
+    def choose(self, row: int, column: int) -> None:
+        """Another cell: an edge that was begun is forgotten."""
+        self.edge = None
+        super().choose(row, column)
+
+    def take_back(self) -> bool:
+        """Forget what is typed, and an edge that was begun."""
+        begun, self.edge = self.edge is not None, None
+        return super().take_back() or begun
+
+    def here(self) -> None:
+        """F2: what stands here shall read what was typed, or 0; of a basic rotation an edge is two points."""
+        if self.name in _ROTARY:
+            self._touch_rotary()
+        elif self.name in {"x", "y", "z"}:
+            self._touch_slide()
+        elif self.name == "rotation":
+            self._touch_edge()
+        else:
+            self.desk.say(tr("CHOOSE X, Y, Z, A ROTARY AXIS OR ROT FIRST: F2 TOUCHES THE WORKPIECE OFF"))
+
+    @property
+    def _reads(self) -> str:
+        return self.text.strip() or "0"
+
+    def _touch_slide(self) -> None:
+        """The tip stands where the workpiece shall read what was typed."""
+        tip, reads = self._tip(), self._reads
+        if tip is not None:
+            at = tip["xyz".index(self.name)]
+            self.save(lambda: self.checked(at - value_of(reads)), tr("reads {value}").format(value=reads))
+
+    def _tip(self) -> Vector | None:
+        tip = MillTouch.of(self.desk).tip(zeros_of(self.row_now))
+        if isinstance(tip, str):
+            self.desk.say(tip)
+            return None
+        return tip
+
+    def _touch_rotary(self) -> None:
+        """The axis reads what was typed where it stands; the workpiece's zero keeps its place on the part."""
+        at, reads = MillTouch.of(self.desk).angle(_ROTARY[self.name]), self._reads
+        if isinstance(at, str):
+            self.desk.say(at)
+            return
+        self.save(
+            lambda: self.checked(remainder(at - value_of(reads), 360.0)),
+            tr("reads {value}").format(value=reads),
+            self._followed,
+        )
+
+    def _followed(self, zero: Value) -> Mapping[str, Value]:
+        """X Y Z of the same point of the part with another zero of the chosen rotary axis."""
+        row = self.row_now
+        if self.stored is None:
+            return {}
+        after = {**zeros_of(row), _ROTARY[self.name]: float(zero)}
+        spot = MillTouch.of(self.desk).moved((row.x, row.y, row.z), zeros_of(row), after)
+        return dict(zip("xyz", (round(at, 10) for at in spot), strict=True))
+
+    def _touch_edge(self) -> None:
+        """First one point of an edge, then another: what the edge is off by is the basic rotation."""
+        tip, reads = self._tip(), self._reads
+        if tip is None:
+            return
+        if self.edge is None:
+            self.edge = tip
+            self.desk.say(tr("FIRST POINT TAKEN: TOUCH THE SAME EDGE FURTHER ON, THEN F2 AGAIN"))
+            return
+        first = self.edge
+        if self.save(
+            lambda: self._turned(first, tip, value_of(reads)), tr("edge of {value}").format(value=reads)
+        ):
+            self.edge = None
+
+    def _turned(self, first: Vector, last: Vector, reads: float) -> float:
+        """Of an edge that shall read so many degrees from X; it has no beginning, so a half turn is none."""
+        dx, dy = last[0] - first[0], last[1] - first[1]
+        if hypot(dx, dy) < _APART:
+            raise EntryError(tr("THE TWO POINTS ARE NEARER THAN 1 MM: TOUCH THE EDGE FURTHER ON"))
+        return self.checked(remainder(degrees(atan2(dy, dx)) - reads, 180.0))
+
+    def activate(self) -> None:
+        """F3: the chosen preset is in force; that of the machine file where it is already."""
+        if why := self.barred(self.desk.snapshot()):
+            self.desk.say(why)
+            return
+        if self.stored is None:
+            self.desk.say(
+                tr("PRESET {number} WAS NEVER SET: TOUCH IT OFF OR TYPE IT").format(number=self.number)
+            )
+            return
+        number = 0 if self.book.preset == self.number else self.number
+        if why := self.book.choose_preset(number):
+            self.desk.say(why)

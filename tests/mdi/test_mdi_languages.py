@@ -1,0 +1,168 @@
+"""MDI in the machine's own language: what a block does, what it leaves to the next, what is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import pytest
+
+from app.compose.machine_files import named_machine
+from app.compose.machine_setup import setup_for
+from core.executor.control_status import modal_given_up
+from core.interpreter.actions import ToolChange
+from core.interpreter.checkpoint import Begin, Checkpoint
+from core.interpreter.dialects import line_alone
+from core.interpreter.job_setup import ToolOffset
+from core.interpreter.modal_state import Modal
+from core.language.source import Dialect, Source
+
+MILL, LATHE = "ac-table-mill", "sinumerik-modulo"
+
+
+class Mdi:
+    """A machine at which lines are typed one after the other; each runs to its end."""
+
+    def __init__(self, machine: str, tools: Mapping[int, ToolOffset] | None = None) -> None:
+        self.machine = named_machine(machine)
+        self.tools = dict(tools or {})
+        self.point = Checkpoint(Modal(metric=True))
+        self.at: tuple[float, ...] = (0.0,) * len(self.machine.axes)
+
+    def enters(self, text: str) -> str:
+        """The block runs, or the code of what it is refused for."""
+        setup = replace(
+            setup_for(self.machine, tools=self.tools, secondary={}),
+            start=self.at,
+            begin=Begin(self.point, single=True),
+        )
+        line = line_alone(Source("MDI", text, Dialect(self.machine.language)), setup)
+        blocks = list(line.blocks(to_first_error=True))
+        if line.failed:
+            return line.diagnostics[0].code
+        self.at = blocks[-1].machine_end if blocks else self.at
+        self.point = line.checkpoint
+        return ""
+
+    def runs(self, *lines: str) -> None:
+        for text in lines:
+            assert self.enters(text) == "", text
+
+    def line(self, key: str) -> str:
+        """What is told of a group of functions."""
+        assert self.point.kept is not None
+        return dict(self.point.kept.lines)[key]
+
+
+@pytest.fixture
+def mill() -> Mdi:
+    return Mdi(MILL, {5: ToolOffset(z=80.0, nose_radius=6.0)})
+
+
+@pytest.fixture
+def lathe() -> Mdi:
+    return Mdi(LATHE)
+
+
+# --- what stands between two lines ----------------------------------------------------------------------
+
+
+def test_a_mill_keeps_tool_plane_and_parameters_from_line_to_line(mill: Mdi) -> None:
+    # Zero at 230, 210, -350; L 80: Z+100 is -350 + 100 + 80 = -170. A+30 about the line Y 250, Z -430 at X.
+    mill.runs("TOOL CALL 5 Z S2000", "L Z+100 FMAX M3", "Q1 = 30", "PLANE AXIAL A+Q1 C+0 TURN FMAX")
+    assert mill.at == pytest.approx((0.0, 0.0, -170.0, 30.0, 0.0))
+    assert mill.line("plane") == "A+30.000  C+0.000"
+    mill.runs("L X+10 F500")
+    assert mill.at[0] == pytest.approx(240.0)
+    assert (mill.line("feed"), mill.line("spindle")) == ("F500", "M3")
+
+
+def test_a_cycle_that_was_told_is_called_by_a_later_line(mill: Mdi) -> None:
+    drilling = "CYCL DEF 200 Q200=+2 Q201=-10 Q206=+150 Q202=+5 Q210=+0 Q203=+0 Q204=+50 Q211=+0"
+    mill.runs("TOOL CALL 5 Z S2000", "L X+0 Y+0 Z+50 FMAX M3", drilling, "CYCL CALL")
+    assert mill.at[2] == pytest.approx(-350.0 + 50.0 + 80.0)  # Q204, the second set-up clearance
+
+
+def test_a_tool_that_was_measured_anew_counts_in_the_next_line(mill: Mdi) -> None:
+    mill.runs("TOOL CALL 5 Z S2000")
+    mill.tools[5] = ToolOffset(z=81.5, nose_radius=6.0)
+    mill.runs("L Z+100 FMAX")
+    assert mill.at[2] == pytest.approx(-168.5)
+
+
+def test_slides_that_were_jogged_meanwhile_count_where_they_stand(mill: Mdi) -> None:
+    mill.runs("TOOL CALL 5 Z S2000", "L X+0 Y+0 FMAX")
+    mill.at = (7.0, 8.0, -9.0, 0.0, 0.0)
+    mill.runs("L IX+1 FMAX")
+    assert mill.at == pytest.approx((8.0, 8.0, -9.0, 0.0, 0.0))
+
+
+def test_what_a_program_has_left_is_what_a_line_begins_with(mill: Mdi) -> None:
+    mill.point = Checkpoint(modal_given_up(Modal(tool=5, rpm=1200.0, spindle=1)))
+    mill.runs("L Z+0 FMAX")
+    assert mill.at[2] == pytest.approx(-270.0)
+    assert (mill.line("tool"), mill.line("spindle"), mill.line("plane")) == ("T5 Z", "M5", "")
+
+
+def test_a_lathe_of_sinumerik_keeps_modes_and_parameters(lathe: Mdi) -> None:
+    lathe.runs("G0 X20 Z5", "R1=4", "G1 X=R1*2 F100", "M3 S500", "G91 G95 Z-1 F0.2", "X40")
+    # DIAMON: X8 is a radius of 4; G91 X40 adds 20 to it.
+    assert lathe.at == pytest.approx((24.0, 4.0, 0.0))
+    assert (lathe.line("distance"), lathe.line("feed")) == ("G91", "G95 F0.2")
+
+
+def test_a_variable_of_def_outlives_its_line(lathe: Mdi) -> None:
+    lathe.runs("DEF REAL DEPTH=3", "G0 Z=-DEPTH")
+    assert lathe.at[1] == pytest.approx(-3.0)
+
+
+def test_a_tool_call_is_a_block_of_its_own(mill: Mdi) -> None:
+    setup = replace(
+        setup_for(mill.machine, tools=mill.tools, secondary={}),
+        start=mill.at,
+        begin=Begin(mill.point, single=True),
+    )
+    line = line_alone(Source("MDI", "TOOL CALL 5 Z", Dialect.KLARTEXT), setup)
+    assert [block.action for block in line.blocks()] == [ToolChange(5)]
+
+
+# --- refusals -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("BEGIN PGM A MM", "END PGM A MM", "BLK FORM 0.1 Z X+0 Y+0 Z-10", "LBL 1", "CALL LBL 1 REP2"),
+        *("FN 9: IF +Q1 EQU +0 GOTO LBL 1", "CALL PGM A.H", "RND R2", "CHF 2", "L X+10 RL", "L X+10 Y+0 RR"),
+        *("APPR LT X+0 Y+0 LEN10 RL", "DEP LT LEN10", "/ L X+10", "CYCL DEF 12.1 PGM A.H"),
+    ],
+)
+def test_what_needs_other_blocks_is_refused_on_a_mill(mill: Mdi, text: str) -> None:
+    assert mill.enters(text) == "not-alone-mdi"
+    assert mill.point.kept is None  # it has left nothing
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["GOTOF END1", "IF R1==1 GOTOF END1", "ENDIF", "WHILE R1<3", "RINGBORE P5", "/ X10", "G1 X9 RND=2"],
+)
+def test_what_needs_other_blocks_is_refused_on_a_lathe(lathe: Mdi, text: str) -> None:
+    assert lathe.enters(text) == "not-alone-mdi"
+
+
+def test_a_line_that_fails_leaves_what_stood_before(mill: Mdi) -> None:
+    mill.runs("TOOL CALL 5 Z S2000", "Q1 = 7")
+    assert mill.enters("PLANE AXIAL A+500 TURN FMAX") != ""
+    mill.runs("L X+Q1 FMAX")
+    assert mill.at[0] == pytest.approx(237.0)
+
+
+def test_the_words_of_another_control_are_no_block_here(mill: Mdi, lathe: Mdi) -> None:
+    assert mill.enters("G1 X10 F100") != ""
+    assert lathe.enters("L X+10 Y+5 FMAX") != ""
+
+
+def test_a_cut_without_a_feed_is_refused_as_in_a_program(mill: Mdi, lathe: Mdi) -> None:
+    mill.runs("TOOL CALL 5 Z S2000")
+    assert mill.enters("L X+10") == "Feed rate is missing"
+    assert lathe.enters("G1 X10") != ""

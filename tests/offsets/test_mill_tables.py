@@ -1,0 +1,317 @@
+"""The tool table and the presets of a mill: typed, touched off, refused; what the interpreter gets."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from app.compose.kinematics_chain import kinematics_of
+from app.compose.machine_files import named_machine
+from app.compose.machine_setup import setup_for
+from app.desk.machine_status import Tone
+from app.offsets.cell_table import CellTable
+from app.offsets.mill_lives import MillLives
+from app.offsets.mill_offsets import MillOffsets, with_mill
+from app.offsets.mill_tools import MillTools
+from app.offsets.mill_touch import MillTouch
+from app.offsets.presets import Presets
+from core.executor.snapshot import State
+from core.quality.tool_life import ToolLife
+from core.store.store_rows import Kind, MillRow, PresetRow
+from tests.offsets.conftest import LIMIT, Room
+
+AXES = ("X", "Y", "Z", "A", "C")
+
+
+def mill(room: Room, *at: float, tool: int = 0) -> None:
+    """The machine is an A-C table that stands there."""
+    machine = kinematics_of(named_machine("ac-table-mill"))
+    room.desk.attach(MillTouch(room.desk, machine))
+    snapshot, place = room.now[0], (*at, *(0.0,) * (5 - len(at)))
+    modal = snapshot.modal._replace(metric=True, tool=tool)
+    room.now[0] = replace(snapshot, axes=AXES, actual=place, demand=place, homed=(True,) * 5, modal=modal)
+
+
+def types(room: Room, page: CellTable, text: str, *, name: str = "", row: int = 0) -> None:
+    page.look(room.now[0])
+    if name:
+        page.choose(row, page.columns.index(name))
+    for key in text:
+        assert page.typed(key)
+    page.typed("Enter")
+    settle(room, page)
+
+
+def settle(room: Room, page: CellTable) -> None:
+    room.store.write(lambda _connection: None).result(LIMIT)
+    room.desk.look()
+    page.look(room.now[0])
+
+
+def kept(room: Room, tool: int = 1) -> MillRow:
+    return room.store.mill_tools()[tool]
+
+
+# --- typed ----------------------------------------------------------------------------------------------
+
+
+def test_lengths_radii_and_teeth_are_typed_in_millimetres(room: Room) -> None:
+    mill(room)
+    page = MillTools(room.desk)
+    typed = {"length": "80.5", "radius": "12/2", "dl": "-.02", "teeth": "4", "life": "90"}
+    for name, text in typed.items():
+        types(room, page, text, name=name, row=19)
+    row = kept(room, 20)
+    assert row == MillRow(length=80.5, radius=6.0, dl=-0.02, teeth=4, life=90.0)
+    page.undo()
+    settle(room, page)
+    assert kept(room, 20).life == 0.0
+
+
+def test_a_name_takes_letters_once_return_has_opened_it(room: Room) -> None:
+    mill(room)
+    page = MillTools(room.desk)
+    page.choose(4, 0)
+    assert not page.takes("H")
+    page.typed("Enter")
+    assert page.takes("H")
+    types(room, page, "Hole 8")
+    assert kept(room, 5).name == "Hole 8"
+
+
+def test_a_preset_is_in_force_until_it_is_chosen_again(room: Room) -> None:
+    mill(room)
+    page = Presets(room.desk)
+    types(room, page, "10", name="x", row=2)
+    page.activate()
+    settle(room, page)
+    assert room.desk.book.preset == 3
+    page.activate()
+    settle(room, page)
+    assert room.desk.book.preset == 0
+
+
+# --- touched off ----------------------------------------------------------------------------------------
+
+
+def test_a_length_follows_from_a_tip_on_the_part(room: Room) -> None:
+    mill(room, 250.0, 220.0, -265.0)  # zero lies at Z -350: the nose is 85 over it, the tip 5
+    page = MillTools(room.desk)
+    page.choose(0, page.columns.index("length"))
+    page.look(room.now[0])
+    for key in "5":
+        page.typed(key)
+    page.here()
+    settle(room, page)
+    assert kept(room).length == pytest.approx(80.0)
+
+
+def test_a_workpiece_follows_from_a_tip_that_touches_it(room: Room) -> None:
+    room.store.set_offset(MillTools.kind, 7, "", {"length": 60.0, "radius": 5.0}).result(LIMIT)
+    room.desk.book.read()
+    mill(room, 100.0, 50.0, -200.0, tool=7)
+    page = Presets(room.desk)
+    for name, reads in (("x", "-5"), ("y", ""), ("z", "2")):
+        page.choose(0, page.columns.index(name))
+        page.look(room.now[0])
+        for key in reads:
+            page.typed(key)
+        page.here()
+        settle(room, page)
+    # The tip is 60 below the nose; its centre stands 5 before the left side.
+    assert room.store.presets()[1] == PresetRow(x=105.0, y=50.0, z=-262.0)
+
+
+def test_a_turned_table_is_reckoned_back_to_zero(room: Room) -> None:
+    # C at 180 about X 300, Y 252: what touches at 340, 252 lies at 260, 252 with C at 0.
+    room.store.set_offset(MillTools.kind, 7, "", {"length": 60.0}).result(LIMIT)
+    room.desk.book.read()
+    mill(room, 340.0, 252.0, -200.0, 0.0, 180.0, tool=7)
+    page = Presets(room.desk)
+    page.here()
+    settle(room, page)
+    assert room.store.presets()[1].x == pytest.approx(260.0)
+
+
+def touches(room: Room, page: CellTable, name: str, reads: str = "") -> None:
+    page.choose(0, page.columns.index(name))
+    page.look(room.now[0])
+    for key in reads:
+        page.typed(key)
+    page.here()
+    settle(room, page)
+
+
+def test_a_rotary_axis_reads_what_is_typed_where_it_stands(room: Room) -> None:
+    """C at 130 shall read 40: its zero is 90, and the part's zero goes along, 40 to the right of the table's
+    line at X 300, Y 252, a quarter turn back."""
+    room.store.set_offset(Kind.PRESET, 1, "", {"x": 340.0, "y": 252.0, "z": 7.0}).result(LIMIT)
+    room.desk.book.read()
+    mill(room, 0.0, 0.0, 0.0, 0.0, 130.0)
+    page = Presets(room.desk)
+    assert page.columns == ("x", "y", "z", "rotation", "a", "c", "remark")
+    touches(room, page, "c", "40")
+    row = room.store.presets()[1]
+    assert (row.c, row.x, row.y, row.z) == pytest.approx((90.0, 300.0, 212.0, 7.0))
+    types(room, page, "10", name="c")  # typed it is the figure alone
+    assert room.store.presets()[1] == row._replace(c=10.0)
+
+
+def at(room: Room, x: float, y: float) -> None:
+    room.now[0] = replace(room.now[0], actual=(x, y, -200.0, 0.0, 0.0))
+
+
+def test_the_basic_rotation_follows_from_two_points_of_an_edge(room: Room) -> None:
+    """10 up on 100 along is atan .1 = 5.7106 degrees, from whichever end; an edge along Y reads 90."""
+    room.store.set_offset(Kind.MILL_TOOL, 7, "", {"length": 60.0}).result(LIMIT)
+    room.desk.book.read()
+    mill(room, 100.0, 50.0, -200.0, tool=7)
+    page = Presets(room.desk)
+    page.choose(0, page.columns.index("rotation"))
+    for first, last, reads, wanted in (
+        ((100.0, 50.0), (200.0, 60.0), "", 5.7105931),
+        ((200.0, 60.0), (100.0, 50.0), "", 5.7105931),
+        ((100.0, 50.0), (90.0, 150.0), "90", 5.7105931),
+    ):
+        at(room, *first)
+        page.here()
+        assert "FIRST POINT TAKEN" in room.desk.notice
+        at(room, *last)
+        for key in reads:
+            page.typed(key)
+        page.here()
+        settle(room, page)
+        assert room.store.presets()[1].rotation == pytest.approx(wanted, abs=1e-6)
+
+
+def test_points_that_lie_together_are_no_edge_and_another_cell_forgets_the_first(room: Room) -> None:
+    room.store.set_offset(Kind.MILL_TOOL, 7, "", {"length": 60.0}).result(LIMIT)
+    room.desk.book.read()
+    mill(room, 100.0, 50.0, -200.0, tool=7)
+    page = Presets(room.desk)
+    page.choose(0, page.columns.index("rotation"))
+    page.here()
+    at(room, 100.5, 50.5)
+    page.here()
+    assert "NEARER THAN 1 MM" in room.desk.notice
+    assert room.store.presets() == {}
+    page.choose(0, page.columns.index("rotation"))
+    page.here()
+    assert "FIRST POINT TAKEN" in room.desk.notice
+
+
+# --- tool life ------------------------------------------------------------------------------------------
+
+
+def test_cur_time_is_what_was_cut_and_goes_to_what_counts_it(room: Room) -> None:
+    room.store.set_offset(Kind.MILL_TOOL, 1, "", {"length": 60.0, "life": 30.0}).result(LIMIT)
+    room.desk.book.read()
+    mill(room)
+    told: list[tuple[int, float]] = []
+    lives = {1: ToolLife(1, limit_seconds=1800.0, seconds=1680.0)}
+    room.desk.attach(MillLives(lambda: lives, lambda number, cut: told.append((number, cut))))
+    page = MillTools(room.desk)
+    page.choose(0, page.columns.index("used"))
+    assert page.value_at(1, "used") == 28.0
+    assert page.tone_at(1, "used") is Tone.PAUSE
+    types(room, page, "0", name="used")
+    assert told == [(1, 0.0)]
+    types(room, page, "5", name="used", row=8)
+    assert "T9 IS NOT IN THE TABLE YET" in room.desk.notice
+    assert told == [(1, 0.0)]
+
+
+def test_return_turns_stop_on_and_off(room: Room) -> None:
+    mill(room)
+    page = MillTools(room.desk)
+    page.choose(0, page.columns.index("stops"))
+    for wanted in (True, False):
+        page.typed("Enter")
+        settle(room, page)
+        assert kept(room).stops is wanted
+    types(room, page, "2")
+    assert room.desk.notice.startswith("REFUSED")
+
+
+# --- refusals -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [("radius", "-1"), ("length", "1001"), ("teeth", "2.5"), ("dl", "100"), ("point", "181")],
+)
+def test_what_is_no_tool_is_refused(room: Room, name: str, text: str) -> None:
+    mill(room)
+    page = MillTools(room.desk)
+    types(room, page, text, name=name)
+    assert room.desk.notice.startswith("REFUSED")
+    assert room.store.mill_tools() == {}
+
+
+def test_nothing_changes_under_a_program(room: Room) -> None:
+    mill(room)
+    room.at(State.RUN)
+    page = Presets(room.desk)
+    types(room, page, "3", name="x")
+    assert room.store.presets() == {}
+    page.activate()
+    assert "A PROGRAM IS UNDER WAY" in room.desk.notice
+
+
+def test_a_leaning_tool_touches_no_length_off(room: Room) -> None:
+    mill(room, 250.0, 220.0, -265.0, 30.0)
+    page = MillTools(room.desk)
+    page.choose(0, page.columns.index("length"))
+    page.here()
+    assert "LEANS" in room.desk.notice
+    assert room.store.mill_tools() == {}
+
+
+def test_a_workpiece_is_not_touched_with_a_tool_of_unknown_length(room: Room) -> None:
+    mill(room, 1.0, 2.0, 3.0, tool=9)
+    page = Presets(room.desk)
+    page.here()
+    assert "TOOL CALL" in room.desk.notice
+    assert room.store.presets() == {}
+
+
+def test_an_axis_that_was_not_homed_touches_nothing_off(room: Room) -> None:
+    mill(room)
+    room.now[0] = replace(room.now[0], homed=(True, True, False, True, True))
+    MillTools(room.desk).here()
+    page = MillTools(room.desk)
+    page.choose(0, page.columns.index("length"))
+    page.here()
+    assert "Z DOES NOT KNOW ITS POSITION" in room.desk.notice
+
+
+def test_a_preset_that_was_never_set_is_not_put_in_force(room: Room) -> None:
+    mill(room)
+    page = Presets(room.desk)
+    page.activate()
+    assert "NEVER SET" in room.desk.notice
+    assert room.desk.book.preset == 0
+
+
+# --- what the interpreter counts with -------------------------------------------------------------------
+
+
+def test_tables_become_lengths_names_and_the_preset_in_force() -> None:
+    plain = setup_for(named_machine("ac-table-mill"), tools={}, secondary={})
+    tools = {5: MillRow("Mill 12", length=80.0, radius=6.0, dl=-0.1, dr=0.02, point=118.0)}
+    made = with_mill(plain, MillOffsets(tools, {3: PresetRow(1.0, 2.0, 3.0, 15.0)}, 3))
+    assert (made.tools[5].z, made.tools[5].nose_radius) == pytest.approx((79.9, 6.02))
+    assert (made.tool_names, made.mill_tools[5].point, made.preset) == ({"MILL 12": 5}, 118.0, 3)
+    assert made.kinematics is not None
+    assert (made.kinematics.origin, made.kinematics.basic_rotation) == ((1.0, 2.0, 3.0), 15.0)
+    assert made.presets[0].origin == (230.0, 210.0, -350.0)  # of the machine file
+
+
+def test_a_lathe_and_a_preset_that_has_gone_are_left_as_they_were() -> None:
+    lathe = setup_for(named_machine("gt75"), tools={}, secondary={})
+    assert with_mill(lathe, MillOffsets({5: MillRow(length=1.0)})) is lathe
+    plain = setup_for(named_machine("ac-table-mill"), tools={}, secondary={})
+    made = with_mill(plain, MillOffsets({}, {}, 7))
+    assert made.preset == 0
+    assert made.kinematics == plain.kinematics
