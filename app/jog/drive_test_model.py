@@ -36,7 +36,7 @@ from app.scope.scope_model import Scope
 from core.executor import drive_test_path
 from core.executor.commands import Command, DriveTest, DriveTestOn, JogStop
 from core.executor.drive_test_path import DriveTestPath, Limits, Shape
-from core.executor.jogging import room_to_limit
+from core.executor.jog_line import room_to_limit
 from core.executor.snapshot import BY_HAND, Snapshot, State
 from core.machine.machine_model import Axis, Machine
 from core.records.record import Record
@@ -385,7 +385,7 @@ class DriveTests:
         why = self.barred()
         notes = (
             *((why,) if why else ()),
-            tr("Of the slide: a size of X is half of a diameter."),
+            *(() if "Y" in self.drives else (tr("Of the slide: a size of X is half of a diameter."),)),
             tr("Nothing is written to a drive."),
         )
         heads, shares = ("", tr("KEY"), tr("CHOSEN")), (0.34, 0.16, 0.5)

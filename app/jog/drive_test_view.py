@@ -17,7 +17,7 @@ from app.jog.drive_test_model import DriveTests
 from app.jog.held_keys_view import HeldKeysPage
 from app.jog.jog_cross_view import JogCross
 from app.scope.analyses import scaled
-from app.scope.analyses_view import Above, chart_class
+from app.scope.analyses_view import PLOTS, Above, chart_class
 from app.screen import page_table
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.page_base import Host, KeyActions
@@ -74,6 +74,11 @@ class DriveTestPage(HeldKeysPage):
         self.chart.setGeometry(self.room.rect())
         self.chart.show()
 
+    def ahead(self) -> bool:
+        """The chart, then its plots."""
+        self.model.scope.filing.poll()
+        return self.chart is None or not self.chart.ready(PLOTS)
+
     def key_actions(self) -> KeyActions:
         """The choice, figures, and the pages beside it."""
         model = self.model
@@ -115,11 +120,13 @@ class DriveTestPage(HeldKeysPage):
         self.pad.shown = (model.hold.asked, model.hold.held and model.hold.held.source, snapshot.state)
         shown = (model.found, model.metric)
         if self.chart is not None and shown != self._drawn:
-            self._drawn = shown
-            self.chart.show_drawing(scaled(model.drawing(), 1.0 if model.metric else 1.0 / MM_PER_INCH))
+            drawing = scaled(model.drawing(), 1.0 if model.metric else 1.0 / MM_PER_INCH)
+            if self.chart.show_drawing(drawing):
+                self._drawn = shown
 
     def dress(self) -> None:
-        """Other colours are in force."""
+        """Other colours, or another language, are in force."""
+        self._drawn = None
         if self.chart is not None:
             self.chart.dress()
 

@@ -14,6 +14,7 @@ from app.desk.translation import tr
 from app.jog.jog_speeds import CONTINUOUS, JogSpeeds
 from app.offsets.offset_values import Mode
 from core.executor.commands import Command, Jog, JogStep, JogStop
+from core.executor.jog_line import Direction
 from core.executor.snapshot import Snapshot, State
 
 BEGINS = 0.3  # s within which the machine must have begun to move
@@ -34,6 +35,7 @@ class Held:
     looked: float
     repeated: float | None = None  # when the key last repeated, None: it has not yet
     moving: bool = False
+    along: Direction | None = None
 
 
 @dataclass(slots=True)
@@ -48,6 +50,7 @@ class HeldJog:
     clock: Callable[[], float]
     barred: Callable[[], str]
     mode: Mode = field(default_factory=Mode)
+    along: Callable[[str], Direction | None] = field(default=lambda _axis: None)  # of a tilted plane (3D-ROT)
     held: Held | None = None
     button: str = ""  # the input that the last press came from, where a button beside the slides did
     down: set[str] = field(default_factory=set)  # keys and fingers that were pressed and not let go yet
@@ -79,16 +82,18 @@ class HeldJog:
             return
         self.clear()
         distance = sign * self.speeds.distance(axis, self.mode)
-        self.post(JogStep(axis, distance, self.speeds.step_speed(axis)))
+        self.post(JogStep(axis, distance, self.speeds.step_speed(axis), self.along(axis)))
 
     def _begin(self, source: str, axis: str, sign: int, rapid: bool) -> None:
         velocity = sign * self.speeds.velocity(axis, self.mode, rapid=rapid)
-        self._hold(source, axis, velocity, rapid, Jog(axis, velocity, self.lease, self.button))
+        along = self.along(axis)
+        self._hold(source, axis, velocity, rapid, Jog(axis, velocity, self.lease, self.button, along))
 
     def _hold(self, source: str, axis: str, velocity: float, rapid: bool, command: Command) -> None:
         self.clear()
         now = self.clock()
-        self.held = Held(source, axis, velocity, rapid, now, now, now)
+        along = command.along if isinstance(command, Jog) else None
+        self.held = Held(source, axis, velocity, rapid, now, now, now, along=along)
         self.post(command)
 
     def repeated(self, source: str) -> None:
@@ -158,4 +163,4 @@ class HeldJog:
             self.post(self._renewal(held))
 
     def _renewal(self, held: Held, /) -> Command:
-        return Jog(held.axis, held.velocity, self.lease, self.button)
+        return Jog(held.axis, held.velocity, self.lease, self.button, held.along)

@@ -49,6 +49,7 @@ class JogCross(FingerPanel):
     ) -> None:
         super().__init__(look, parent)
         self._hold, self._directions, self._finger_on = hold, directions, finger
+        self.mark = ""  # behind X Y Z where they are those of a tilted plane
 
     def cross(self, painter: Painter, room: QRectF) -> QRectF:
         """Draw the targets into this room; where their middle is."""
@@ -78,7 +79,8 @@ class JogCross(FingerPanel):
             draw_arrow(painter, at, arrow, "on_state" if moving else "accent")
         up = 0.0 if low else 0.16
         aside = box.translated(-arrow[0] * 0.16 * box.width(), -arrow[1] * up * box.height())
-        name = f"{axis}{'+' if sign > 0 else '−'}"
+        mark = self.mark if axis in "XYZ" else ""
+        name = f"{way.shown or axis}{mark}{'+' if sign > 0 else '−'}"
         painter.write(aside, name, 3.4, "on_state" if moving else "text", at=CENTRE)
         corner = box.adjusted(0.8 * u, 0.3 * u, 0, 2.4 * u - box.height())
         painter.write(corner, way.label, 1.5, "on_state" if moving else "soft")

@@ -8,13 +8,17 @@ from app.desk import prompt_line
 from app.desk.desk import Desk
 from app.desk.prompt_line import STOP_HELD
 from app.desk.translation import tr
+from app.jog.hand_functions import HandFunctions
 from app.jog.jog_handwheel import JogHandwheel
 from app.jog.jog_homing import HomingQuestion
 from app.jog.jog_speeds import CONTINUOUS, JogDirection, JogSpeeds, directions_of
-from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z, TOUCHES
+from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z
 from app.jog.pendant_jog import PendantJog
 from app.jog.setter_touch import HeldTouch, SetterTouch
+from app.jog.skim_cut import SkimCut
+from app.jog.tilted_jog import TiltedJog
 from app.jog.tool_setting import TOOL, ToolSetting
+from app.offsets.mill_touch import MillTouch
 from core.executor.commands import JogStop
 from core.executor.snapshot import Snapshot, State
 from core.machine.machine_model import Machine
@@ -47,8 +51,11 @@ class JogModel:
     wheel: JogHandwheel = field(init=False)
     home: HomingQuestion = field(init=False)
     tool: ToolSetting = field(init=False)
+    skim: SkimCut = field(init=False)
+    hand: HandFunctions = field(init=False)
     setter: SetterTouch = field(init=False)
     pendant: PendantJog = field(init=False)
+    tilt: TiltedJog = field(init=False)
     directions: tuple[JogDirection, ...] = ()
     armed: bool = False
 
@@ -71,9 +78,21 @@ class JogModel:
         self.wheel = JogHandwheel(self.machine, self.hold, names, self._wheel_barred)
         self.home = HomingQuestion(self.machine, desk)
         self.tool = ToolSetting(desk, desk.book)
+        self.skim = SkimCut(desk, self.tool)
+        hand = desk.attached(HandFunctions)
+        if hand is None:
+            raise RuntimeError("the desk was put together without functions by hand")
+        self.hand = hand
         self.setter = SetterTouch(desk, self.machine, self.tool, lease, self.directions)
         self.hold.setter = self.setter
         self.pendant = PendantJog(self.machine, self.hold, self.wheel, names)
+        self.tilt = TiltedJog(MillTouch.of(desk).machine, self._end_hold, desk.say)
+        self.hold.along = self.tilt.along
+
+    @property
+    def asked(self) -> bool:
+        """Whether an entry is open: a question about the tool, or the spindle speed."""
+        return bool(self.tool.asked) or self.hand.asked
 
     def _now(self) -> float:
         return self.desk.hands.clock()
@@ -83,7 +102,7 @@ class JogModel:
         state = self.desk.snapshot().state
         if self.desk.stop_held():
             return tr(STOP_HELD)
-        if self.tool.asked:
+        if self.asked:
             return tr("AN ENTRY IS OPEN: PRESS RETURN OR ESC; THE ARROWS MOVE NOTHING MEANWHILE")
         if self.home.give_up():
             return tr("HOMING IS NOT DONE; PRESS THE ARROW AGAIN TO JOG")
@@ -91,17 +110,24 @@ class JogModel:
 
     def _wheel_barred(self) -> str:
         """As ``barred``, and takes nothing back."""
-        if self.tool.asked:
+        if self.tilt.on:
+            return tr("3D-ROT IS ON: THE HANDWHEEL MOVES THE MACHINE'S OWN AXES, TURN IT OFF FIRST (F5)")
+        if self.asked:
             return tr("AN ENTRY IS OPEN: THE HANDWHEEL IS OFF")
         return why_no_jog(self.desk.snapshot().state)
 
     def look(self, snapshot: Snapshot) -> None:
         """Renew what is held and follow the machine; called once a frame."""
+        self.tilt.look(snapshot)
         self.hold.look(snapshot)
         self.pendant.look(snapshot)
         self.wheel.look(snapshot)
         self.setter.look(snapshot)
         self.tool.look(snapshot)
+        self.skim.look(snapshot)
+        self.hand.look(snapshot)
+        if self.tool.asked and (self.hand.chosen or self.hand.asked):
+            self.hand.take_back()  # a hand is at the workpiece: nothing is ready beside a question
 
     def prompt(self, snapshot: Snapshot) -> str:
         """The page's own words on the prompt line."""
@@ -109,10 +135,28 @@ class JogModel:
             return tr("RETURN KEEPS WHAT WAS FOUND, ESC LEAVES THE TOOL AS IT WAS")
         if self.tool.asked:
             return tr("TYPE A VALUE OR A SUM SUCH AS .5-.002, THEN RETURN; ESC LEAVES IT AS IT WAS")
-        if touching := self.setter.prompt(snapshot):
-            return why_no_jog(snapshot.state) or touching
+        return self._prompt_of_work(snapshot) or self._prompt_of_jog(snapshot)
+
+    def _prompt_of_work(self, snapshot: Snapshot) -> str:
+        """What is being done besides moving by hand; empty when nothing is."""
+        hand = self.hand
+        if hand.asked or hand.chosen or hand.under_way(snapshot):
+            return hand.prompt(snapshot)
+        words = self.skim.words(snapshot) or self.setter.prompt(snapshot)
+        return (why_no_jog(snapshot.state) or words) if words else hand.prompt(snapshot)
+
+    def _prompt_of_jog(self, snapshot: Snapshot) -> str:
         wheel = self.wheel.choice[0] if self.wheel.choice else ""
-        return jog_prompt(snapshot.state, self.home.lost(snapshot), wheel, self.speeds.step)
+        why = jog_prompt(snapshot.state, self.home.lost(snapshot), wheel, self.speeds.step)
+        if why or not self.on_mill:
+            return why or tr(
+                "HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF"
+            )
+        if self.tilt.on:
+            return tr(
+                "HOLD A KEY TO MOVE ALONG X' Y' Z' OF WHAT IS TILTED, SHIFT FOR RAPID; F5 TURNS 3D-ROT OFF"
+            )
+        return tr("HOLD A KEY TO MOVE, WITH SHIFT FOR RAPID; F8 TOUCHES TOOLS OFF, F9 THE WORKPIECE")
 
     # --- step and speed: any change ends what is held ------------------------------------------------
 
@@ -157,11 +201,37 @@ class JogModel:
     def ask(self, what: str) -> None:
         """A question of the tool; what is held ends."""
         self.hold.other_key()
-        if self.machine.kind == "mill" and what in TOUCHES:
-            # A touched position is no length: a mill's tool would be taken for metres too short or too long.
-            self.desk.say(tr("ON A MILL THE OFFSET IS THE LENGTH OF THE TOOL: MEASURE IT, AND TYPE IT ON F8"))
-            return
+        self.hand.take_back()
+        self.skim.drop()
         self.tool.ask(what)
+
+    @property
+    def on_mill(self) -> bool:
+        """Whether the machine is a mill: its tools and presets have pages of their own."""
+        return self.machine.kind == "mill"
+
+    def turn_tilt(self) -> None:
+        """3D-ROT on or off; the handwheel is let go."""
+        self.wheel.drop("")
+        self.tilt.key(why_no_jog(self.desk.snapshot().state))
+
+    def _end_hold(self, why: str) -> None:
+        self.hold.let_go(why)
+
+    def press_hand(self, name: str) -> None:
+        """A finger on a function by hand; what is held ends."""
+        self.hold.other_key()
+        self.hand.press(name)
+
+    def ask_speed(self) -> None:
+        """A finger on the spindle speed."""
+        self.hold.other_key()
+        self.hand.ask_speed()
+
+    def show_hand(self) -> None:
+        """A finger on BY HAND, or on the key that leads back."""
+        self.hold.other_key()
+        self.hand.toggle()
 
     def choose_master(self) -> None:
         """The chosen tool becomes the master; what is held ends."""
@@ -198,7 +268,7 @@ class JogModel:
         self.home.one(axis, self.desk.snapshot(), self._no_homing())
 
     def _no_homing(self) -> str:
-        if self.tool.asked:
+        if self.asked:
             return tr("AN ENTRY IS OPEN: PRESS RETURN OR ESC FIRST")
         state = self.desk.snapshot().state
         return tr("THE SLIDES ARE STILL MOVING") if state is State.JOG else why_no_jog(state)
@@ -206,19 +276,24 @@ class JogModel:
     def opened(self) -> None:
         """The page comes up: what was changed on another is no news here."""
         self.tool.history.opened()
+        self.hand.opened()
 
     def typed(self, key: str) -> bool:
         """A typed key; False leaves it to the window."""
-        if self.tool.asked:
-            return self.tool.typed(key)
+        if self.asked:
+            return self.hand.typed(key) if self.hand.asked else self.tool.typed(key)
         if self.home.answer(key, self.desk.snapshot()):
             return True
-        if key in {"p", "P"}:
+        if (not self.on_mill and self.skim.typed(key)) or self.hand.typed(key):
+            return True
+        if key in {"v", "V"}:
+            self.wheel.next_axis()
+        elif self.on_mill:
+            return False
+        elif key in {"p", "P"}:
             self.touch_at_setter()
         elif key in {"m", "M"}:
             self.tool.master()
-        elif key in {"v", "V"}:
-            self.wheel.next_axis()
         elif key.lower() in LETTERS:
             self.ask(LETTERS[key.lower()])
         else:
@@ -227,7 +302,10 @@ class JogModel:
 
     def takes(self, key: str) -> bool:
         """Whether a character is this page's."""
-        return self.tool.takes(key) or (not self.tool.asked and key.lower() in {*LETTERS, "m", "v", "p"})
+        own = {"v", "b"} if self.on_mill else {*LETTERS, "m", "v", "p", "b", "c"}
+        if self.asked:
+            return self.hand.takes(key) or self.tool.takes(key)
+        return key.lower() in own
 
     def escape(self) -> bool:
         """Esc ends a hold, takes a question or an entry back; False when the page may be left."""
@@ -240,7 +318,9 @@ class JogModel:
         if self.wheel.choice is not None:
             self.wheel.drop(tr("THE HANDWHEEL IS OFF"))
             return True
-        return self.home.give_up() or self.tool.escape()
+        if self.home.give_up() or self.hand.take_back_by_key():
+            return True
+        return self.skim.escape() or self.tool.escape() or self.hand.hide()
 
     @property
     def active(self) -> bool:
@@ -258,16 +338,21 @@ class JogModel:
         if self.desk.snapshot().state is State.JOG:
             self.desk.post(JogStop())
 
-    def leave(self) -> None:
-        """The page goes: nothing stays held, asked or half entered."""
+    def leave(self) -> bool:
+        """Whether the page may go: nothing stays held, asked or half entered."""
         self.hold.let_go()
+        if not self.hand.leave():
+            return False
         self.wheel.drop("")
         self._stop_step()
         self.home.give_up()
         self.armed = False
+        self.tilt.off()
         self.setter.drop()
+        self.skim.drop()
         self.tool.forget()
         self.desk.clear()
+        return True
 
 
 def why_no_jog(state: State) -> str:
@@ -296,4 +381,4 @@ def jog_prompt(state: State, lost: list[str], wheel: str, step: int) -> str:
         return tr("THE HANDWHEEL MOVES {axis}: ONE CLICK IS ONE STEP; V FOR THE NEXT AXIS").format(axis=wheel)
     if step != CONTINUOUS:
         return tr("EACH PRESS OF AN ARROW IS ONE STEP; F2 CHANGES ITS LENGTH")
-    return tr("HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF")
+    return ""

@@ -15,7 +15,7 @@ from app.desk.translation import tr
 from app.jog.jog_cross_view import JogCross, draw_middle
 from app.jog.jog_homing import AxisState
 from app.jog.jog_model import JogModel
-from app.jog.jog_speeds import CONTINUOUS, rapid_word, speed_words, step_words
+from app.jog.jog_speeds import CONTINUOUS, rapid_word, speed_words, step_words, turn_words
 from app.offsets.offset_values import Mode
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.panel import Control, Shown, pressed
@@ -135,7 +135,7 @@ class Dial:
             self._turned(clicks)
 
 
-ROW = 5.6  # units: a row of tiles
+ROW, HELD = 5.0, 9.4  # units, at least: a row of tiles, a target that is held
 
 
 class JogPad(JogCross):
@@ -158,8 +158,9 @@ class JogPad(JogCross):
             (model.speeds.step, model.speeds.speed, model.armed, model.hold.mode),
             (held.axis, held.velocity) if held else None,
             (model.wheel.choice, model.home.asking, snapshot.state),
-            (model.setter.armed, snapshot.touching),
+            (model.setter.armed, snapshot.touching, model.tilt.on),
         )
+        self.mark = "'" if model.tilt.on else ""
 
     # --- drawing -------------------------------------------------------------------------------------
 
@@ -168,23 +169,34 @@ class JogPad(JogCross):
         self.frame(painter, tr("JOG  ·  HOLD TO MOVE"))
         u = self.look.u
         room = self.inside().adjusted(-0.4 * u, 0, 0.4 * u, 0.3 * u)
-        high = ROW * u
+        rows = 4 if self._model.wheel.there else 3  # of tiles: steps, speeds, homing
+        high = self._tile_height(room, rows) + 0.6 * u
         self._steps(painter, QRectF(room.x(), room.y(), room.width(), high - 0.6 * u))
         self._speeds(painter, QRectF(room.x(), room.y() + high, room.width(), high - 0.6 * u))
-        rows = 2
         if self._model.wheel.there:
             self._wheel(painter, QRectF(room.x(), room.y() + 2 * high, room.width(), high - 0.6 * u))
-            rows = 3
         foot = QRectF(room.x(), room.bottom() - high + 0.6 * u, room.width(), high - 0.6 * u)
         self._homing(painter, foot)
-        top = room.y() + rows * high
+        top = room.y() + (rows - 1) * high
         middle = self.cross(painter, QRectF(room.x(), top, room.width(), foot.y() - top - 0.6 * u))
         self._middle(painter, middle)
+
+    def _tile_height(self, room: QRectF, rows: int) -> float:
+        """A fingertip, where that leaves enough for what is held by a finger."""
+        u = self.look.u
+        left = room.height() - 3 * (HELD * u + 0.6 * u) - u
+        return max(ROW * u, min(self.look.row(ROW, 9.0, touch=True), left / rows - 0.6 * u))
 
     def _steps(self, painter: Painter, row: QRectF) -> None:
         model = self._model
         unit = tr("STEP MM") if model.hold.mode.metric else tr("STEP IN")
         words = (tr("CONT"), *step_words(model.hold.mode))
+        if self._turning:
+            unit = tr("STEP °")
+            words = (
+                tr("CONT"),
+                *(model.speeds.step_word(self._turning, model.hold.mode, n) for n in range(len(words) - 1)),
+            )
         chosen = model.speeds.step - CONTINUOUS
         presses = [partial(model.choose_step, step) for step in range(CONTINUOUS, len(words) - 1)]
         self._tiles(painter, row, Tiles((unit, "F2"), words, presses, chosen))
@@ -194,12 +206,27 @@ class JogPad(JogCross):
         unit = tr("MM/MIN") if mode.metric else tr("IN/MIN")
         rapid = f"{tr('RAPID')} {rapid_word(model.machine, mode)}"
         words = (*speed_words(mode), rapid)
+        if self._turning:
+            unit, rapid = tr("°/MIN"), f"{tr('RAPID')} {self._turning_rapid}"
+            words = (*turn_words(), rapid)
         chosen = len(words) - 1 if model.armed else model.speeds.speed
         presses: list[Callable[[], None]] = [
             *(partial(model.choose_speed, speed) for speed in range(len(words) - 1)),
             model.arm,
         ]
         self._tiles(painter, row, Tiles((unit, "F3"), words, presses, chosen, warn=model.armed))
+
+    @property
+    def _turning(self) -> str:
+        """The axis that turns, while it is held or the handwheel has it: it has units of its own."""
+        held, wheel = self._model.hold.held, self._model.wheel.choice
+        axis = held.axis if held else wheel[0] if wheel else ""
+        return axis if axis and self._model.machine.axis(axis).rotary else ""
+
+    @property
+    def _turning_rapid(self) -> str:
+        model = self._model
+        return f"{60 * model.speeds.velocity(self._turning, model.hold.mode, rapid=True):.0f}"
 
     def _wheel(self, painter: Painter, row: QRectF) -> None:
         """Which axis the handwheel moves."""
@@ -222,7 +249,8 @@ class JogPad(JogCross):
         words = [tr("HOME")]
         presses: list[Callable[[], None]] = [model.home_key]
         for axis in model.home.axes:
-            words.append(f"{axis.name} {self._known[axis.name].words}" if self._known else axis.name)
+            name = model.machine.shown(axis.name)
+            words.append(f"{name} {self._known[axis.name].words}" if self._known else name)
             presses.append(partial(model.home_one, axis.name))
         lost = frozenset(
             i
@@ -260,10 +288,16 @@ class JogPad(JogCross):
             draw_middle(painter, box, (tr("TOUCH OFF"), f"T{model.tool.number}", tr("at the setter")))
             return
         unit = tr("mm") if mode.metric else tr("in")
+        if self._turning:
+            unit = "°"
+            if step != CONTINUOUS:
+                words = (tr("STEP"), model.speeds.step_word(self._turning, mode, step))
         draw_middle(painter, box, (*words, unit if step != CONTINUOUS else f"{unit}/min"))
 
     def _speed(self, mode: Mode) -> str:
         model = self._model
         held = model.hold.held
         rapid = held.rapid if held else model.armed
+        if self._turning:
+            return self._turning_rapid if rapid else turn_words()[model.speeds.speed]
         return rapid_word(model.machine, mode) if rapid else speed_words(mode)[model.speeds.speed]

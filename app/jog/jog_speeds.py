@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from app.desk.formats import MM_PER_INCH
 from app.offsets.offset_values import Mode
@@ -78,6 +78,11 @@ def speed_words(mode: Mode) -> tuple[str, ...]:
     return tuple(f"{speed:g}" for speed in (MM_SPEEDS if mode.metric else INCH_SPEEDS))
 
 
+def turn_words() -> tuple[str, ...]:
+    """The speeds of an axis that turns, degrees a minute."""
+    return tuple(f"{60 * speed:g}" for speed in DEGREE_SPEEDS)
+
+
 def rapid_word(machine: Machine, mode: Mode) -> str:
     """The rapid of hand moves a minute."""
     return f"{machine.manual_rapid * 60 / mode.unit:.0f}"
@@ -105,6 +110,7 @@ class JogDirection:
     key: str
     label: str
     arrow: Arrow = _NO_ARROW
+    shown: str = ""  # the axis as the operator calls it, where that is another name
 
 
 # A lathe from above: X+ is towards the operator, Z+ to the right.
@@ -134,7 +140,8 @@ _ROTARY = (
 def directions_of(machine: Machine) -> tuple[JogDirection, ...]:
     """All targets of a machine; a lathe has those of C where its spindle can be positioned."""
     if machine.kind != "mill":
-        return _LATHE + (_LATHE_C if machine.c_enabled else ())
+        turning = tuple(replace(each, shown=machine.shown("C")) for each in _LATHE_C)
+        return _LATHE + (turning if machine.c_enabled else ())
     found = list(_MILL)
     rotary = [axis.name for axis in machine.axes if axis.rotary]
     for name, ends in zip(rotary, _ROTARY, strict=False):

@@ -49,6 +49,7 @@ class TouchOff:
     alone: bool = False  # of the master: the others stay
     found: float | None = None
     cause: str = ""
+    by_cut: bool = False  # what is typed was measured on a cut of the tool itself
 
     @property
     def name(self) -> str:
@@ -58,11 +59,16 @@ class TouchOff:
     def open(self, what: str, snapshot: Snapshot) -> None:
         """The tip touches now: remember where the slide stands."""
         self.what, self.at, self.alone = what, slide(what, snapshot), False
-        self.found, self.cause = None, ""
+        self.found, self.cause, self.by_cut = None, "", False
+
+    def cut(self, what: str, at: float) -> None:
+        """The tip has cut what is measured with the slide there."""
+        self.what, self.at, self.alone = what, at, False
+        self.found, self.cause, self.by_cut = None, "", True
 
     def set(self, what: str, found: float, cause: str) -> None:
         """The tool setter has found it. It stands at the machine: the master is set for itself."""
-        self.what, self.found, self.cause, self.alone = what, found, cause, True
+        self.what, self.found, self.cause, self.alone, self.by_cut = what, found, cause, True, False
 
     def place(self, text: str, mode: Mode) -> float:
         """Where the tip stands on part zero, machine mm and X a radius. Raises EntryError."""
@@ -95,13 +101,14 @@ class TouchOff:
         return why
 
     def moved(self, snapshot: Snapshot) -> bool:
-        """Whether the slide has left the place of the touch."""
-        return self.found is None and abs(slide(self.what, snapshot) - self.at) > MOVED
+        """Whether the slide has left the place of the touch. Of a cut the skim cut itself knows."""
+        return self.found is None and not self.by_cut and abs(slide(self.what, snapshot) - self.at) > MOVED
 
     def _reason(self, text: str, mode: Mode) -> str:
         """What the history says of it."""
         if self.cause:
             return f"{self.cause}{tr(', alone') if self.alone else ''}"
         unit = "MM " if mode.metric else ""
-        what = tr("touched Ø") if self.what == TOUCH_X else tr("touched Z")
+        names = (tr("cut Ø"), tr("cut Z")) if self.by_cut else (tr("touched Ø"), tr("touched Z"))
+        what = names[self.what != TOUCH_X]
         return f"{unit}{what} {text.strip()}{tr(', alone') if self.alone else ''}"

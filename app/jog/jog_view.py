@@ -11,10 +11,12 @@ from PySide6.QtWidgets import QWidget
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.translation import tr
+from app.jog.hand_functions_view import HandPanel, HandStrip
 from app.jog.held_keys_view import CHORDS, HeldKeysPage
 from app.jog.jog_model import JogModel
 from app.jog.jog_pad_view import JogPad
 from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z
+from app.jog.mill_jog_view import MillJogPanel
 from app.jog.tool_setting_view import ToolPanel
 from app.screen import page_table
 from app.screen.entry_panel import EntryPanel, EntryWords, KeyPad
@@ -22,13 +24,14 @@ from app.screen.page_base import Host, KeyActions
 from core.executor.snapshot import Snapshot
 
 Key = Qt.Key
-WIDE, ASKED = 0.46, 12.0  # share of the pad, height of the question in units
+WIDE, ASKED, WORDS = 0.46, 12.0, 2.6  # share of the pad, height of the question and of a line, units
 
 
 class JogPage(HeldKeysPage):
     """What is held is renewed from ``refresh``: a screen that stands still moves nothing for longer."""
 
     NAME = page_table.JOG
+    STARTS = True
     LABELS = (
         "MENU",
         "STEP",
@@ -51,8 +54,22 @@ class JogPage(HeldKeysPage):
         super().__init__(host, JogModel(host.desk, machine), parent)
         self.pad: JogPad = JogPad(self.look, self.model, self)
         self.numbers = KeyPad(self.look, self.touched, own=("L", tr("ALONE")), parent=self)
+        self.mill = MillJogPanel(self.look, self.model, self._to_tools, self._to_presets, self)
         self.tool = ToolPanel(self.look, self.model, self)
         self.asked = EntryPanel(self.look, self)
+        self.hand = HandPanel(self.look, self.model, self)
+        self.strip = HandStrip(self.look, self.model, self)
+
+    def _to_tools(self) -> None:
+        self.host.go(page_table.TOOLS)
+
+    def _to_presets(self) -> None:
+        self.host.go(page_table.SECCMP)
+
+    def labels(self) -> tuple[str, ...]:
+        """A mill touches off on the pages of tools and presets."""
+        labels = super().labels()
+        return (*labels[:4], "3D-ROT", "", *labels[6:9], "") if self.model.on_mill else labels
 
     def other_key(self, event: QKeyEvent) -> bool:
         """Home asks, and again homes."""
@@ -64,20 +81,21 @@ class JogPage(HeldKeysPage):
     def key_actions(self) -> KeyActions:
         """Steps, speeds, readout, touching off, undo."""
         model = self.model
-        return {
+        common: KeyActions = {
             "F2": model.next_step,
             "F3": model.next_speed,
             "F4": self.desk.next_readout,
-            "F5": lambda: model.ask(TOUCH_X),
-            "F6": lambda: model.ask(TOUCH_Z),
             "F8": partial(self.host.go, page_table.TOOLS),
             "F9": partial(self.host.go, page_table.SECCMP),
-            "F10": model.tool.undo,
         }
+        if model.on_mill:
+            return {**common, "F5": model.turn_tilt}
+        touch = {"F5": lambda: model.ask(TOUCH_X), "F6": lambda: model.ask(TOUCH_Z)}
+        return {**common, **touch, "F10": model.tool.undo}
 
     def has_field(self) -> bool:
-        """A question about the tool."""
-        return bool(self.model.tool.asked)
+        """A question about the tool, or the spindle speed."""
+        return self.model.asked
 
     # --- as every page -------------------------------------------------------------------------------
 
@@ -86,29 +104,48 @@ class JogPage(HeldKeysPage):
         return self.model.prompt(self.desk.snapshot())
 
     def leave(self) -> bool:
-        """Nothing stays held or half entered."""
+        """Nothing stays held or half entered; not while a line is under way."""
         self.pad.let_go()
-        self.model.leave()
-        return True
+        return self.model.leave()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
         """Renew what is held, show what is so."""
         if not self._has_keyboard():
             self.let_go_if_held()
         self.model.look(snapshot)
-        tool = self.model.tool
-        entering = bool(tool.asked)
+        entering, hand = self.model.asked, self.model.hand
         self.pad.setVisible(not entering)
         self.numbers.setVisible(entering)
         self.pad.show_jog(snapshot)
-        self.tool.show_tool(snapshot)
+        self.hand.setVisible(hand.shown)
+        self.mill.setVisible(self.model.on_mill and not hand.shown)
+        self.tool.setVisible(not self.model.on_mill and not hand.shown)
+        self.asked.setVisible(entering)
+        self.strip.setVisible(not entering)
+        self.hand.show_hand(snapshot)
+        if self.model.on_mill:
+            self.mill.show_mill(snapshot)
+        else:
+            self.tool.show_tool(snapshot)
+        self._show_question(snapshot)
+
+    def _show_question(self, snapshot: Snapshot) -> None:
+        """What is asked; while nothing is, what else can be opened here."""
+        tool, hand = self.model.tool, self.model.hand
+        if hand.asked:
+            foot = tr("Return enters it, Esc leaves it as it was")
+            self.asked.asked = EntryWords("", tr("SPINDLE SPEED, RPM?"), hand.text, "", foot)
+            return
         foot = tool.note() or (
             tr("Return enters it, Esc leaves it as it was")
-            if entering
+            if self.model.asked
             else tr("T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo")
         )
+        if self.model.on_mill:
+            foot = ""
         text = tool.touching.cause if tool.by_setter else tool.text
         self.asked.asked = EntryWords("", tool.question(), text, tool.old_to_new(), foot, tool.large)
+        self.strip.show_strip(snapshot, tool.history.last_in_words, foot)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Pad at the left; tool over question at the right."""
@@ -116,6 +153,10 @@ class JogPage(HeldKeysPage):
         left = round(WIDE * self.width())
         for part in (self.pad, self.numbers):
             part.setGeometry(0, 0, left, self.height())
-        high, wide = round(ASKED * u), self.width() - left - gap
-        self.tool.setGeometry(left + gap, 0, wide, self.height() - high - gap)
-        self.asked.setGeometry(left + gap, self.height() - high, wide, high)
+        wide, asked = self.width() - left - gap, round(ASKED * u)
+        strip = round(self.look.row(7.0, 9.0, touch=True) + WORDS * u)
+        sides: tuple[tuple[QWidget, int], ...] = ((self.tool, asked), (self.mill, strip), (self.hand, asked))
+        for side, foot in sides:
+            side.setGeometry(left + gap, 0, wide, self.height() - foot - gap)
+        self.asked.setGeometry(left + gap, self.height() - asked, wide, asked)
+        self.strip.setGeometry(left + gap, self.height() - strip, wide, strip)

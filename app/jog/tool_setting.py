@@ -26,6 +26,7 @@ from app.offsets.tool_fields import ToolFields
 from core.executor.snapshot import Snapshot
 from core.store.offset_fields import REMARK_LONGEST, Sort
 from core.store.store_rows import OFFSETS, Kind, ToolRow
+from core.tool_edges import edge_name, edge_number
 
 TOOL = "tool"  # asked: its number
 Pair = tuple[float, float]
@@ -73,6 +74,12 @@ class ToolSetting:
         self.asked, self.text = what, ""
         self.touching.set(what, value, cause)
 
+    def measured(self, what: str, at: float) -> None:
+        """A cut that was made with the slide there, machine mm, is to be measured: ask for its size."""
+        self.desk.clear()
+        self.asked, self.text = what, ""
+        self.touching.cut(what, at)
+
     @property
     def moved(self) -> float | None:
         """How far what was found is from what the tool had, with its wear, mm; None: it had nothing."""
@@ -87,7 +94,7 @@ class ToolSetting:
 
     def question(self) -> str:
         """What is asked now; empty when nothing is."""
-        name = f"T{self.number}"
+        name = edge_name(self.number)
         if self.asked == TOOL:
             return tr("TOOL NUMBER?")
         if self.by_setter:
@@ -104,12 +111,14 @@ class ToolSetting:
         """What has to be known before the answer is entered."""
         number, new = self.number, self.fields.new
         if self.masters and self.touching.alone:
-            return tr("T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)").format(number=number)
+            return tr("T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)").format(number=edge_number(number))
         if self.masters:
-            return tr("T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)").format(number=number)
+            return tr("T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)").format(
+                number=edge_number(number)
+            )
         if new.number and new.number == number:
             text = tr("T{number} IS SET WHEN {axis} IS TOUCHED TOO")
-            return text.format(number=number, axis=new.missing.upper())
+            return text.format(number=edge_number(number), axis=new.missing.upper())
         return ""
 
     def old_to_new(self) -> str:
@@ -175,7 +184,7 @@ class ToolSetting:
     def ask(self, what: str) -> None:
         """Open a question; says why not."""
         snapshot = self.desk.snapshot()
-        why = "" if what == TOOL else self._barred(what, snapshot)
+        why = "" if what == TOOL else self.barred(what, snapshot)
         if why:
             self.desk.say(why)
             return
@@ -186,14 +195,15 @@ class ToolSetting:
         if what in TOUCHES:
             self.touching.open(what, snapshot)
 
-    def _barred(self, what: str, snapshot: Snapshot) -> str:
+    def barred(self, what: str, snapshot: Snapshot) -> str:
+        """Why this is not asked of the tool now; empty when it may be."""
         why = self.book.locked or refusal(snapshot, correction=what in CORRECTIONS)
         if why or not self.number:
             return why or tr("WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST")
         if what in TOUCHES:
             return jog_touch_off.refusal(what, snapshot)
         if self.row is None:
-            return tr("T{number} WAS NEVER SET: TOUCH X AND Z FIRST").format(number=self.number)
+            return tr("T{number} WAS NEVER SET: TOUCH X AND Z FIRST").format(number=edge_number(self.number))
         return ""
 
     def close(self) -> None:
@@ -234,7 +244,7 @@ class ToolSetting:
         if self.asked == TOOL:
             return self._tool()
         snapshot = self.desk.snapshot()
-        why = self._barred(self.asked, snapshot)
+        why = self.barred(self.asked, snapshot)
         if why:
             return why
         return self._touched(snapshot) if self.asked in TOUCHES else self._field()
@@ -266,7 +276,7 @@ class ToolSetting:
 
     def master(self) -> None:
         """The chosen tool becomes the master; being it already, none is."""
-        why = self._barred("master", self.desk.snapshot())
+        why = self.barred("master", self.desk.snapshot())
         self.history.answer(why or self.fields.master(self.number))
 
     def undo(self) -> None:
@@ -278,7 +288,7 @@ class ToolSetting:
         """Close the question, forget half a tool; False when there was nothing."""
         was = bool(self.asked or self.fields.new.number)
         if was and self.number:
-            self.desk.say(tr("T{number} IS AS IT WAS").format(number=self.number))
+            self.desk.say(tr("T{number} IS AS IT WAS").format(number=edge_number(self.number)))
         self.forget()
         return was
 

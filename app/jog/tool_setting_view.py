@@ -18,6 +18,7 @@ from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter
 from app.screen.panel import Panel, Shown
 from app.screen.tool_tip_drawing import draw_tip
 from core.executor.snapshot import Snapshot
+from core.tool_edges import edge_name
 
 # Field, and the key that asks for it.
 FIELDS = (
@@ -68,7 +69,7 @@ class ToolPanel(Panel):
         u, tool = self.look.u, self._model.tool
         box = QRectF(room.x(), room.y(), 13 * u, room.height())
         self._target(painter, box, partial(self._model.ask, TOOL), lit=tool.asked == TOOL)
-        name = f"T{tool.number}" if tool.number else "T–"
+        name = edge_name(tool.number) if tool.number else "T–"
         painter.write(box.adjusted(0, 0.6 * u, 0, 0), name, 5.0, "text", at=CENTRE)
         self._key(painter, box, "T")
         side = room.height()
@@ -117,7 +118,8 @@ class ToolPanel(Panel):
         painter.write(upper, label, 1.5, "soft")
         text = self._text(name)
         room = QRectF(box.x() + u, box.y() + 2.3 * u, box.width() - 2 * u, box.height() - 2.5 * u)
-        painter.write(room, text, 2.5, "text", at=LEFT if name in {"remark", "master"} else RIGHT)
+        at = LEFT if name in {"remark", "master"} else RIGHT
+        painter.write(room, text, 2.5, "text", at=at, raw=name == "remark")
 
     def _text(self, name: str) -> str:
         tool, mode = self._model.tool, self._mode

@@ -1,0 +1,357 @@
+"""Spindle, coolant and collet by hand on the Jog page: each is a line of MDI, started by the palms.
+
+There is no second way to switch anything on: what is chosen here goes through proof, permission, guard,
+switch and E-stop as a line that is typed in MDI. Switching off needs no palms.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from app.desk import prompt_line
+from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError, value_of
+from app.desk.desk import Desk
+from app.desk.prepared_line import PreparedLine, ProveLine
+from app.desk.readouts import TURNING
+from app.desk.sheet import edited
+from app.desk.translation import tr
+from core.executor.commands import ForceOutput, Reset, SpindleStop
+from core.executor.snapshot import CYCLE, STOPPED, Snapshot, Starts, State
+from core.language.diagnostics import Diagnostic
+from core.machine.machine_model import Machine
+
+FORWARD, REVERSE, STOP = "forward", "reverse", "stop"
+COOLANT_ON, COOLANT_OFF = "coolant on", "coolant off"
+CLOSE, OPEN = "close", "open"
+KEYS = {
+    "1": FORWARD,
+    "2": REVERSE,
+    "0": STOP,
+    "3": COOLANT_ON,
+    "4": COOLANT_OFF,
+    "5": CLOSE,
+    "6": OPEN,
+}
+NOT_OPENED = "THE COLLET IS NOT OPENED BY HAND WHILE THE SPINDLE TURNS: 0 STOPS IT"
+SPEED = "9"  # the key that asks for it
+
+
+class Words(NamedTuple):
+    """How a language says it; ``speed`` alone where S is no word of M3's line."""
+
+    forward: str
+    reverse: str
+    coolant: str
+    collet: tuple[str, str] = ("", "")  # close, open
+    speed: str = ""
+
+
+WORDS = {
+    "omniturn": Words("G97M03S{rpm:g}", "G97M04S{rpm:g}", "M08", ("M12", "M13")),
+    "sinumerik": Words("G97 S{rpm:g} M3", "G97 S{rpm:g} M4", "M8"),
+    "klartext": Words("M3", "M4", "M8", speed="TOOL CALL S{rpm:g}"),
+}
+
+
+@dataclass(slots=True)
+class HandFunctions:
+    """What is chosen, made ready and on; ``open`` while the Jog page is in front, ``shown`` its panel."""
+
+    desk: Desk
+    machine: Machine
+    prove: ProveLine
+    line: PreparedLine = field(init=False)
+    open: bool = False
+    shown: bool = False
+    chosen: str = ""
+    rpm: float = 0.0  # that was typed last, 0: none yet
+    asked: bool = False  # the speed is being typed
+    text: str = ""
+    _wanted: str = ""  # what is to be chosen once the speed is known
+    _armed: bool = False  # Cycle Start begins lines alone
+    _moved: bool = False  # the slides have left the place where the last choice was proved
+
+    def __post_init__(self) -> None:
+        self.line = PreparedLine(self.prove, self.desk.post, refused=self._refused)
+
+    @property
+    def words(self) -> Words:
+        """How this machine's language says it."""
+        return WORDS[self.machine.language]
+
+    @property
+    def there(self) -> frozenset[str]:
+        """What this machine has, of all functions."""
+        found = {FORWARD, REVERSE, STOP}
+        if "coolant" in self.machine.outputs:
+            found |= {COOLANT_ON, COOLANT_OFF}
+        if "collet" in self.machine.outputs and self.words.collet[0]:
+            found |= {CLOSE, OPEN}
+        return frozenset(found)
+
+    # --- page ----------------------------------------------------------------------------------------
+
+    def opened(self) -> None:
+        """The Jog page comes up: from now on Cycle Start begins what is chosen here, and no program."""
+        self.open = True
+        self._arm(self.desk.snapshot())
+
+    def _arm(self, snapshot: Snapshot) -> None:
+        if not self._armed and snapshot.state not in CYCLE:
+            self._armed = True
+            self.line.take_back()
+
+    def leave(self) -> bool:
+        """Whether the page may be left: as in MDI not while a line is under way, and the spindle stays on."""
+        if self.under_way(self.desk.snapshot()):
+            self.desk.say(tr("A LINE IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R"))
+            return False
+        if self._armed:
+            self.line.leave()
+        self.open = self.shown = self._armed = False
+        self._forget()
+        return True
+
+    def close(self) -> None:
+        """End the thread that proves."""
+        self.line.close()
+
+    def under_way(self, snapshot: Snapshot) -> bool:
+        """Whether a line that was chosen here is being run."""
+        return self._armed and snapshot.state in CYCLE and snapshot.starts is Starts.LINE
+
+    # --- what keys and fingers do --------------------------------------------------------------------
+
+    def toggle(self) -> None:
+        """Show what can be switched by hand, or tool setting again."""
+        self.take_back()
+        self.desk.clear()
+        self.shown = not self.shown
+
+    def press(self, name: str) -> None:
+        """Choose a function; what switches off acts at once."""
+        if name == STOP:
+            self.stop()
+        elif name == COOLANT_OFF:
+            self._coolant_off()
+        elif name in {FORWARD, REVERSE} and not self.speed:
+            self.ask_speed()
+            self._wanted = name
+        else:
+            self._choose(name)
+
+    @property
+    def speed(self) -> float:
+        """rpm that FORWARD and REVERSE start: the S in force, or as typed where S stands in their line."""
+        modal = self.desk.snapshot().modal
+        typed = 0.0 if self.words.speed else self.rpm
+        return typed or (0.0 if modal.css else modal.rpm)
+
+    def _choose(self, name: str) -> None:
+        snapshot = self.desk.snapshot()
+        why = self._barred(snapshot)
+        if not why and name == OPEN and self._gripping(snapshot):
+            why = tr(NOT_OPENED)
+        if why:
+            self.desk.say(why)
+            return
+        self.desk.clear()
+        self.chosen = name
+        self.line.ask(self.text_of(name), snapshot, self._failed)
+
+    def text_of(self, name: str) -> str:
+        """The line of MDI that this is."""
+        words = self.words
+        lines = {
+            FORWARD: words.forward,
+            REVERSE: words.reverse,
+            COOLANT_ON: words.coolant,
+            CLOSE: words.collet[0],
+            OPEN: words.collet[1],
+            SPEED: words.speed,
+        }
+        return lines[name].format(rpm=self.rpm if name == SPEED else self.speed)
+
+    def _barred(self, snapshot: Snapshot) -> str:
+        """Why nothing is chosen now; the executor says the same of a start, and more."""
+        if snapshot.state is State.IDLE:
+            return ""
+        words = {
+            State.DISABLED: tr("THE DRIVES ARE OFF: PRESS D FOR DRIVES ON"),
+            State.ESTOP: tr("THE E-STOP IS PRESSED: NOTHING MOVES"),
+            State.FAULT: tr("AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R"),
+            State.JOG: tr("THE SLIDES ARE STILL MOVING"),
+            State.HOME: tr("THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM"),
+        }
+        return words.get(snapshot.state) or tr("SOMETHING IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R")
+
+    def stop(self) -> None:
+        """The spindle stops, at once and without palms; a line that was begun here is given up."""
+        snapshot = self.desk.snapshot()
+        self.take_back()
+        self.desk.clear()
+        self.desk.post(Reset() if self.under_way(snapshot) else SpindleStop())
+
+    def _coolant_off(self) -> None:
+        self.take_back()
+        if self.desk.snapshot().state is State.JOG:
+            self.desk.say(tr("THE SLIDES ARE STILL MOVING"))
+        else:
+            self.desk.clear()
+            self.desk.post(ForceOutput("coolant", on=False))
+
+    # --- the speed -----------------------------------------------------------------------------------
+
+    def ask_speed(self) -> None:
+        """Ask for the spindle speed."""
+        self.take_back()
+        self.desk.clear()
+        self.asked, self.text = True, ""
+
+    def typed(self, key: str) -> bool:
+        """A key; False leaves it to the page."""
+        if self.asked:
+            if key == "Enter":
+                self._enter()
+            elif key in {"Back", "Delete"} or self.takes(key):
+                self.text = edited(self.text, key, LONGEST)
+            else:
+                return False
+            return True
+        name = KEYS.get(key, "")
+        if name == STOP or (self.shown and name in self.there):
+            self.press(name)
+        elif self.shown and key == SPEED:
+            self.ask_speed()
+        elif key in {"b", "B"}:
+            self.toggle()
+        else:
+            return False
+        return True
+
+    def takes(self, key: str) -> bool:
+        """Whether a character is text of the speed."""
+        return self.asked and key in CHARACTERS
+
+    def _enter(self) -> None:
+        try:
+            rpm = value_of(self.text)
+        except EntryError as error:
+            self.desk.say(tr("REFUSED: {why}").format(why=error))
+            return
+        highest = self.desk.snapshot().spindle_limit or self.machine.spindle.rpm_max
+        if not 0.0 < rpm <= highest:
+            self.desk.say(
+                tr("REFUSED: {rpm:g} RPM IS NOT BETWEEN 0 AND {highest:g}").format(rpm=rpm, highest=highest)
+            )
+            return
+        self.rpm, self.asked, self.text = rpm, False, ""
+        wanted, self._wanted = self._wanted, ""
+        if self.words.speed:
+            self._choose(SPEED)
+        elif wanted:
+            self._choose(wanted)
+
+    # --- take back -----------------------------------------------------------------------------------
+
+    def take_back(self) -> bool:
+        """Nothing is ready or asked any more; False when nothing was."""
+        was = bool(self.chosen or self.asked)
+        if self._armed and self.chosen and not self.under_way(self.desk.snapshot()):
+            self.line.take_back()
+        self._forget()
+        return was
+
+    def _forget(self) -> None:
+        self._moved = False
+        self.chosen, self.asked, self.text, self._wanted = "", False, "", ""
+
+    def take_back_by_key(self) -> bool:
+        """Esc takes back what is ready or asked; False when nothing is, or it is under way."""
+        if self.under_way(self.desk.snapshot()) or not self.take_back():
+            return False
+        self.desk.clear()
+        return True
+
+    def hide(self) -> bool:
+        """Esc shows tool setting again; False where that is shown, or a line is under way."""
+        if self.under_way(self.desk.snapshot()):
+            return False
+        was, self.shown = self.shown, False
+        return was
+
+    def _refused(self, error: Diagnostic) -> None:
+        self._forget()
+        self.desk.say(tr("REFUSED: {why}").format(why=f"{tr(error.message)} {tr(error.hint)}".strip()))
+
+    def _failed(self, why: str) -> None:
+        self._forget()
+        self.desk.say(tr("THE LINE CANNOT BE PROVED: {why}").format(why=why))
+
+    # --- every frame ---------------------------------------------------------------------------------
+
+    def look(self, snapshot: Snapshot) -> None:
+        """Take up what the worker has found; what was ready is so no more where the slides have moved."""
+        self._arm(snapshot)
+        if self._armed:
+            self.line.keep(snapshot)
+        if self.line.look(snapshot):
+            self._forget()
+        if self.chosen and snapshot.state not in {State.IDLE, *CYCLE}:
+            self.take_back()
+            self._moved = snapshot.state is State.JOG
+        elif self.chosen == OPEN and self._gripping(snapshot):
+            self.take_back()
+            self.desk.say(tr(NOT_OPENED))
+
+    @staticmethod
+    def _gripping(snapshot: Snapshot) -> bool:
+        """Whether the collet holds what turns, or may turn by a switch."""
+        return HandFunctions.turns(snapshot) or snapshot.spindle_asked != 0.0
+
+    def barred(self) -> str:
+        """Why the palms start nothing now; empty when they may."""
+        snapshot = self.desk.snapshot()
+        if snapshot.state in CYCLE:
+            return "" if self.under_way(snapshot) else prompt_line.NOT_HERE
+        if snapshot.state is not State.IDLE or self.line.ready is not None:
+            return ""
+        if not self.shown:
+            return prompt_line.NOT_HERE
+        return tr("NOTHING IS CHOSEN: 1 TO 6 SAY WHAT THE PALMS SWITCH ON")
+
+    def prompt(self, snapshot: Snapshot) -> str:
+        """What can be done now; empty where it is the jog's to say."""
+        if self.asked:
+            return tr("TYPE A SPEED IN RPM, THEN RETURN; ESC LEAVES IT")
+        if self.under_way(snapshot):
+            words = tr("{line} IS UNDER WAY: 0 STOPS THE SPINDLE")
+            if snapshot.state in STOPPED:
+                words = tr("{line} IS HELD: BOTH PALMS GO ON, 0 STOPS THE SPINDLE AND GIVES IT UP")
+            return words.format(line=snapshot.block_text)
+        if snapshot.state is not State.IDLE:
+            return ""
+        if self.line.busy:
+            return tr("PROVING THE LINE")
+        return self._ready_words(snapshot)
+
+    def _ready_words(self, snapshot: Snapshot) -> str:
+        if self.line.ready is not None:
+            words = tr("TO RUN {line} {start}; ESC TAKES IT BACK")
+            line = self.line.ready.source.text
+            if self.words.speed and self.chosen in {FORWARD, REVERSE}:
+                line = f"{line} (S{self.speed:g})"  # which S counts does not stand in it
+            return words.format(line=line, start=tr(self.desk.start_words))
+        if self._moved:
+            return tr("THE SLIDES WERE MOVED: CHOOSE AGAIN WHAT THE PALMS SHALL SWITCH ON")
+        if self.turns(snapshot):
+            return tr("THE SPINDLE TURNS: KEEP CLEAR; 0 STOPS IT, HOLD AN ARROW TO MOVE")
+        if not self.shown:
+            return ""
+        return tr("1 TO 6 SAY WHAT THE PALMS SWITCH ON, 9 THE SPEED; B SHOWS TOOL SETTING")
+
+    @staticmethod
+    def turns(snapshot: Snapshot) -> bool:
+        """Whether the spindle turns, or is told to."""
+        return abs(snapshot.rpm_actual) > TURNING or snapshot.rpm_command != 0.0

@@ -1,0 +1,227 @@
+"""Skim cut: a tool is touched off by a cut of its own: cut, retract, stop the spindle, measure, type.
+
+Of a diameter X is kept from the cut to the answer, of a face Z: the slide goes away along the other axis.
+What counts is where the slide stood in the cut; has it moved since, that may be the place of another cut.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum, auto
+
+from app.desk.desk import Desk
+from app.desk.formats import length
+from app.desk.readouts import TURNING
+from app.desk.translation import tr
+from app.jog.jog_touch_off import MOVED, TOUCH_X, TOUCH_Z, TOUCHES
+from app.jog.tool_setting import ToolSetting
+from core.executor.snapshot import CYCLE, Snapshot, State
+
+LEAST_CUT = 0.25  # mm along the other axis with the spindle turning: less is no cut that can be measured
+
+
+class CutStep(Enum):
+    """What is to be done next."""
+
+    OFF = auto()
+    AXIS = auto()  # a diameter or a face?
+    CUT = auto()
+    AWAY = auto()  # retract along the other axis, stop the spindle
+    MEASURE = auto()  # the size is being typed
+
+
+@dataclass(slots=True)
+class SkimCut:
+    """Nothing is changed before the size is entered; Esc gives it up at any time."""
+
+    desk: Desk
+    tool: ToolSetting
+    step: CutStep = CutStep.OFF
+    what: str = ""  # TOUCH_X or TOUCH_Z
+    at: float = 0.0  # where the slide stood in the cut, machine mm, by its encoder
+    sent: float = 0.0  # and where it was sent: the cut pushes it away, and it springs back
+    way: float = 0.0  # mm gone along the other axis with the spindle turning, since this one stood still
+    spoilt: str = ""  # why the last cut counts no more
+    _stands: tuple[float, float] | None = field(default=None)  # where both slides stood when that began
+
+    @property
+    def open(self) -> bool:
+        """Whether one is under way."""
+        return self.step is not CutStep.OFF
+
+    @property
+    def axis(self) -> str:
+        """The axis that is kept."""
+        return TOUCHES[self.what].upper() if self.what else ""
+
+    @property
+    def other(self) -> str:
+        """The axis along which the tool cuts and goes away."""
+        return "Z" if self.axis == "X" else "X"
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def begin(self) -> None:
+        """Ask for the axis, or say why no tool can be set now."""
+        if self.open:
+            return
+        why = self.tool.barred(TOUCH_X, self.desk.snapshot())
+        if why:
+            self.desk.say(why)
+            return
+        self.desk.clear()
+        self.step = CutStep.AXIS
+
+    def choose(self, what: str) -> None:
+        """A diameter is to be cut, or a face."""
+        why = self.tool.barred(what, self.desk.snapshot())
+        if why:
+            self.desk.say(why)
+            return
+        self.desk.clear()
+        self.what, self.step = what, CutStep.CUT
+        self._anew(self.desk.snapshot())
+
+    def made(self) -> None:
+        """The cut is made: from here on the place of the slide counts."""
+        snapshot = self.desk.snapshot()
+        why = self._no_cut(snapshot)
+        if why:
+            self.desk.say(why)
+            return
+        self.desk.clear()
+        self.at = snapshot.tip["XZ".index(self.axis)]
+        self.sent, self.step, self.spoilt = self._place(snapshot), CutStep.AWAY, ""
+
+    def _no_cut(self, snapshot: Snapshot) -> str:
+        """Why there is no cut to be measured yet; empty when there is."""
+        if snapshot.state is not State.IDLE:
+            return tr("LET THE SLIDE COME TO REST FIRST")
+        if self.way >= LEAST_CUT:
+            return ""
+        if abs(snapshot.rpm_actual) <= TURNING:
+            return tr("NO CUT YET, AND THE SPINDLE STANDS: B SWITCHES IT ON")
+        return tr("NO CUT YET: {axis} HAS MOVED LAST; FEED ALONG {other} WITH {axis} KEPT").format(
+            axis=self.axis, other=self.other
+        )
+
+    def typed(self, key: str) -> bool:
+        """A key; False leaves it to the page."""
+        if self.step is CutStep.AXIS and key.lower() in {"x", "z"}:
+            self.choose(TOUCH_X if key.lower() == "x" else TOUCH_Z)
+        elif self.step is CutStep.CUT and key == "Enter":
+            self.made()
+        elif not self.open and key in {"c", "C"}:
+            self.begin()
+        else:
+            return False
+        return True
+
+    def escape(self) -> bool:
+        """Esc gives it up; False when none is under way."""
+        was = self.open
+        if was:
+            self.drop()
+            self.desk.say(tr("THE SKIM CUT IS GIVEN UP: NOTHING WAS CHANGED"))
+        return was
+
+    def drop(self) -> None:
+        """It is over, and has changed nothing."""
+        if self.step is CutStep.MEASURE:
+            self.tool.close()
+        self.step, self.what, self.spoilt = CutStep.OFF, "", ""
+        self.way, self._stands = 0.0, None
+
+    # --- every frame ---------------------------------------------------------------------------------
+
+    def look(self, snapshot: Snapshot) -> None:
+        """Follow slides and spindle."""
+        if not self.open or self.step is CutStep.AXIS:
+            return
+        why = self._spoilt(snapshot)
+        if why:
+            self.drop()
+            self.desk.say(why)
+        elif self.step is CutStep.CUT:
+            self._follow(snapshot)
+        elif abs(self._place(snapshot) - self.sent) > MOVED:
+            self._moved(snapshot)
+        elif self.step is CutStep.AWAY:
+            self._measure(snapshot)
+        elif not self.tool.asked:  # kept, or left as it was
+            self.drop()
+        elif self._turns(snapshot):
+            self.tool.close()
+            self.step = CutStep.AWAY
+
+    def _spoilt(self, snapshot: Snapshot) -> str:
+        """Why it cannot go on; empty when it may."""
+        if snapshot.state in {State.ESTOP, State.FAULT, State.DISABLED, State.HOME}:
+            return tr("THE SKIM CUT IS GIVEN UP, THE MACHINE HAS STOPPED: NOTHING WAS CHANGED")
+        if not snapshot.homed[snapshot.axes.index(self.axis)]:
+            return tr("THE SKIM CUT IS GIVEN UP, {axis} IS NOT HOMED: NOTHING WAS CHANGED").format(
+                axis=self.axis
+            )
+        return ""
+
+    def _follow(self, snapshot: Snapshot) -> None:
+        """How far the tool has gone along the other axis since this one moved last, the spindle turning."""
+        if self._stands is None or abs(self._place(snapshot) - self._stands[0]) > MOVED:
+            self._anew(snapshot)
+        elif self._turns(snapshot):
+            self.way = max(self.way, abs(self._beside(snapshot) - self._stands[1]))
+        elif not self.way:
+            self._stands = (self._stands[0], self._beside(snapshot))
+
+    def _anew(self, snapshot: Snapshot) -> None:
+        self.way, self._stands = 0.0, (self._place(snapshot), self._beside(snapshot))
+
+    def _moved(self, snapshot: Snapshot) -> None:
+        """The place that was kept may be that of another cut now."""
+        mode = self.tool.history.mode
+        away = self._place(snapshot) - self.sent
+        shown = length(2 * away if self.axis == "X" and mode.diameter else away, mode.metric)
+        if self.step is CutStep.MEASURE:
+            self.tool.close()
+        self.step = CutStep.CUT
+        self._anew(snapshot)
+        words = tr("{axis} HAS MOVED {away} SINCE THE CUT: NOTHING WAS CHANGED, CUT AGAIN OR PRESS ESC")
+        self.spoilt = words.format(axis=self.axis, away=shown)
+
+    def _measure(self, snapshot: Snapshot) -> None:
+        """The spindle stands and so do the slides: the size may be taken."""
+        if snapshot.state is State.IDLE and not self._turns(snapshot):
+            self.step = CutStep.MEASURE
+            self.tool.measured(self.what, self.at)
+
+    @staticmethod
+    def _turns(snapshot: Snapshot) -> bool:
+        return abs(snapshot.rpm_actual) > TURNING or snapshot.rpm_command != 0.0
+
+    def _place(self, snapshot: Snapshot) -> float:
+        return snapshot.demand[snapshot.axes.index(self.axis)]
+
+    def _beside(self, snapshot: Snapshot) -> float:
+        return snapshot.demand[snapshot.axes.index(self.other)]
+
+    # --- what is shown -------------------------------------------------------------------------------
+
+    def words(self, snapshot: Snapshot) -> str:
+        """What is to be done next, and how."""
+        if self.step is CutStep.AXIS:
+            return tr("SKIM CUT: X FOR A DIAMETER, Z FOR A FACE; ESC GIVES IT UP")
+        if self.step is CutStep.AWAY:
+            words = tr("RETRACT IN {other} ONLY, {axis} IS KEPT; THEN 0 STOPS THE SPINDLE; ESC GIVES IT UP")
+            return words.format(axis=self.axis, other=self.other)
+        return self._words_of_cut(snapshot) if self.step is CutStep.CUT else ""
+
+    def _words_of_cut(self, snapshot: Snapshot) -> str:
+        if self.spoilt and self.way < LEAST_CUT:
+            return self.spoilt
+        if self.way >= LEAST_CUT and snapshot.state not in CYCLE:
+            words = tr("CUT ALONG {other} FAR ENOUGH TO BE MEASURED, THEN RETURN: THE CUT IS MADE")
+            return words.format(other=self.other)
+        if not self._turns(snapshot):
+            return tr("SWITCH THE SPINDLE ON (B), THEN JOG INTO THE CUT; ESC GIVES IT UP")
+        words = tr("JOG {axis} TO THE CUT, SLOWLY, THEN FEED ALONG {other}; ESC GIVES IT UP")
+        return words.format(axis=self.axis, other=self.other)

@@ -1,0 +1,200 @@
+"""3D-ROT: which way the keys move in a tilted plane, what limits hold, and what ends it."""
+
+from __future__ import annotations
+
+import dataclasses
+from math import cos, radians, sin, sqrt
+
+import numpy as np
+import pytest
+
+from app.compose.kinematics_chain import kinematics_of
+from app.compose.machine_files import parse_machine, shipped_machine
+from app.jog.tilted_jog import JogFrame, TiltedJog, jog_frame
+from core.executor.commands import Jog, JogStep, JogStop
+from core.executor.jog_line import JogLine
+from core.executor.snapshot import Snapshot, State
+from core.geometry.rotation_frames import IDENTITY, X_AXIS, turned
+from core.interpreter.working_plane import PlaneSystem, Swivel
+from tests.executor.rig import Rig
+from tests.machine.mill import MILL
+
+ALONG = (0.0, -sin(radians(30.0)), cos(radians(30.0)))  # Z of a plane that is tilted by 30 degrees about X
+LEASE = 0.06
+
+
+@pytest.fixture
+def rig() -> Rig:
+    rig = Rig(machine=parse_machine(MILL, "mill"))
+    rig.ready()
+    return rig
+
+
+def held(rig: Rig, velocity: float, seconds: float, along: tuple[float, float, float] = ALONG) -> None:
+    """Z of the plane is held so long."""
+    for _ in range(round(seconds / 0.03)):
+        rig.post(Jog("Z", velocity, LEASE, along=along))
+        rig.run(0.03)
+    rig.post(JogStop())
+    rig.until(State.IDLE)
+
+
+# --- the machine ----------------------------------------------------------------------------------------
+
+
+def test_the_slides_stay_on_the_line_of_the_plane(rig: Rig) -> None:
+    shots: list[Snapshot] = []
+    rig.watch.append(shots.append)
+    held(rig, 25.0, 1.2)
+    at = np.array([shot.demand[:3] for shot in shots])
+    gone = at @ np.array(ALONG)
+    assert gone[-1] > 20.0
+    assert np.abs(at - np.outer(gone, ALONG)).max() < 1e-9
+    assert rig.shot.demand[3:] == (0.0, 0.0)
+
+
+def test_a_step_along_the_plane_is_exactly_its_length(rig: Rig) -> None:
+    rig.post(JogStep("Z", -1.0, 8.0, ALONG))
+    rig.until(State.IDLE)
+    assert rig.shot.demand[:3] == pytest.approx([-share for share in ALONG], abs=1e-9)
+
+
+def test_the_first_axis_at_its_end_ends_the_way(rig: Rig) -> None:
+    """At 45 degrees: Z has .51 mm to its end, of which .01 is kept; .5 of it is .5 √2 of way."""
+    rig.post(JogStep("Z", 1.0, 20.0))
+    rig.until(State.IDLE)
+    machine = rig.machine
+    axes = [
+        dataclasses.replace(axis, travel=(-500.0, 1.51)) if axis.name == "Z" else axis
+        for axis in machine.axes
+    ]
+    slanted = (0.0, sqrt(0.5), sqrt(0.5))
+    line = JogLine.along(axes, slanted)
+    assert line.room(rig.shot.demand, 1.0) == pytest.approx(0.5 * sqrt(2.0))
+    assert line.room(rig.shot.demand, -1.0) == pytest.approx((499.99) * sqrt(2.0))
+    assert line.amax == pytest.approx(machine.axes[1].amax * sqrt(2.0))
+
+
+def test_no_axis_goes_beyond_its_travel(rig: Rig) -> None:
+    for _ in range(40):
+        held(rig, 1000.0, 0.9)
+    y, z = rig.shot.demand[1:3]
+    assert y == pytest.approx(-499.99 * 0.5 / cos(radians(30.0)), abs=0.05)
+    assert z == pytest.approx(499.99, abs=0.02)
+    rig.post(Jog("Z", 25.0, LEASE, along=ALONG))
+    rig.run(0.1)
+    assert "Z is at the end of its travel in +" in rig.said("refused")[-1]
+    rig.post(JogStep("Z", 1.0, 8.0, ALONG))
+    rig.run(0.05)
+    assert "at the end" in rig.said("refused")[-1]
+
+
+@pytest.mark.parametrize(
+    ("along", "told"), [((0.0, 0.0, 2.0), "a direction of length 1"), ((float("nan"), 0.0, 1.0), "length 1")]
+)
+def test_what_is_no_direction_moves_nothing(rig: Rig, along: tuple[float, float, float], told: str) -> None:
+    rig.post(Jog("Z", 25.0, LEASE, along=along))
+    rig.run(0.1)
+    assert told in rig.said("refused")[-1]
+    assert rig.shot.demand == (0.0,) * 5
+
+
+def test_a_jog_does_not_go_on_along_another_line(rig: Rig) -> None:
+    rig.post(Jog("Z", 25.0, LEASE, along=ALONG))
+    rig.run(0.03)
+    rig.post(Jog("Z", 25.0, LEASE))
+    rig.until(State.IDLE)
+    assert "Z is still being jogged" in rig.said("refused")[-1]
+    at = np.array(rig.shot.demand[:3])
+    assert np.abs(at - (at @ np.array(ALONG)) * np.array(ALONG)).max() < 1e-9
+
+
+def test_a_lathe_has_no_plane_to_jog_in() -> None:
+    rig = Rig()
+    rig.ready()
+    rig.post(Jog("Z", 5.0, LEASE, along=ALONG))
+    rig.run(0.1)
+    assert "needs X, Y and Z" in rig.said("refused")[-1]
+
+
+# --- which way ------------------------------------------------------------------------------------------
+
+
+PLANE = turned(X_AXIS, 30.0)
+
+
+def shot(machine: str, *at: float, tilted: bool = False) -> Snapshot:
+    """The machine stands there; ``tilted``: in a plane of 30 degrees about X of the workpiece."""
+    chain = kinematics_of(shipped_machine(machine))
+    assert chain is not None
+    place = chain.place({"A": 30.0}, PLANE) if tilted else chain.place({})
+    frame, targets = (PLANE, (30.0, 0.0, 0.0)) if tilted else (IDENTITY, (0.0, 0.0, 0.0))
+    system = PlaneSystem(place, chain, frame, tilted=tilted, targets=targets, line=7)
+    zero = (0.0, 0.0, 0.0)
+    rig = Rig()
+    rig.ready()
+    swivel = Swivel(zero, zero, zero, (0.0, None, 0.0), system)
+    return dataclasses.replace(rig.shot, axes=chain.names, actual=at, swivel=swivel)
+
+
+def test_once_the_table_has_turned_z_of_the_plane_is_z_of_the_machine() -> None:
+    machine = kinematics_of(shipped_machine("ac-table-mill"))
+    frame = jog_frame(machine, shot("ac-table-mill", 0.0, 0.0, 0.0, 30.0, 0.0, tilted=True))
+    assert isinstance(frame, JogFrame)
+    assert frame.direction("Z") == pytest.approx((0.0, 0.0, 1.0))
+    assert frame.direction("A") is None
+    assert frame.words == "TILTED PLANE OF LINE 7"
+
+
+def test_a_head_that_stands_in_its_plane_leans_the_keys() -> None:
+    machine = kinematics_of(shipped_machine("fork-head-mill"))
+    assert machine is not None
+    at = dict.fromkeys(machine.names, 0.0) | {"A": 30.0}
+    frame = jog_frame(machine, shot("fork-head-mill", *(at[name] for name in machine.names), tilted=True))
+    assert isinstance(frame, JogFrame)
+    assert frame.direction("Z") == pytest.approx(ALONG)
+    assert frame.direction("X") == pytest.approx((1.0, 0.0, 0.0))
+
+
+def test_a_table_that_stands_elsewhere_than_the_plane_asks_is_told() -> None:
+    machine = kinematics_of(shipped_machine("ac-table-mill"))
+    told = jog_frame(machine, shot("ac-table-mill", 0.0, 0.0, 0.0, 29.9, 0.02, tilted=True))
+    assert isinstance(told, str)
+    assert told.startswith("A AND C NOT WHERE THE PLANE ASKS")
+
+
+def test_without_a_plane_a_leaning_head_moves_along_its_tool() -> None:
+    """The fork head at A 40, C 0: the tool leans about X."""
+    machine = kinematics_of(shipped_machine("fork-head-mill"))
+    assert machine is not None
+    at = dict.fromkeys(machine.names, 0.0) | {"A": 40.0}
+    frame = jog_frame(machine, shot("fork-head-mill", *(at[name] for name in machine.names)))
+    assert isinstance(frame, JogFrame)
+    assert frame.direction("Z") == pytest.approx((0.0, -sin(radians(40.0)), cos(radians(40.0))))
+    upright = jog_frame(machine, shot("fork-head-mill", *(0.0,) * 5))
+    assert isinstance(upright, str)
+
+
+def test_it_ends_with_the_plane_and_is_refused_where_nothing_is_tilted() -> None:
+    told: list[str] = []
+    ended: list[str] = []
+    tilt = TiltedJog(kinematics_of(shipped_machine("ac-table-mill")), ended.append, told.append)
+    flat = shot("ac-table-mill", *(0.0,) * 5)
+    tilt.look(flat)
+    tilt.key()
+    assert not tilt.on
+    assert "NOTHING IS TILTED" in told[-1]
+    there = shot("ac-table-mill", 0.0, 0.0, 0.0, 30.0, 0.0, tilted=True)
+    tilt.look(there)
+    tilt.key("A PROGRAM IS UNDER WAY")
+    assert (tilt.on, told[-1]) == (False, "A PROGRAM IS UNDER WAY")
+    tilt.key()
+    assert tilt.along("Z") == pytest.approx((0.0, 0.0, 1.0))
+    tilt.look(flat)  # PLANE RESET
+    assert (tilt.on, tilt.along("Z")) == (False, None)
+    assert "3D-ROT IS OFF" in ended[-1]
+
+
+def test_a_frame_is_that_of_the_keys() -> None:
+    frame = JogFrame(turned(X_AXIS, 90.0), "")
+    assert frame.direction("Y") == pytest.approx((0.0, 0.0, 1.0))

@@ -1,0 +1,240 @@
+"""Skim cut: cut, retract along the other axis, stop, measure, type. Before it is kept nothing changes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from app.jog.skim_cut import CutStep
+from core.executor.commands import JogStep
+from core.executor.snapshot import State
+from tests.screen.jog.bench import INCH, JogBench, Key
+from tests.screen.jog.test_by_hand import by_estop, palms, proved
+
+X, Z = 0, 1
+
+
+def step(jog: JogBench) -> CutStep:
+    """What is to be done next."""
+    jog.run(0.02)
+    return jog.page.model.skim.step
+
+
+def goes(jog: JogBench, key: Key, seconds: float = 1.0) -> None:
+    """An arrow is held so long."""
+    jog.down(key)
+    jog.run(seconds)
+    jog.up(key)
+    jog.rests()
+
+
+def spindle(jog: JogBench) -> None:
+    hand = jog.page.model.hand
+    jog.type("1" if hand.shown else "b1")
+    if hand.asked:
+        jog.enter("200")
+    proved(jog)
+    palms(jog)
+    jog.until(lambda: jog.shot.rpm_actual > 190.0 and jog.shot.state is State.IDLE)
+
+
+def begun(jog: JogBench, axis: str = "x") -> None:
+    """T1 is to be set by a cut."""
+    jog.type("t")
+    jog.enter("1")
+    jog.type("c" + axis)
+    assert step(jog) is CutStep.CUT
+
+
+def cut(jog: JogBench) -> float:
+    """A diameter is cut along Z; where X stood, machine mm."""
+    begun(jog)
+    spindle(jog)
+    goes(jog, Key.Key_Down, 0.5)
+    goes(jog, Key.Key_Left)
+    jog.key(Key.Key_Return)
+    assert step(jog) is CutStep.AWAY
+    return jog.shot.actual[X]
+
+
+def rows(jog: JogBench) -> dict[int, object]:
+    jog.saved()
+    return dict(jog.desk.book.tools)
+
+
+def test_a_diameter(jog: JogBench) -> None:
+    x = cut(jog)
+    goes(jog, Key.Key_Right)
+    assert step(jog) is CutStep.AWAY  # the spindle still turns
+    jog.type("0")
+    jog.until(lambda: jog.page.model.tool.asked != "")
+    assert step(jog) is CutStep.MEASURE
+    jog.type(".5")
+    jog.run(0.05)
+    assert "→" in jog.page.asked.asked.change
+    assert rows(jog) == {}
+    jog.key(Key.Key_Return)
+    assert "Z IS TOUCHED" in jog.page.model.tool.note()  # a new tool is kept with both axes
+    assert step(jog) is CutStep.OFF
+    jog.key(Key.Key_F6)
+    jog.enter("0")
+    jog.saved()
+    jog.run(0.1)
+    row = jog.desk.book.tools[1]
+    assert row.x == pytest.approx(x - 0.25 * INCH, abs=1e-6)  # machine X less half of the diameter
+    jog.key(Key.Key_F10)
+    assert rows(jog) == {}
+
+
+def test_a_set_tool_shows_old_and_new_and_its_history_says_how(jog: JogBench) -> None:
+    test_a_diameter(jog)
+    jog.key(Key.Key_F5)
+    jog.enter(".4")
+    jog.key(Key.Key_F6)
+    jog.enter("0")
+    jog.saved()
+    x = cut(jog)
+    jog.type("0")
+    jog.until(lambda: jog.page.model.tool.asked != "")
+    jog.type(".3")
+    jog.key(Key.Key_Return)
+    jog.saved()
+    jog.run(0.1)
+    assert jog.desk.book.tools[1].x == pytest.approx(x - 0.15 * INCH, abs=1e-6)
+    assert jog.store.history(limit=1)[0].why == "cut Ø .3"
+
+
+def test_a_face(jog: JogBench) -> None:
+    begun(jog, "z")
+    spindle(jog)
+    goes(jog, Key.Key_Left, 0.5)
+    goes(jog, Key.Key_Up)
+    jog.key(Key.Key_Return)
+    z = jog.shot.actual[Z]
+    goes(jog, Key.Key_Down)  # retract in X, Z is kept
+    jog.type("0")
+    jog.until(lambda: jog.page.model.tool.asked == "touch z")
+    assert jog.page.model.tool.touching.at == pytest.approx(z, abs=1e-6)
+
+
+def test_x_that_has_moved_is_told_and_the_cut_counts_no_more(jog: JogBench) -> None:
+    cut(jog)
+    goes(jog, Key.Key_Right)
+    goes(jog, Key.Key_Down, 0.3)
+    assert "X HAS MOVED" in jog.prompt
+    assert step(jog) is CutStep.CUT
+    goes(jog, Key.Key_Up, 0.3)  # coming back is no cut either
+    jog.type("0")
+    jog.run(1.5)
+    assert step(jog) is CutStep.CUT
+    jog.key(Key.Key_Return)
+    assert "NO CUT YET" in jog.prompt
+    assert rows(jog) == {}
+
+
+def test_x_that_moves_while_the_size_is_asked(jog: JogBench) -> None:
+    cut(jog)
+    jog.type("0")
+    jog.until(lambda: jog.page.model.tool.asked != "")
+    jog.type(".5")
+    jog.key(Key.Key_Left)
+    assert jog.shot.state is State.IDLE  # an entry is open: no arrow moves anything
+    jog.desk.post(JogStep("X", 0.5, 5.0))  # whoever else moves it
+    jog.run(0.5)
+    assert "X HAS MOVED" in jog.prompt
+    jog.key(Key.Key_Return)
+    assert rows(jog) == {}
+
+
+def no_spindle(jog: JogBench) -> str:
+    goes(jog, Key.Key_Left)
+    return "SPINDLE STANDS"
+
+
+def x_last(jog: JogBench) -> str:
+    spindle(jog)
+    goes(jog, Key.Key_Left)
+    goes(jog, Key.Key_Down, 0.3)
+    return "X HAS MOVED LAST"
+
+
+def moving(jog: JogBench) -> str:
+    spindle(jog)
+    jog.down(Key.Key_Left)
+    jog.run(0.5)
+    return "COME TO REST"
+
+
+@pytest.mark.parametrize("how", [no_spindle, x_last, moving])
+def test_what_is_no_cut(jog: JogBench, how: Callable[[JogBench], str]) -> None:
+    begun(jog)
+    said = how(jog)
+    if how is moving:
+        jog.page.model.skim.made()
+    else:
+        jog.key(Key.Key_Return)
+    assert said in jog.prompt
+    assert step(jog) is CutStep.CUT
+
+
+def in_the_cut(jog: JogBench) -> None:
+    begun(jog)
+
+
+def away(jog: JogBench) -> None:
+    cut(jog)
+
+
+def measuring(jog: JogBench) -> None:
+    cut(jog)
+    jog.type("0")
+    jog.until(lambda: jog.page.model.tool.asked != "")
+    jog.type(".5")
+
+
+@pytest.mark.parametrize("until", [in_the_cut, away, measuring])
+def test_esc_gives_it_up_and_changes_nothing(jog: JogBench, until: Callable[[JogBench], None]) -> None:
+    until(jog)
+    jog.key(Key.Key_Escape)
+    assert step(jog) is CutStep.OFF
+    assert "NOTHING WAS CHANGED" in jog.prompt
+    jog.key(Key.Key_Return)
+    assert rows(jog) == {}
+
+
+@pytest.mark.parametrize("until", [away, measuring])
+def test_estop_gives_it_up(jog: JogBench, until: Callable[[JogBench], None]) -> None:
+    until(jog)
+    jog.desk.estop()
+    jog.run(0.3)
+    assert step(jog) is CutStep.OFF
+    assert rows(jog) == {}
+
+
+def test_leaving_the_page_gives_it_up(jog: JogBench) -> None:
+    cut(jog)
+    jog.key(Key.Key_F8)
+    jog.key(Key.Key_F1)
+    jog.key(Key.Key_F5)
+    assert step(jog) is CutStep.OFF
+    assert rows(jog) == {}
+
+
+def test_without_a_tool_or_a_home_it_is_refused(lost: JogBench) -> None:
+    lost.type("c")
+    assert "WHICH TOOL" in lost.prompt
+    lost.type("t")
+    lost.enter("1")
+    lost.type("c")
+    assert "NOT HOMED" in lost.prompt
+    assert step(lost) is CutStep.OFF
+
+
+def test_the_size_is_not_asked_while_the_spindle_turns(jog: JogBench) -> None:
+    cut(jog)
+    goes(jog, Key.Key_Right)
+    jog.run(1.0)
+    assert jog.page.model.tool.asked == ""
+    assert "STOPS THE SPINDLE" in jog.prompt
+    by_estop(jog)
