@@ -88,10 +88,18 @@ class BlockSink(Protocol):
     """
 
     ahead: float
+    reach: float  # rpm up to which the spindle can follow the radius: 0 while it is not laid out for that
 
-    @property
-    def fastest(self) -> float:
-        """What the controller itself allows its slides, mm/s: its slowest axis."""
+    def lay_out(self, highest: float) -> None:
+        """Up to so many rpm the spindle will have to follow the radius; 0: its speed is constant. Said before
+        each speed, so that a driver whose spindle has steps can choose what they count from.
+        """
+        ...
+
+    def fastest(self, dx: float, dz: float) -> float:
+        """mm/s of a straight way in this direction on which no slide is faster than controller and machine
+        file allow it.
+        """
         ...
 
     @property

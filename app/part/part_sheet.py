@@ -373,7 +373,7 @@ class PartSheet:
         )
 
     def _is_kept(self, name: str, said: str) -> None:
-        self.desk.say(said)
+        self.desk.done(said)
         loaded = self.loaded
         if self.name != name or loaded.path is None:
             return

@@ -44,7 +44,7 @@ class FaceBuilder:
     def mill(self, move: PlaneMove, frame: Face, way: list[Spot], stroke: int) -> None:
         """A move of plane switching, in the frame that stood at ``frame.c0`` when it was entered."""
         self.wanted = True
-        turn = math.radians(frame.c0)
+        turn = -math.radians(frame.heading)
         cos, sin = math.cos(turn), math.sin(turn)
         x, y, _ = move.start
         self.pencil.start(x * cos + y * sin, x * sin - y * cos)
@@ -122,9 +122,9 @@ class FaceAndSideBuilder:
     def add(self, block: Block, stroke: int, way: list[Spot]) -> None:
         """One move with C locked; ``way`` are the mill's points behind its start, for a move in a plane."""
         modal, plane = block.modal, block.plane
-        dz = block.offset_z - modal.tool_z
+        dz = block.offset_z - modal.base_z
         if plane is None:
-            dx = block.offset_x - modal.tool_x
+            dx = block.offset_x - modal.base_x
             self._face.move(block, block.x0 + dx, block.x + dx, stroke)
             self._side.move(block, block.x + dx, dz, stroke)
         elif isinstance(plane.frame, Side):

@@ -55,7 +55,7 @@ def tip_of(snapshot: Snapshot, job: Job | None = None) -> Tip:
     x, z, *rotary = snapshot.actual
     turned = rotary[0] - modal.offset_c if rotary and modal.c_locked else None
     h = getattr(modal.mill.frame, "h", 0.0) if modal.mill is not None else 0.0
-    tip = Tip(snapshot.block, z - modal.tool_z, x - modal.tool_x, turned, h)
+    tip = Tip(snapshot.block, z - modal.base_z, x - modal.base_x, turned, h)
     found = snapshot.interrupted
     if snapshot.block or found is None or job is None or found.text != job.text_digest:
         return tip

@@ -33,6 +33,7 @@ BAND = 0.45  # how much of a band covers what it marks
 SMOOTH_TO = 3_000  # points up to which lines are smoothed, wide and dashed; above that they are pixels
 BUDGET = 0.006  # seconds a frame may give to drawing
 SMOOTH_SLICE, SLICE = 150, 20_000  # points drawn at a time
+PIXELS = 120_000  # of their chords: one takes 15 ns, and most are set twice
 # Address, bytes (two doubles a point), writable. The stub of VoidPtr knows only a bare address.
 _MEMORY = cast("Callable[[object, int, bool], bytes]", shiboken6.VoidPtr)
 
@@ -121,7 +122,7 @@ class Layers:
 
     def _draw_base(self) -> None:
         polyline, ink = self._under[self._stage]
-        end = min(self._drawn + self._slice, len(polyline.z))
+        end = self._slice_end(polyline, self._drawn, len(polyline.z))
         self._draw(self._base, polyline, (self._drawn, end), ink)
         self._drawn = end
         if end >= len(polyline.z):
@@ -130,9 +131,19 @@ class Layers:
     def _draw_done(self) -> None:
         if self.image is self._base:
             self.image = self._base.copy()
-        end = min(self._done + self._slice, self._wanted)
+        end = self._slice_end(self.polyline, self._done, self._wanted)
         self._draw(self.image, self.polyline, (self._done, end), Ink.DONE)
         self._done = end
+
+    def _slice_end(self, polyline: Polyline, begin: int, most: int) -> int:
+        """Up to which point is drawn at once: pixels count where chords are long, points where short."""
+        end = min(begin + self._slice, most)
+        if self._smooth or end - begin < 2:
+            return end
+        z, x, seen = polyline.z[begin:end], polyline.x[begin:end], self.projection
+        far = seen.scale * np.maximum(np.abs(np.diff(z)), np.abs(np.diff(x)))
+        pixels = np.cumsum(1.0 + np.minimum(far, max(seen.width, seen.height)))
+        return begin + 1 + int(np.searchsorted(pixels, PIXELS))
 
     def _draw(self, image: QImage, polyline: Polyline, part: tuple[int, int], ink: Ink) -> None:
         (self._draw_smooth if self._smooth else self._draw_pixels)(image, polyline, part, ink)

@@ -120,7 +120,7 @@ class PictureBuilder:
             for block, end in zip(series, ends.tolist(), strict=True):
                 self.add(block, end)
             return
-        dx, dz = like.offset_x - like.modal.tool_x, like.offset_z - like.modal.tool_z
+        dx, dz = like.offset_x - like.modal.base_x, like.offset_z - like.modal.base_z
         self._pencil.start(float(series.z0[0]) + dz, float(series.x0[0]) + dx)
         self._pencil.row(series.z + dz, series.x + dx, _stroke(like))
         self._ends.frombytes(ends.tobytes())
@@ -167,8 +167,8 @@ class PictureBuilder:
             self._move(block, stroke)
 
     def _move(self, block: Block, stroke: Stroke) -> None:
-        dx = block.offset_x - block.modal.tool_x
-        dz = block.offset_z - block.modal.tool_z
+        dx = block.offset_x - block.modal.base_x
+        dz = block.offset_z - block.modal.base_z
         self._pencil.start(block.z0 + dz, block.x0 + dx)
         if block.kind is Kind.ARC:
             self._arc(block, dx, dz, stroke)
@@ -187,14 +187,15 @@ class PictureBuilder:
     def _mill(self, block: Block, plane: PlaneMove, way: list[Spot], stroke: Stroke) -> None:
         """What the slides do while the mill goes its way in a plane."""
         modal = block.modal
-        dx = block.offset_x - modal.tool_x + modal.secondary_x
-        dz = block.offset_z - modal.tool_z + modal.secondary_z
+        dx = block.offset_x - modal.base_x + modal.secondary_x
+        dz = block.offset_z - modal.base_z + modal.secondary_z
+        side = 1.0 if plane.frame.far else -1.0
         for number, (x, y, z) in enumerate((plane.start, *way)):
             if isinstance(plane.frame, Face):
                 h = plane.frame.h
-                at = (z + dz, dx - math.sqrt(max(x * x + y * y - h * h, 0.0)))
+                at = (z + dz, dx + side * math.sqrt(max(x * x + y * y - h * h, 0.0)))
             else:
-                at = (plane.frame.z0 - x + dz, dx - z)
+                at = (plane.frame.z0 - x + dz, dx + side * z)
             if number:
                 self._pencil.to(*at, stroke)
             else:

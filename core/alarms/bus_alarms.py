@@ -1,11 +1,16 @@
-"""Alarms of what the control hangs on: bus, I/O modules, feeder process, controller."""
+"""Alarms of what the control hangs on: bus, I/O modules, feeder process, controller, LinuxCNC's HAL."""
 
 from __future__ import annotations
 
 from core.alarms.alarm_entry import Code, Entries, off, stop
 
 # Behind these nothing can be told to the machine any more: that it cannot be made safe follows from them.
-CUT_OFF: frozenset[Code] = frozenset(("bus", "feeder-gone", "feeder-silent", "controller-lost"))
+CUT_OFF: frozenset[Code] = frozenset(
+    (
+        *("bus", "feeder-gone", "feeder-silent", "controller-lost"),
+        *("hal-bridge", "hal-silent", "hal-thread", "hal-setup"),
+    )
+)
 WIRES: Entries = {
     "bus": off(
         501,
@@ -100,6 +105,45 @@ WIRES: Entries = {
         "the safety door is open",
         ("the door was opened in the cycle", "the door's switch or cable"),
         "spindle and coolant are off: close the door, Reset, Drives On",
+        tells=True,
+    ),
+    "hal-bridge": off(
+        531,
+        "the bridge to HAL has ended",
+        (
+            "its process was ended or has failed: HAL plays what it has, brakes, takes the power",
+            "the computer ran out of memory",
+        ),
+        "PRESS E-STOP, the spindle may turn; look at the tool; Reset starts HAL anew. Home where asked",
+        tells=True,
+    ),
+    "hal-silent": off(
+        532,
+        "the bridge to HAL is silent",
+        (
+            "the computer is overloaded: HAL plays what it has, brakes, takes the power",
+            "something has stopped the bridge's process",
+        ),
+        "PRESS E-STOP, the spindle may turn; look where the tool is; end other programs, Reset, Drives On",
+        tells=True,
+    ),
+    "hal-thread": off(
+        533,
+        "HAL's real-time thread stands",
+        (
+            "its process (rtapi_app) has ended: what drives the slides now is the boards' watchdogs alone",
+            "a board's driver waits for a board: its cable, its power",
+        ),
+        "PRESS E-STOP, the spindle may turn; look at the boards; Reset starts HAL anew. Home where asked",
+    ),
+    "hal-setup": off(
+        534,
+        "HAL does not come up",
+        (
+            "a pin that the machine file names is not there, or is of another kind",
+            "a board or component does not load, or another session of LinuxCNC runs",
+        ),
+        "run 'turndesk machine check' with the machine file: it names every pin; put it right, Reset",
         tells=True,
     ),
 }

@@ -13,6 +13,7 @@ from core.executor.machine_control import MachineControl
 from core.executor.snapshot import CYCLE, Starts, State
 from core.executor.station_signals import StationWatch
 
+LAMP_TEST = 2.0  # s
 _SWITCHES = ("single_block", "optional_stop", "cycle_repeat", "no_count")
 _AT_REST = frozenset({State.IDLE, State.DISABLED})
 _UNDER_WAY = "a program is under way: it must end or be reset before another is loaded"
@@ -45,7 +46,7 @@ class CommandHandler:
             commands.DriveTest: self._test,
             commands.DriveTestOn: lambda command: control.drive_test.renew(command.lease),
             commands.Touch: self._touch,
-            commands.JogStop: lambda _: control.stop_jog("it was let go"),
+            commands.JogStop: lambda _: control.let_go(),
             commands.Wheel: lambda command: control.wheel.select(command, control.state),
             commands.WheelOff: lambda _: control.wheel.off(control.state),
             commands.Home: self._home,
@@ -177,12 +178,12 @@ class CommandHandler:
         if command.while_on and not self._context.button(command.while_on):
             control.stop_jog("its button is up")  # let go a moment ago, which the screen has not seen yet
             return
-        why = control.wheel.bars(control.state)
-        why = why or jogger.refusal(command.axis, command.velocity, command.lease)
+        why = control.jog_ended or control.wheel.bars(control.state)
+        why = why or jogger.refusal(command.axis, command.velocity, command.lease, command.along)
         if why:
             jogger.stop()
             self._refuse(f"jog: {why}")
-        elif jogger.move(command.axis, command.velocity, command.lease):
+        elif jogger.move(command.axis, command.velocity, command.lease, command.along):
             jogger.while_on = command.while_on
             control.enter(State.JOG)
         elif control.state is State.IDLE:
@@ -193,9 +194,9 @@ class CommandHandler:
         if self._may_not_jog():
             return
         why = control.wheel.bars(control.state)
-        why = why or jogger.step_refusal(command.axis, command.distance, command.speed)
+        why = why or jogger.step_refusal(command.axis, command.distance, command.speed, command.along)
         if not why:
-            jogger.step(command.axis, command.distance, command.speed)
+            jogger.step(command.axis, command.distance, command.speed, command.along)
             control.enter(State.JOG)
             return
         if not jogger.stepping:
@@ -255,7 +256,10 @@ class CommandHandler:
 
     def _stop_spindle(self, _: commands.SpindleStop) -> None:
         if self._control.state in CYCLE:
-            self._refuse("a program is under way: its spindle is stopped by feed hold and reset")
+            if self._control.status.starts is Starts.LINE:  # begun behind what the screen could see
+                self._control.reset()
+            else:
+                self._refuse("a program is under way: its spindle is stopped by feed hold and reset")
             return
         self._context.spindle.stop()
         self._context.log_stop("by-hand", "the spindle was stopped by hand")
@@ -264,6 +268,10 @@ class CommandHandler:
         why = self._output_refusal(command.name, command.on)
         if why:
             self._refuse(why)
+            return
+        if command.name in self._context.machine.lamps:
+            self._context.lamp_test = self._context.now + LAMP_TEST
+            self._context.log("force", "lamp test")
             return
         self._context.ports.io.write(command.name, command.on)
         self._context.log("force", f"{command.name} {'on' if command.on else 'off'} by hand")

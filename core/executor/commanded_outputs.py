@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from core.machine.machine_model import OutputModel
+from core.machine.signal_table import LAMPS
 from core.ports import DigitalIO
 
 _TELLS = 0.5  # s in which an output that was written may still be told as it was before
@@ -30,7 +31,8 @@ class CommandedOutputs:
     def __init__(self, io: DigitalIO, models: Mapping[str, OutputModel]) -> None:
         self._io = io
         self._models = models
-        self._wanted = dict(io.outputs())
+        self._lamps = frozenset(LAMPS) & models.keys()  # the control's own: no program commands them
+        self._wanted = dict(self.outputs())
         self._written: dict[str, float] = {}  # when each was written last, told late by some drivers
 
     def inputs(self) -> Mapping[str, bool]:
@@ -38,7 +40,14 @@ class CommandedOutputs:
         return self._io.inputs()
 
     def outputs(self) -> Mapping[str, bool]:
-        """The outputs as they are, by name."""
+        """The outputs as they are, by name, but for the lamps of the signal tower."""
+        outputs = self._io.outputs()
+        return (
+            {name: on for name, on in outputs.items() if name not in self._lamps} if self._lamps else outputs
+        )
+
+    def everything(self) -> Mapping[str, bool]:
+        """The same with the lamps."""
         return self._io.outputs()
 
     def write(self, name: str, on: bool) -> None:
@@ -51,7 +60,7 @@ class CommandedOutputs:
         """Every output to its safe state."""
         self._io.safe()
         for model in self._models.values():
-            if model.safe is not None:
+            if model.safe is not None and model.name not in self._lamps:
                 self._wanted[model.name], self._written[model.name] = model.safe, self._now
 
     def look(self, now: float) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from core.executor.drive_test_path import DriveTestPath
 from core.executor.job import Job, Proof
+from core.executor.jog_line import Direction
 from core.executor.snapshot import Starts
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 
@@ -84,12 +85,16 @@ class FeedOverride(Command):
 
 @dataclass(frozen=True, slots=True)
 class Jog(Command):
-    """Move one axis while the lease lasts; mm/s or degrees/s, signed. Renewed before it ends, or it ends."""
+    """Move one axis while the lease lasts; mm/s or degrees/s, signed. Renewed before it ends, or it ends.
+
+    ``along``: the axis of this name of a tilted plane (3D-ROT), as its direction in the machine's X Y Z.
+    """
 
     axis: str
     velocity: float
     lease: float
     while_on: str = ""  # an input that has to stay on: a button beside the slides
+    along: Direction | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,12 +115,13 @@ class Touch(Command):
 class JogStep(Command):
     """Move one axis by exactly ``distance``, mm or degrees, at ``speed``, mm/s or degrees/s, and rest there.
 
-    Refused while anything moves, and where the whole of it would leave the travel.
+    Refused while anything moves, and where the whole of it would leave the travel. ``along`` as of ``Jog``.
     """
 
     axis: str
     distance: float
     speed: float
+    along: Direction | None = None
 
 
 @dataclass(frozen=True, slots=True)

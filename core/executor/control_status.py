@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.job import Job, Proof
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import Alarm, Starts, State
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.kept_pass import KeptPass
 from core.interpreter.modal_state import Modal
 from core.interpreter.omniturn.carry_over import after_end
 
@@ -56,6 +58,7 @@ class ControlStatus:
     prepared_proof: Proof | None = None
     next_barred: str = ""  # why no other part begins, as whoever keeps tool lives has told
     tool_open: bool = False  # MDI has called a tool, and its first move is still to come
+    kept: KeptPass[Any] | None = None  # what lines of MDI in other languages have left in force
     interrupted: InterruptedJob | None = None  # a program that did not come to its end
     modal: Modal = field(default_factory=Modal)  # in force while no program is under way
 
@@ -64,14 +67,25 @@ class ControlStatus:
 
 
 def modal_at_power_up(context: MachineContext) -> Modal:
-    """The state that the control is switched on with: it counts in what the machine's builder counts in."""
+    """The state that the control is switched on with: it counts in what the machine's builder counts in.
+
+    SINUMERIK is switched on with DIAMON.
+    """
     machine = context.machine
-    return modal_as_machine(Modal(metric=not machine.inch, rapid_rate=machine.manual_rapid), context)
+    begins = Modal(
+        metric=not machine.inch,
+        diameter=machine.language == "sinumerik",
+        rapid_rate=machine.manual_rapid,
+    )
+    return modal_as_machine(begins, context)
 
 
-def modal_given_up(modal: Modal) -> Modal:
-    """A program that was reset, or ended by an alarm or the E-stop, leaves what M30 would have left."""
-    return after_end(modal, modal.rpm, reset=True)
+def modal_given_up(modal: Modal, language: str = "omniturn") -> Modal:
+    """A program that was reset, or ended by an alarm or the E-stop, leaves what M30 would have left.
+
+    SINUMERIK leaves the diameter words that it is switched on with.
+    """
+    return after_end(modal, modal.rpm, reset=True)._replace(diameter=language == "sinumerik")
 
 
 def modal_interrupted(modal: Modal) -> Modal:

@@ -8,16 +8,18 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from core.executor.machine_context import MachineContext
 from core.executor.path_section import Overrides, Progress
 from core.executor.raised_alarm import AlarmError
 from core.executor.read_ahead import ReadAhead, nominal_seconds
+from core.executor.standstill import Wait, at_speed
 from core.geometry.lines_and_arcs import arc_sweep
 from core.geometry.surface_speed import surface_rpm
 from core.interpreter.elementary_blocks import Block, Kind
+from core.motion.axis_limits import CENTRIPETAL_SHARE, MotionLimits
 from core.ports import ArcOp, BlockOp, BlockSink, BlockState, LineOp, RapidOp, ThreadOp
 
 # --- elementary blocks in parts -------------------------------------------------------------------------
@@ -43,13 +45,16 @@ class Turning(NamedTuple):
     highest: float
 
 
-def parts_of(block: Block, turning: Turning, fastest: float = math.inf) -> Iterator[BlockPart]:
-    """The parts of one moving block, none faster than ``fastest`` mm/s.
+def parts_of(
+    block: Block, turning: Turning, most: Callable[[Block], float] = lambda _: math.inf
+) -> Iterator[BlockPart]:
+    """The parts of one moving block, none faster than ``most`` (mm/s) allows it.
 
     Raises AlarmError for what has no speed or is not X and Z alone.
     """
     if block.travel is not None or block.plane is not None or block.c != block.c0:
         raise AlarmError("program", "this controller moves X and Z only", block.line)
+    fastest = most(block)
     seconds = max(nominal_seconds(block), block.length / fastest)
     if block.kind is Kind.THREAD:
         start = block.x0 + block.offset_x, block.z0 + block.offset_z
@@ -57,7 +62,18 @@ def parts_of(block: Block, turning: Turning, fastest: float = math.inf) -> Itera
         return
     n = _cuts(block, seconds)
     for i in range(n):
-        yield BlockPart(_op(block, i / n, (i + 1) / n, turning), block, seconds / n)
+        op = _op(block, i / n, (i + 1) / n, turning)
+        yield BlockPart(_no_faster(op, fastest), block, seconds / n)
+
+
+def _no_faster(op: BlockOp, fastest: float) -> BlockOp:
+    """The controller's own limits may be wider than those that were proved."""
+    match op:
+        case RapidOp(rate=rate):
+            return op._replace(rate=min(rate, fastest))
+        case LineOp(feed=feed) | ArcOp(feed=feed):
+            return op._replace(feed=min(feed, fastest))
+    return op
 
 
 def _cuts(block: Block, seconds: float) -> int:
@@ -127,12 +143,29 @@ def _feed_rate(block: Block, x: float, turning: Turning) -> float:
 _CUT = 1.0  # s of motion that lie ready in pieces
 _SLOWEST = 0.1  # of the feed: what has been handed over counts as no longer than that
 _AWAY = 1.0  # s; setpoints would have run out too
+_SEEN = 4  # looks in which the spindle has been told of a block that is shown
 _NEAR = 0.01  # mm; the controller reports thousandths
 
 
 class _Sent(NamedTuple):
     ticket: int
     piece: BlockPart
+
+
+class _Surface(NamedTuple):
+    """A surface speed, mm/s: as M03 or M04 turns, and its clamps."""
+
+    speed: float
+    forward: bool
+    lowest: float
+    highest: float | None
+
+    @classmethod
+    def of(cls, block: Block) -> _Surface | None:
+        """That of a block, if any."""
+        if block.css is None or not block.rpm:
+            return None
+        return cls(block.css, block.rpm > 0.0, block.modal.css_min, block.modal.css_max)
 
 
 class ControllerMotion:
@@ -144,6 +177,8 @@ class ControllerMotion:
     def __init__(self, context: MachineContext, sink: BlockSink) -> None:
         self._context = context
         self._sink = sink
+        machine = context.machine
+        self._limits = MotionLimits.of(machine.axes, machine.timing.setpoint)
         self._waiting: deque[Block] = deque()  # not yet cut
         self._pieces: deque[BlockPart] = deque()  # cut, not yet handed over
         self._sent: deque[_Sent] = deque()  # handed over, not yet done
@@ -154,6 +189,9 @@ class ControllerMotion:
         self._thread = False
         self._still = False  # held because an override is 0
         self._lost: tuple[Block, float] | None = None  # thread without its spindle, and where X goes
+        self._laid: _Surface | None = None  # what the spindle is laid out for
+        self._looks = 0  # at the block before which it is
+        self._speed: Wait | None = None  # for which nothing moves
         self._active = False
         self._seen = context.now  # when it was last followed
         self._dry = False  # it was followed too late
@@ -288,7 +326,7 @@ class ControllerMotion:
         self._waiting.clear()
         self._pieces.clear()
         self._sent.clear()
-        self._seconds, self._still, self._dry = 0.0, False, False
+        self._seconds, self._still, self._dry, self._laid, self._speed = 0.0, False, False, None, None
 
     def _look(self) -> BlockState:
         """The state of the controller; blocks that it has done are forgotten."""
@@ -329,13 +367,42 @@ class ControllerMotion:
             self._still = True
             self._sink.hold()
 
+    @property
+    def _cut_ahead(self) -> float:
+        return sum(piece.seconds for piece in self._pieces)
+
     def _ready(self) -> float:
-        return sum(piece.seconds for piece in self._pieces) + (_CUT if self._waiting else 0.0)
+        return self._cut_ahead + (_CUT if self._waiting else 0.0)
+
+    def _highest(self) -> float:
+        """rpm that feeds a turn count by at most: the spindle comes no further."""
+        reach = self._sink.reach if self._laid is not None else math.inf
+        return min(self._context.spindle.highest, reach)
+
+    def _laid_out(self, block: Block) -> bool:
+        """Whether the spindle can follow the radius in this block. One whose steps count from its last S is
+        laid out for each surface speed, at rest, and turns as it ought to before anything moves.
+        """
+        surface = _Surface.of(block)
+        if surface is None or surface == self._laid or math.isinf(self._sink.reach):
+            self._laid, self._speed = surface, None
+            return True
+        if self._sent or self._pieces or not self._sink.state().resting:
+            return False
+        if self._shown is not block or self._speed is None:
+            self._shown, self._looks = block, 0  # the spindle follows what is shown
+            self._speed = at_speed(self._context)
+        self._looks += 1
+        turns = self._speed.over(self._context.now)
+        if self._looks < _SEEN or not self._sink.reach or not turns:
+            return False
+        self._laid, self._speed = surface, None
+        return True
 
     def _hand_over(self) -> None:
-        turning = Turning(self._overrides.spindle, self._context.spindle.highest)
-        while self._waiting and sum(piece.seconds for piece in self._pieces) < _CUT:
-            self._pieces.extend(parts_of(self._waiting.popleft(), turning, self._sink.fastest))
+        while self._waiting and self._cut_ahead < _CUT and self._laid_out(self._waiting[0]):
+            turning = Turning(self._overrides.spindle, self._highest())
+            self._pieces.extend(parts_of(self._waiting.popleft(), turning, self._most))
         while self._pieces and self._may(self._pieces[0]):
             ticket = self._sink.submit(self._pieces[0].op)
             if ticket is None:
@@ -343,6 +410,19 @@ class ControllerMotion:
             piece = self._pieces.popleft()
             self._sent.append(_Sent(ticket, piece))
             self._seconds += piece.seconds
+
+    def _most(self, block: Block) -> float:
+        """mm/s: as the time law has it, each axis by itself on a line, the slower one and its
+        acceleration on an arc.
+        """
+        if block.kind is not Kind.ARC:
+            return self._sink.fastest(block.x - block.x0, block.z - block.z0)
+        around = (
+            CENTRIPETAL_SHARE
+            * self._limits.plane_acceleration
+            * math.hypot(block.x - block.cx, block.z - block.cz)
+        )
+        return min(self._sink.fastest(1.0, 0.0), self._sink.fastest(0.0, 1.0), math.sqrt(around))
 
     def _may(self, piece: BlockPart) -> bool:
         """Whether the controller gets this one now: by single block, and by how far it could run on alone."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from core.alarms import Code
 from core.executor.feed_hold import FeedHold, PathMotion
@@ -20,6 +21,7 @@ from core.interpreter.path_sections import needs_speed
 _BLOCKS = 400  # read in one tick at most: a press is never kept waiting for a long program
 _ACTIONS = 50  # carried out in one tick at most
 _BUFFER = 1.0  # of the look-ahead: seconds of motion kept read beyond what is planned
+_BEHIND_TAP = "FEED HOLD BEHIND THE TAP"
 _GOING = frozenset({State.RUN, State.WAIT})
 _SPINDLE_WORDS = (SpindleStop, SpindleLock, ProgramEnd)  # done whether it turns or not
 
@@ -46,8 +48,9 @@ class Cycle:
         self._needs_end = source.left is None
         self._feed = ReadAhead(source, context.machine)
         self._state = State.RUN
-        self._still = Standstill(context, self._feed)
+        self._still = Standstill(context, self._feed, lambda: self._tapping)
         self._hold = FeedHold(context, motion, self._still)
+        self._later: Callable[[], State] | None = None  # a hold, as soon as the tap is out of its hole
         self.message = ""  # of M00 and M01 while the stop lasts
         self.current: Block | None = None
         self.modal = begins
@@ -57,6 +60,8 @@ class Cycle:
         """In words, what the cycle waits for."""
         if self._state is State.HOLD:
             return self._hold.reason
+        if self._later is not None:
+            return _BEHIND_TAP
         if self._hold.spins_up:
             return self._hold.label
         if self._still.label is not None:
@@ -75,12 +80,39 @@ class Cycle:
 
     # --- what the operator asks ---------------------------------------------------------------------------
 
-    def hold(self, reason: str = "", by: str = "", code: Code | None = None) -> None:
-        """Feed hold; for ``reason``, ``by`` and ``code`` see ``FeedHold.begin``."""
+    def hold(
+        self, reason: str = "", by: str = "", code: Code | None = None, *, at_once: bool = False
+    ) -> None:
+        """Feed hold; for ``reason``, ``by`` and ``code`` see ``FeedHold.begin``.
+
+        A tap first comes out of its hole, in which the spindle would turn on; without a spindle, or
+        ``at_once``, it stops.
+        """
         if self._state in {State.HOLD, State.HOLDING}:
             self._hold.reason = self._hold.reason or reason
-        if self._state in _GOING:
-            self._change(self._hold.begin(reason, by, code))
+        if self._state not in _GOING:
+            return
+        begin = partial(self._hold.begin, reason, by, code)
+        turns = not (self._context.spindle.lost or self._context.spindle.waits)
+        if self._tapping and turns and not at_once:
+            self._later = self._later or begin
+        else:
+            self._later = None
+            self._change(begin())
+
+    @property
+    def _tapping(self) -> bool:
+        """Whether a tap is in its hole, which it has to leave while the spindle turns."""
+        block = self.current
+        return block is not None and (block.in_hole or (block.coupled and self._motion.moving))
+
+    def _held_behind_tap(self) -> bool:
+        """Begin the hold that has waited for the tap, once that is out."""
+        if self._later is None or self._tapping:
+            return False
+        begin, self._later = self._later, None
+        self._change(begin())
+        return True
 
     def starve(self, code: Code = "low-queue", detail: str = "") -> None:
         """The queue was not refilled in time: its tail stops the slides, Cycle Start goes on."""
@@ -107,7 +139,7 @@ class Cycle:
 
     def go_on(self, *, starts_spindle: bool = False) -> None:
         """Cycle Start after hold, single block, M00, M01; a spindle that it starts is waited for."""
-        stopped = self._state
+        stopped, self._later = self._state, None
         self.message = ""
         if stopped is State.PROGRAM_STOP:
             self._feed.pass_stop()
@@ -123,6 +155,8 @@ class Cycle:
         if playing is not None:
             self._show(playing)
             self._watch_spindle(playing)
+        if self._state in _GOING and self._held_behind_tap():
+            return
         if self._state is State.HOLDING:
             if self._hold.stopped():
                 self._change(State.HOLD)
@@ -158,7 +192,7 @@ class Cycle:
                 self._show_later(self._motion.block)
                 self._change(State.BLOCK_END)
             case Progress.HELD:
-                self.hold("THE CONTROLLER HOLDS")
+                self.hold("THE CONTROLLER HOLDS", at_once=True)
             case Progress.DONE:
                 self._show_later(self._motion.ended_with)
                 self._stand()
@@ -214,7 +248,7 @@ class Cycle:
     def _watch_spindle(self, block: Block) -> None:
         """Feeding by the revolution needs a spindle that turns; a thread that lost it is left at once."""
         spindle = self._context.spindle
-        if not needs_speed(block) or self._hold.retracting or not spindle.lost:
+        if not needs_speed(block) or self._hold.retracting or not spindle.lost or not self._motion.moving:
             return
         if block.kind is Kind.THREAD and not self._motion.release():
             self._hold.retract(block)

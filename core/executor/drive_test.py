@@ -10,7 +10,8 @@ import math
 
 from core.executor import drive_test_path
 from core.executor.drive_test_path import DriveTestPath, Limits
-from core.executor.jogging import LONGEST_LEASE, Jogger, Ramp, room_to_limit
+from core.executor.jog_line import Ramp, room_to_limit
+from core.executor.jogging import LONGEST_LEASE, Jogger
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import DriveTestState
 from core.machine.machine_model import Axis

@@ -13,7 +13,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from core.executor.jogging import Ramp, step_ramps
+from core.executor.jog_line import Ramp
+from core.executor.jogging import step_ramps
 
 LARGEST = 2.54  # mm: what is larger is no small test
 LONGEST = 25.4  # mm of a ramp, which needs way to become even

@@ -33,6 +33,7 @@ from core.executor.raised_alarm import AlarmError, log_alarm, log_line, make_ala
 from core.executor.read_ahead import ProgramPass
 from core.executor.recorder import Tick
 from core.executor.rest import RESTS, Rest
+from core.executor.signal_lamps import SignalLamps
 from core.executor.snapshot import ACTIVE, CYCLE, Event, Snapshot, State
 from core.executor.snapshot_publisher import Publisher
 from core.executor.spindle_control import SpindleControl
@@ -56,6 +57,11 @@ _POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
 
 def _discard(_what: InterruptedJob | None) -> None:
     """Where nothing outlives the executor, no interrupted job is kept."""
+
+
+def _lay_out(ports: MachinePorts) -> Callable[[float], None]:
+    """Who hears up to what speed the radius may take the spindle."""
+    return ports.blocks.lay_out if ports.blocks is not None else lambda _: None
 
 
 class Executor:
@@ -82,7 +88,7 @@ class Executor:
         self._due = ports.clock.now()  # when the next tick is expected
         self._missed = False  # the scope could not be told something
         self._late = 0.0  # s, the worst since the last that was handed over
-        spindle = SpindleControl(ports.spindle, machine.spindle, ports.lock)
+        spindle = SpindleControl(ports.spindle, machine.spindle, ports.lock, _lay_out(ports))
         outputs = CommandedOutputs(ports.io, machine.outputs)
         self._context = MachineContext(
             machine,
@@ -97,8 +103,12 @@ class Executor:
         self._station = StationWatch()
         self._control = MachineControl(self._context, passes, note, left)
         self._handler = CommandHandler(self._context, self._control, self._station)
+        self._lamps = SignalLamps(self._context, ports.io)
         self._publisher = Publisher()
         self._rest = Rest(self._context, self._control)
+        self.stirs: Callable[[], None] = lambda: (
+            None
+        )  # called on its thread when what was at rest has changed
         self._logged_override = 1.0
         self._lost = ""  # what of the station was gone a tick ago
         self._told_lost = ""
@@ -140,11 +150,16 @@ class Executor:
             self._blind()
         for part in (self._mind_watchdog, self._obey, self._supervise, self._go_on, self._turn):
             self._guarded(part)
+        status = self._control.status
+        self._lamps.look(self._control.state, self._control.counters.ends, barred=bool(status.next_barred))
         self._late = max(self._late, self._context.now - self._due)
         self._due = self._context.now + TICK
         if self._rest.look():
             self._show()
             self._hand_over()
+        if self._rest.stirred:
+            with Attempt():
+                self.stirs()
         self.patient = False
         self.ticks += 1
 

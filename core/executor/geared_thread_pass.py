@@ -23,6 +23,7 @@ _log = logging.getLogger(__name__)
 _SHARE = 0.9  # of the acceleration; the rest is for a spindle that turns faster than foretold
 _EARLY = 0.01  # s between the plan and what it changes, doubled where that was too short
 _EARLIER = tuple(_EARLY * 2**attempt for attempt in range(4))
+_FROM_REST = tuple(_EARLY * 2**attempt for attempt in range(7))  # .64 s: at rest a later index costs no more
 _CHANGED = 0.005  # of the speed: more, and what is still to come is planned again
 _SLOWEST = 0.1  # turns/s; a spindle that is as good as still asks for no other plan
 _ROUNDING = 1e-9  # turns
@@ -54,14 +55,16 @@ class GearedThreadPass(SpindlePass):
     def block(self, _now: float) -> Block:
         """The block being played."""
         geared = self._gear.geared()
-        left = not self._stopped if geared is None else geared.turns >= self._leaves
-        return self.blocks[-1] if left else self.blocks[0]
+        if geared is None:
+            return self.blocks[0] if self._stopped else self.blocks[-1]
+        return self.blocks[-1] if geared.turns >= self._leaves else self.cut_at(geared.turns)
 
     def begin(self) -> None:
         """Choose the index and hand the pass over, from rest."""
-        self._stopped = False
-        for early in _EARLIER:
+        self._stopped = True  # nothing of it is done: what cannot be queued begins when it goes on
+        for early in _FROM_REST:
             if self._mesh_from_rest(early):
+                self._stopped = False
                 return
         raise DriverError("the thread could not be queued in time", "late")
 
@@ -162,7 +165,7 @@ class GearedThreadPass(SpindlePass):
     def _paced(self, speed: float) -> ThreadPath:
         """The path with limits per turn, up to where the spindle still matters."""
         path, share = self._path, _SHARE / speed**2
-        out = path.out if path.beyond else path.x + path.slope * path.length
+        out = path.out if path.beyond else path.x_end
         return path._replace(a=path.a * share, ax=path.ax * share, az=path.az * share, out=out)
 
     def _reached(self, geared: Geared, t: float) -> float:

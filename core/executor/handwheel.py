@@ -11,7 +11,8 @@ import math
 
 from core.executor import jogging
 from core.executor.commands import Wheel
-from core.executor.jogging import LONGEST_LEASE, Jogger, Ramp, at_the_end
+from core.executor.jog_line import LIMIT_MARGIN, Ramp
+from core.executor.jogging import LONGEST_LEASE, Jogger, at_the_end
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import State
 from core.machine.machine_model import Axis
@@ -187,7 +188,7 @@ class Handwheel:
         if axis.travel is None or not self._context.sample.homed[index]:
             return wanted
         here = self._context.sample.demand[index]
-        low, high = axis.travel[0] + jogging.LIMIT_MARGIN, axis.travel[1] - jogging.LIMIT_MARGIN
+        low, high = axis.travel[0] + LIMIT_MARGIN, axis.travel[1] - LIMIT_MARGIN
         allowed = min(max(wanted, min(low, here)), max(high, here))
         if allowed != wanted:
             self._refuse_once(at_the_end(axis.name, wanted - allowed))

@@ -5,6 +5,8 @@ from __future__ import annotations
 from core.executor.machine_context import MachineContext
 from core.ports import Stop
 
+_SETTLES = 1.0  # s that the slides may take to stand before the next axis looks for home
+
 
 class Homing:
     """The homing that is under way, if any."""
@@ -13,6 +15,7 @@ class Homing:
         self._context = context
         self._left: list[str] = []
         self._now = ""
+        self._found_at = 0.0  # when the last one was found, s
 
     def begin(self, name: str) -> str:
         """Start with one axis, or with all; returns why not, empty when it has begun."""
@@ -40,8 +43,11 @@ class Homing:
         context = self._context
         homed = dict(zip(context.ports.axes.axes, context.sample.homed, strict=True))
         if self._now and not homed[self._now]:
+            self._found_at = context.now
             return False
         if self._left:
+            if self._now and context.sample.moving and context.now < self._found_at + _SETTLES:
+                return False
             self._now = self._left.pop(0)
             context.ports.axes.home(self._now)
             return False

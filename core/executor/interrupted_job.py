@@ -7,6 +7,8 @@ from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from math import isfinite
 
+from core.tool_edges import edge_name
+
 CONTROL_LOST = "THE CONTROL LOST ITS POWER OR WAS KILLED"
 CLOSED = "THE CONTROL WAS CLOSED"
 GIVEN_UP = "GIVEN UP BY RESET"
@@ -41,7 +43,7 @@ class InterruptedJob:
     @property
     def words(self) -> str:
         """Program, line, tool, part and cause in a few words, for the log and for sentences."""
-        return f"{self.program} line {self.line}, T{self.tool}, part {self.part}: {self.why}"
+        return f"{self.program} line {self.line}, {edge_name(self.tool)}, part {self.part}: {self.why}"
 
 
 def plain(kept: InterruptedJob) -> dict[str, object]:

@@ -16,6 +16,7 @@ from core.executor.snapshot import STOPPED, Starts, State
 from core.interpreter.checkpoint import Begin
 from core.interpreter.elementary_blocks import Block
 from core.language.source import Dialect
+from core.tool_edges import edge_name
 
 Note = Callable[[InterruptedJob | None], None]
 """Takes what is to be kept of the program under way, None: nothing. It must only put it into a queue."""
@@ -166,7 +167,8 @@ class InterruptionWatch:
         there = job is None or job.source.dialect is Dialect.OMNITURN
         how = "go on there by SEARCHTO (F6), or press Y" if there else "jog it clear, press Y"
         return (
-            f"line {found.line} of {found.program} was interrupted and T{found.tool} may stand in the part:"
+            f"line {found.line} of {found.program} was interrupted "
+            f"and {edge_name(found.tool)} may stand in the part:"
             f" {how} and then start at the first line"
         )
 

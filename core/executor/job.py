@@ -54,8 +54,13 @@ class Proof:
     blocks: int = 0
     cycle_time: float = 0.0
     tools: tuple[int, ...] = ()  # offsets the program asks for
+    measured: tuple[int, ...] = ()  # those of them that had been set, or that the program measures itself
     needs: tuple[Need, ...] = ()  # what it asks of the machine beyond straight lines
     warned: tuple[str, ...] = ()
+
+    def unset(self, job: Job) -> list[int]:
+        """Tools of the program that nobody has measured."""
+        return sorted(set(self.tools) - job.tools_set - set(self.measured))
 
 
 def make_job(source: Source, setup: Setup, whole: Job | None = None) -> Job:
@@ -68,7 +73,12 @@ def make_job(source: Source, setup: Setup, whole: Job | None = None) -> Job:
         sorted(setup.tools.items()),
         sorted(setup.secondary.items()),
         sorted(setup.zero.items()),
-        sorted(setup.limits.m_outputs.items()),
+        (
+            sorted(setup.limits.m_outputs.items()),
+            sorted(setup.limits.m_ignored),
+            setup.limits.control,
+            setup.limits.third_axis,
+        ),
         (setup.limits.max_feed, setup.limits.max_rpm, setup.limits.resolution),
         (setup.limits.unclamp_while_turning, setup.limits.start_with_collet_open),
         (setup.block_delete, setup.strict, setup.metric, setup.last_rapid),

@@ -8,31 +8,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from core.executor.jog_line import (
+    LIMIT_MARGIN,
+    Direction,
+    FloatArray,
+    JogLine,
+    Ramp,
+    room_to_limit,
+    wrong_direction,
+)
 from core.executor.machine_context import MachineContext
 from core.machine.machine_model import Axis
-from core.ports import BlockSink, DriverError, Segments, at_rest
+from core.ports import BlockSink, DriverError, at_rest
 
 # --- setpoints of one axis ------------------------------------------------------------------------------
 
 
-Ramp = tuple[float, float, float]  # seconds, speed at its start, acceleration
-
-LIMIT_MARGIN = 0.01  # mm or degrees kept from the soft limit
 _SHORTEST = 1e-12  # s; a piece that takes less is none
 _SAME = 1e-9  # mm or degrees; places nearer than that are one
-
-
-def room_to_limit(axis: Axis, at: float, direction: float) -> float:
-    """How far the axis may go in this direction; less than a count is nothing."""
-    if axis.travel is None:
-        return math.inf
-    low, high = axis.travel
-    left = (high - at if direction > 0.0 else at - low) - LIMIT_MARGIN
-    return left if left > axis.count else 0.0
 
 
 def jog_ramps(v0: float, v1: float, a: float, time: float, way: float) -> list[Ramp]:
@@ -101,19 +98,6 @@ def _ramps(*pieces: Ramp) -> list[Ramp]:
     return [piece for piece in pieces if piece[0] > _SHORTEST]
 
 
-def axis_setpoints(start: float, p: npt.NDArray[np.float64], axis: int, pieces: list[Ramp]) -> Segments:
-    """The pieces of one axis from ``start`` on as setpoints of all; the others stay at ``p``."""
-    n = len(pieces)
-    dt = np.array([piece[0] for piece in pieces])
-    t = start + np.concatenate([[0.0], np.cumsum(dt)[:-1]])
-    position, v, a = np.tile(p, (n, 1)), np.zeros((n, len(p))), np.zeros((n, len(p)))
-    v[:, axis] = [piece[1] for piece in pieces]
-    a[:, axis] = [piece[2] for piece in pieces]
-    way = (v[:, axis] + 0.5 * a[:, axis] * dt) * dt
-    position[1:, axis] += np.cumsum(way)[:-1]
-    return Segments(t, dt, position, v, a)
-
-
 _UNHOMED = 0.1  # of the manual rapid, for an axis that does not know where it is
 LONGEST_LEASE = 1.0  # s; no lease is longer, whoever asks
 _LONGEST_STEP = 2.54  # mm (.1 in) or degrees: what is longer is no step
@@ -127,6 +111,7 @@ class Jogger:
     def __init__(self, context: MachineContext) -> None:
         self._context = context
         self._axis = -1
+        self._line: JogLine | None = None  # along which it moves, or has moved last
         self.stepping = False
         self._short = False  # the step was stopped before its end
         self.goal: float | None = None  # where the handwheel sends the axis; None: it does not
@@ -140,10 +125,10 @@ class Jogger:
         """Name of the axis that moves, empty without one."""
         return self._context.machine.axes[self._axis].name if self._axis >= 0 else ""
 
-    def refusal(self, name: str, velocity: float, lease: float) -> str:
+    def refusal(self, name: str, velocity: float, lease: float, along: Direction | None = None) -> str:
         """Why this jog is refused; empty when it may begin or go on."""
-        if self.missing(name):
-            return self.missing(name)
+        if why := self.missing(name) or self._astray(name, along):
+            return why
         if not (math.isfinite(velocity) and math.isfinite(lease)) or lease <= 0.0:
             return "a jog needs a velocity and a lease above 0"
         if self.testing:
@@ -152,17 +137,36 @@ class Jogger:
             return f"{self.axis} is still on its step"
         return self._barred(name)
 
-    def step_refusal(self, name: str, distance: float, speed: float) -> str:
+    def step_refusal(self, name: str, distance: float, speed: float, along: Direction | None = None) -> str:
         """Why this step is refused; empty when it may begin."""
-        if self.missing(name):
-            return self.missing(name)
+        if why := self.missing(name) or self._astray(name, along):
+            return why
         if not math.isfinite(speed) or speed <= 0.0:
             return "a step needs a speed above 0"
         if not 0.0 < abs(distance) <= _LONGEST_STEP + _STEP_ROUNDING:
             return f"a step is longer than 0 and no longer than {_LONGEST_STEP:g}, not {distance:g}"
         if self.axis:
             return f"{self.axis} is still moving; wait for the end of its step"
-        return self._barred(name) or self._too_far(name, distance)
+        return self._barred(name) or self._too_far(name, distance, along)
+
+    def _astray(self, name: str, along: Direction | None) -> str:
+        """Why nothing moves along an axis of a tilted plane."""
+        context = self._context
+        if self.axis == name and not self._line_of(name, along).same(self._line):
+            return f"{self.axis} is still being jogged"
+        if along is None:
+            return ""
+        if not set("XYZ") <= {axis.name for axis in context.machine.axes} or wrong_direction(along):
+            return "a tilted plane needs X, Y and Z, and a direction of length 1"
+        if not all(context.sample.homed):
+            return "along a tilted plane every axis has to be homed first"
+        return ""
+
+    def _line_of(self, name: str, along: Direction | None = None) -> JogLine:
+        axes = self._context.machine.axes
+        if along is not None:
+            return JogLine.along(axes, along)
+        return JogLine.of_axis(axes, self._context.ports.axes.axes.index(name))
 
     def missing(self, name: str) -> str:
         """Why there is no such axis to move by hand; empty when there is."""
@@ -193,47 +197,49 @@ class Jogger:
             return ""
         return "the spindle's drive becomes C: let go, and begin again in two seconds"
 
-    def _too_far(self, name: str, distance: float) -> str:
+    def _too_far(self, name: str, distance: float, along: Direction | None) -> str:
         """A step that would leave the travel is not shortened: it would no longer be what was asked."""
-        index = self._context.ports.axes.axes.index(name)
-        axis, here = self._context.machine.axes[index], self._context.sample.demand[index]
-        if (
-            not self._context.sample.homed[index]
-            or abs(distance) <= room_to_limit(axis, here, distance) + _STEP_ROUNDING
-        ):
+        line, sample = self._line_of(name, along), self._context.sample
+        homed = all(sample.homed[place] for place, _, _ in line.moving())
+        if not homed or abs(distance) <= line.room(sample.demand, distance) + _STEP_ROUNDING:
             return ""
         return at_the_end(name, distance)
 
-    def step(self, name: str, distance: float, speed: float) -> None:
+    def step(self, name: str, distance: float, speed: float, along: Direction | None = None) -> None:
         """Begin a step from rest. Raises DriverError."""
-        index = self._context.ports.axes.axes.index(name)
-        axis = self._context.machine.axes[index]
-        top = min(speed, self.top(axis, self._context.sample.homed[index]))
-        self._splice(index, lambda _start, _p, _v: step_ramps(distance, top, axis.amax))
-        self._axis, self.stepping = index, True
+        line = self._line_of(name, along)
+        top = min(speed, self._top_of(line))
+        self._splice(line, lambda _start, _p, _v: step_ramps(distance, top, line.amax))
+        self._axis, self.stepping = self._context.ports.axes.axes.index(name), True
 
-    def move(self, name: str, velocity: float, lease: float) -> bool:
-        """Begin or renew; False when there is no way to go in that direction. Raises DriverError."""
-        context = self._context
-        index = context.ports.axes.axes.index(name)
-        axis = context.machine.axes[index]
-        homed = context.sample.homed[index]
-        speed = math.copysign(min(abs(velocity), self.top(axis, homed)), velocity)
+    def move(self, name: str, velocity: float, lease: float, along: Direction | None = None) -> bool:
+        """Begin or renew; False when there is no way to go in that direction. Raises DriverError.
+
+        ``along``: not the machine's axis but that of a tilted plane, as a direction in the machine.
+        """
+        context, line = self._context, self._line_of(name, along)
+        homed = all(context.sample.homed[place] for place, _, _ in line.moving())
+        speed = math.copysign(min(abs(velocity), self._top_of(line)), velocity)
         until = context.now + min(lease, LONGEST_LEASE)
 
-        def go(start: float, p: float, v: float) -> list[Ramp]:
-            way = room_to_limit(axis, p, speed) if homed else math.inf
-            return jog_ramps(v, speed, axis.amax, max(until - start, 0.0), way)
+        def go(start: float, p: FloatArray, v: FloatArray) -> list[Ramp]:
+            way = line.room(p, speed) if homed else math.inf
+            return jog_ramps(line.on(v), speed, line.amax, max(until - start, 0.0), way)
 
-        moves = self._splice(index, go)
+        moves = self._splice(line, go)
         if moves:
-            self._axis, self.ending = index, False
+            self._axis, self.ending = context.ports.axes.axes.index(name), False
         return moves
+
+    def _top_of(self, line: JogLine) -> float:
+        """How fast it goes along the line by hand at most."""
+        homed = self._context.sample.homed
+        return min(self.top(axis, homed[place]) / abs(share) for place, axis, share in line.moving())
 
     def play(self, name: str, ramps: Callable[[float, float, float], list[Ramp]]) -> bool:
         """A drive test begins, or goes on; False where there is nothing left of it. Raises DriverError."""
         index = self._context.ports.axes.axes.index(name)
-        plays = self._splice(index, ramps)
+        plays = self._splice_axis(index, ramps)
         if plays:
             self._axis, self.testing = index, True
         return plays
@@ -258,7 +264,7 @@ class Jogger:
                 v, math.copysign(top, way), axis.amax, max(until - start, 0.0), min(abs(way), room)
             )
 
-        moves = self._splice(index, go)
+        moves = self._splice_axis(index, go)
         if moves:
             self._axis, self.ending = index, False
         return moves
@@ -266,16 +272,16 @@ class Jogger:
     def chase(self, name: str, ramps: Callable[[float, float, float], list[Ramp]], goal: float) -> None:
         """Go where the handwheel sends the axis, from whatever it does now. Raises DriverError."""
         index = self._context.ports.axes.axes.index(name)
-        if self._splice(index, ramps):
+        if self._splice_axis(index, ramps):
             self._axis, self.goal, self.ending = index, goal, False
 
     def stop(self) -> None:
         """The lease is given back, or taken away; a step ends short, and that is said when it rests."""
-        if self._axis < 0:
+        line = self._line
+        if self._axis < 0 or line is None:
             return
         self._short = self._short or self.stepping or self.testing
-        amax = self._context.machine.axes[self._axis].amax
-        self._splice(self._axis, lambda _start, _p, v: jog_ramps(v, 0.0, amax, 0.0, math.inf))
+        self._splice(line, lambda _start, _p, v: jog_ramps(line.on(v), 0.0, line.amax, 0.0, math.inf))
         self.stepping, self.goal, self.ending = False, None, True
 
     def mind_button(self) -> None:
@@ -309,24 +315,30 @@ class Jogger:
         self._axis, self.stepping, self._short, self.testing = -1, False, False, False
         self.goal, self.ending, self.while_on = None, False, ""
 
-    def _splice(self, index: int, ramps: Callable[[float, float, float], list[Ramp]]) -> bool:
-        """Queue what ``ramps`` makes of (start, position, velocity); later when the clock was faster.
+    def _splice_axis(self, index: int, ramps: Callable[[float, float, float], list[Ramp]]) -> bool:
+        """The same of one axis, with its own position and velocity."""
+        line = JogLine.of_axis(self._context.machine.axes, index)
+        return self._splice(line, lambda start, p, v: ramps(start, float(p[index]), float(v[index])))
+
+    def _splice(self, line: JogLine, ramps: Callable[[float, FloatArray, FloatArray], list[Ramp]]) -> bool:
+        """Queue what ``ramps`` makes of (start, positions, velocities); later when the clock was faster.
 
         False when it makes nothing. Raises DriverError.
         """
         axes = self._context.ports.axes
         for margin in _MARGINS:
             start = axes.now() + axes.commit + margin
-            p, v = axes.demand_at(start)
-            pieces = ramps(start, p[index], v[index])
+            p, v = (np.asarray(each) for each in axes.demand_at(start))
+            pieces = ramps(start, p, v)
             if not pieces:
                 return False
             try:
-                axes.splice(axis_setpoints(start, np.asarray(p), index, pieces))
+                axes.splice(line.setpoints(start, p, pieces))
             except DriverError:
                 if margin == _MARGINS[-1] or axes.now() + axes.commit <= start:
                     raise
             else:
+                self._line = line
                 return True
         return False
 
@@ -350,29 +362,51 @@ def jogger_of(context: MachineContext) -> Jogger:
     return Jogger(context) if context.ports.blocks is None else BlockJogger(context, context.ports.blocks)
 
 
+class _Pressed(NamedTuple):
+    """A jog that is asked for while the one before still ends; ``until`` is the end of its lease."""
+
+    axis: str
+    velocity: float
+    until: float
+
+
 class BlockJogger(Jogger):
-    """Same questions and refusals; the controller moves."""
+    """Same questions and refusals; the controller moves.
+
+    It takes no other jog before the one that was let go is over: a key that is pressed again meanwhile waits
+    for that as long as it is held.
+    """
 
     def __init__(self, context: MachineContext, sink: BlockSink) -> None:
         super().__init__(context)
         self._sink = sink
+        self._pressed: _Pressed | None = None
 
-    def refusal(self, name: str, velocity: float, lease: float) -> str:
+    def refusal(self, name: str, velocity: float, lease: float, along: Direction | None = None) -> str:
         """Why this jog is refused; empty when it may begin or go on."""
-        return super().refusal(name, velocity, lease) or ("" if self.axis else self._unready())
+        return super().refusal(name, velocity, lease, along) or ("" if self.axis else self._unready())
 
-    def step_refusal(self, name: str, distance: float, speed: float) -> str:
+    def step_refusal(self, name: str, distance: float, speed: float, along: Direction | None = None) -> str:
         """Why this step is refused; empty when it may begin."""
-        return super().step_refusal(name, distance, speed) or self._unready()
+        return super().step_refusal(name, distance, speed, along) or self._unready()
 
-    def step(self, name: str, distance: float, speed: float) -> None:
+    def _astray(self, name: str, along: Direction | None) -> str:
+        """A controller that jogs by itself jogs its own axes."""
+        return "" if along is None else f"{name}: the controller jogs along its own axes only"
+
+    def step(self, name: str, distance: float, speed: float, along: Direction | None = None) -> None:
         """Begin a step from rest. Raises DriverError."""
+        assert along is None  # else it was refused
         index, top = self._speed(name, speed)
         self._sink.jog_to(name, self._context.sample.demand[index] + distance, top)
         self._axis, self.stepping = index, True
 
-    def move(self, name: str, velocity: float, lease: float) -> bool:
+    def move(self, name: str, velocity: float, lease: float, along: Direction | None = None) -> bool:
         """Begin or renew; False when there is no way to go in that direction. Raises DriverError."""
+        assert along is None  # else it was refused
+        if self.ending:
+            self._pressed = _Pressed(name, velocity, self._context.now + min(lease, LONGEST_LEASE))
+            return True
         index, top = self._speed(name, abs(velocity))
         axis = self._context.machine.axes[index]
         limits = axis.travel if self._context.sample.homed[index] else None
@@ -398,15 +432,24 @@ class BlockJogger(Jogger):
         if self._axis < 0:
             return
         self._short = self._short or self.stepping
-        self.stepping = False
+        self.stepping, self.ending, self._pressed = False, True, None
         self._sink.jog_stop()
 
     def over(self) -> bool:
-        """Whether it has come to rest."""
+        """Whether it has come to rest, and nothing is held any more."""
         if not self._sink.state().resting:
             return False
+        pressed, button = self._pressed, self.while_on
         self.ended()
-        return True
+        if pressed is None or pressed.until <= self._context.now or self._unready():
+            return True
+        self.while_on = button
+        return not self.move(pressed.axis, pressed.velocity, pressed.until - self._context.now)
+
+    def forget(self) -> None:
+        """Nothing is jogged any more, and nothing waits."""
+        super().forget()
+        self._pressed = None
 
     def _speed(self, name: str, speed: float) -> tuple[int, float]:
         index = self._context.ports.axes.axes.index(name)

@@ -49,6 +49,7 @@ class MachineContext:
     unknown: frozenset[Unknown] = frozenset()  # of what nothing is heard
     switches: Switches = field(default_factory=Switches)
     soft_override: float = 1.0
+    lamp_test: float = 0.0  # until when all lamps of the tower are on
     line: int = 0  # of the block being executed, for the log
     stop: Alarm | None = None  # why the machine stands, where no alarm says it
     _noted: Code | None = None  # the last that went into the log

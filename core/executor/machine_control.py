@@ -62,6 +62,8 @@ class MachineControl:
         self.disturbance = OutputsWatch(context, self.program_run)
         self.announcement.sources += [self._spindle_starts, self.disturbance.starts, self._warned]
         self.meant_at = -MEANT  # when what the next start begins was answered for
+        self.jog_ended = ""  # why the control has ended a held jog: none goes on before it was let go
+        self._turned = False  # the spindle turned as it was asked to, a tick ago
         self._giving_up = False
         self._hindered = ""  # by what a start was kept, a tick ago
 
@@ -206,6 +208,29 @@ class MachineControl:
         self.touch.end(why)
         self.jogger.stop()
 
+    def let_go(self) -> None:
+        """The key or finger that holds a jog is up: the next press counts again. Raises DriverError."""
+        self.jog_ended = ""
+        self.stop_jog("it was let go")
+
+    def _end_jog(self, why: str) -> None:
+        """The control ends what is moved by hand; renewals of a key that is still held are refused."""
+        self.jog_ended = "" if self.jogger.stepping or self.jogger.goal is not None else why
+        self.stop_jog(why)
+
+    def _mind_spindle(self) -> None:
+        """Who feeds by hand into a part that turned a moment ago would crash into one that stands."""
+        spindle = self._context.spindle
+        turned, self._turned = self._turned, spindle.asked and not spindle.fails
+        if not turned or self._turned or self.state is not State.JOG:
+            return
+        why = f"the spindle has stopped: {spindle.why_slow or 'below half its speed'}".lower()
+        self._end_jog(why)
+        if self.wheel.axis:
+            self.wheel.end(why, self.state)
+        else:
+            self._context.log("refused", f"jog: {why}")
+
     def _ran_into_setter(self) -> None:
         why = "the tool setter is touched: jog away from it"
         self.stop_jog(why)
@@ -236,6 +261,7 @@ class MachineControl:
         self._finish_stopping()
         self._forget_refusal()
         self.program_run.look()
+        self._mind_spindle()
         if self.touch.mind(self.state):
             self._ran_into_setter()
         if self.cycle is not None and self.state in CYCLE:

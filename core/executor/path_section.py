@@ -99,12 +99,15 @@ class PathSection:
         return dataclasses.replace(path, pieces=dataclasses.replace(path.pieces, rate=rate))
 
     def stoppable(self, last: int | None, s: float) -> int | None:
-        """The first block from ``last`` on that ends at or behind distance ``s`` and may be stopped at."""
+        """The first block from ``last`` on that ends at or behind distance ``s`` and may be stopped at.
+
+        None where there is none, as behind a tap that is in its hole.
+        """
         path = self._builder.path()
         numbers: list[int] = path.blocks.tolist()
         ends: list[float] = path.s[path.first[1:]].tolist()
         for n, end in zip(numbers, ends, strict=True):
-            if (last is None or n >= last) and end >= s - 1e-9:
+            if (last is None or n >= last) and end >= s - 1e-9 and not self._blocks[n].in_hole:
                 return n
         return None
 
@@ -114,5 +117,7 @@ class PathSection:
         block = self._blocks[n]
         if block.rapid:
             return overrides.rapid
+        if block.coupled:
+            return overrides.spindle
         turns = block.per_rev and not block.modal.c_locked
         return overrides.feed * overrides.spindle if turns else overrides.feed

@@ -25,6 +25,7 @@ from core.interpreter.actions import ProgramEnd
 from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal
 from core.language.source import Dialect
+from core.tool_edges import tool_of
 
 
 class ProgramRun:
@@ -50,6 +51,7 @@ class ProgramRun:
         self.cycle: Cycle | None = None
         self._source: ProgramPass | None = None
         self._line = False  # what is under way is a line of MDI
+        self._dialect = Dialect.OMNITURN  # of what is under way
         self._between = False  # the part is made, and the next one waits for the proof of changed offsets
 
     def refusal(self, state: State) -> str:
@@ -91,7 +93,7 @@ class ProgramRun:
         """So much time has gone by: at feed it wears the tool. In a dry run nothing is cut."""
         block = self.cycle.current if self.cycle is not None and not self.cycle.at_rest else None
         if block is not None and block.moves and not block.rapid and not self._context.switches.no_count:
-            self.counters.cut(block.modal.tool, seconds, self._context.spindle_load)
+            self.counters.cut(tool_of(block.modal.tool), seconds, self._context.spindle_load)
 
     def leave(self) -> bool:
         """A cycle that was reset is over as soon as the slides rest; True once it is."""
@@ -115,7 +117,9 @@ class ProgramRun:
             return
         if not (self._line or self._between):
             self.interruption.broke_off(cycle.current, why)
-        self._put_away(modal_interrupted(cycle.modal) if self._line else modal_given_up(cycle.modal))
+        language = self._context.machine.language
+        given_up = modal_given_up(cycle.modal, language)
+        self._put_away(modal_interrupted(cycle.modal) if self._line else given_up)
 
     def drop(self) -> None:
         """The same where nothing answers any more: only that nothing goes on counts."""
@@ -126,6 +130,8 @@ class ProgramRun:
     def _put_away(self, left: Modal, *, tool_open: bool = False) -> None:
         """Nothing is under way any more; offsets that were changed meanwhile count from here on."""
         self._stand(left, tool_open=tool_open)
+        if not self._line:
+            self.status.kept = None
         self.cycle = self._source = None
         self._between = False
         self._context.line = 0
@@ -134,8 +140,8 @@ class ProgramRun:
 
     def _stand(self, modal: Modal, *, tool_open: bool = False) -> None:
         """Unit and rapid rate are OmniTurn's own: what other dialects did with theirs does not count."""
-        job, before = self.status.job, self.status.modal
-        if not self._line and job is not None and job.source.dialect is not Dialect.OMNITURN:
+        before = self.status.modal
+        if self._dialect is not Dialect.OMNITURN:
             modal = modal._replace(metric=before.metric, rapid_rate=before.rapid_rate)
         self.status.modal, self.status.tool_open = modal, tool_open
 
@@ -152,10 +158,11 @@ class ProgramRun:
         at, _ = self._context.ports.axes.demand_at(self._context.now)
         setup = circumstances(job.setup, at, self._context.terminal)
         self.motion.forget()
-        begins = Modal(metric=setup.metric, rapid_rate=setup.last_rapid)
+        diameter = job.source.dialect is Dialect.SINUMERIK
+        begins = Modal(metric=setup.metric, diameter=diameter, rapid_rate=setup.last_rapid)
         if setup.begin is not None:
             begins = setup.begin.checkpoint.modal
-        self._source = self._passes(job, setup)
+        self._source, self._dialect = self._passes(job, setup), job.source.dialect
         self.cycle = Cycle(self._context, self.motion, self._source, begins, self._enter, self._ended)
 
     def _ended(self, end: ProgramEnd | None) -> None:
@@ -163,7 +170,7 @@ class ProgramRun:
         if end is not None and end.reset:
             self._end_functions()
         if self._line:
-            self._line_ended()
+            self._line_ended(end)
             return
         self.parts.ended()
         self.interruption.finished()
@@ -207,11 +214,12 @@ class ProgramRun:
         self._put_away(self.modal)
         self._enter(State.IDLE)
 
-    def _line_ended(self) -> None:
-        """What the line leaves to the next one, where the interpreter tells it."""
+    def _line_ended(self, end: ProgramEnd | None) -> None:
+        """What the line leaves to the next one; M30 leaves what it leaves behind a program."""
         source = self._source
         left = source.left() if source is not None and source.left is not None else None
         modal = self.modal if left is None else modal_as_machine(left.modal, self._context)
+        self.status.kept = left.kept if left is not None and end is None else None
         self._put_away(modal, tool_open=left is not None and left.tool_line != 0)
         self._enter(State.IDLE)
         self._context.log("mdi", "done")

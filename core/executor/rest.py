@@ -14,7 +14,9 @@ from core.executor.snapshot import State
 _RESTING = frozenset({State.ESTOP, State.DISABLED, State.IDLE, State.FAULT})
 _SETTLED = 100  # ticks in which nothing has happened
 _SHOWN = 0.045  # s between two snapshots then: five ticks, whose length is never quite the same
-RESTS = 0.1  # s between two ticks of a machine at rest
+RESTS = (
+    0.095  # s between two ticks of a machine at rest: a feeder sends its SYNC, ten a second, with the look
+)
 
 
 class Rest:
@@ -26,6 +28,8 @@ class Rest:
         self._seen: tuple[object, ...] = ()  # what the last tick has seen, but for the time
         self._same = 0  # ticks since anything of that has changed
         self._shown_at = -1.0
+        self._rested = False
+        self.stirred = False  # with the last tick something has changed on a machine at rest
 
     def over(self) -> None:
         """Something was asked for: for a second every tick counts."""
@@ -51,6 +55,8 @@ class Rest:
             )
         broken = look.error is not None
         changed = broken or self._same < 0 or status.state not in _RESTING or seen != self._seen
+        resting = status.state in _RESTING
+        self.stirred, self._rested = changed and (resting or self._rested), resting
         self._same = 0 if changed else self._same + 1
         self._seen = seen
         shown = self._same < _SETTLED or context.now - self._shown_at > _SHOWN
@@ -79,5 +85,6 @@ class Rest:
             return False
         context = self._context
         outputs, models = context.ports.io.outputs(), context.machine.outputs
-        safe = all(model.safe in {None, outputs.get(name)} for name, model in models.items())
+        lamps = context.machine.lamps
+        safe = all(name in lamps or model.safe in {None, outputs.get(name)} for name, model in models.items())
         return safe and not context.spindle.command and not context.spindle.measured

@@ -10,10 +10,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from operator import attrgetter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from core.alarms import Code
 from core.executor.interrupted_job import InterruptedJob
+from core.interpreter.kept_pass import KeptPass
 from core.interpreter.modal_state import Modal
 from core.interpreter.working_plane import Swivel
 from core.ports import Unknown
@@ -111,7 +112,7 @@ class Snapshot:
 
     t: float = 0.0
     state: State = State.DISABLED
-    waiting_for: str = ""  # in words, when state is WAIT: AT SPEED, COLLET, TB2-5, DWELL
+    waiting_for: str = ""  # in words: AT SPEED, COLLET, TB2-5, DWELL; of a hold, until the tap is out
     program: str = ""
     job: str = ""  # digest of the loaded job: program, offsets and switches
     line: int = 0  # source line being executed, 0 none
@@ -123,6 +124,7 @@ class Snapshot:
     actual: tuple[float, ...] = (0.0, 0.0, 0.0)
     following_error: tuple[float, ...] = (0.0, 0.0, 0.0)
     homed: tuple[bool, ...] = (False, False, False)
+    powered: bool = False  # the drives have power, as they tell it themselves
     block_end: tuple[float, ...] = (0.0, 0.0, 0.0)  # for distance to go
     offset: tuple[float, float] = (0.0, 0.0)  # machine minus program, X and Z
     swivel: Swivel | None = None  # of a mill: the working plane of the last block that was begun
@@ -145,6 +147,7 @@ class Snapshot:
     no_count: bool = False
     counts: bool = False  # a program is under way that will have made a part when it ends
     outputs: frozenset[str] = frozenset()  # names that are on
+    absent: frozenset[str] = frozenset()  # and of those that this machine has not
     inputs: frozenset[str] = frozenset()
     comment: str = ""
     message: str = ""  # of M00/M01 while the stop lasts
@@ -167,6 +170,7 @@ class Snapshot:
     confirmed: bool = False  # that a start at the first line is meant all the same
     lines: int = 0  # of MDI that were begun since the executor was started
     tool_open: bool = False  # MDI has called a tool, and its first move is still to come
+    kept: KeptPass[Any] | None = None  # what lines of MDI in other languages have left in force
     announced: tuple[str, ...] = ()  # what the next Cycle Start will start, besides going on
     start_refused: str = ""  # why the last Cycle Start did nothing
     wheel: str = ""  # axis that the handwheel moves, empty for none

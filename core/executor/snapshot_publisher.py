@@ -42,7 +42,7 @@ class Publisher:
         cycle, status, counters = control.cycle, control.status, control.counters
         block = cycle.current if cycle else None
         job, modal = status.job, control.modal
-        self._swivel = self._system(block, under_way=cycle is not None)
+        self._swivel = self._system(block, under_way=cycle is not None or status.kept is not None)
         return Snapshot(
             **_played(block, modal, context.sample),
             next_text=_next_text(cycle),
@@ -56,6 +56,7 @@ class Publisher:
             actual=context.sample.actual,
             following_error=context.sample.following_error,
             homed=context.sample.homed,
+            powered=context.sample.enabled,
             modal=modal,
             swivel=self._swivel,
             velocity=self._measured(context.sample, sum(not axis.rotary for axis in context.machine.axes)),
@@ -72,7 +73,8 @@ class Publisher:
             cycle_repeat=context.switches.cycle_repeat,
             no_count=context.switches.no_count,
             counts=control.program_run.will_count,
-            outputs=frozenset(name for name, on in context.ports.io.outputs().items() if on),
+            absent=context.machine.absent,
+            outputs=frozenset(name for name, on in context.outputs.everything().items() if on),
             inputs=frozenset(name for name, on in context.inputs.items() if on),
             comment=modal.comment,
             message=cycle.message if cycle else "",
@@ -95,6 +97,7 @@ class Publisher:
             interrupted=status.interrupted,
             confirmed=control.program_run.interruption.answered,
             tool_open=status.tool_open,
+            kept=status.kept,
             announced=control.announcement.publish(context.now),
             start_refused=status.start_refused,
             wheel=control.wheel.axis,
@@ -160,5 +163,7 @@ def _turns(block: Block | None, modal: Modal) -> bool:
 def _feed(block: Block | None, modal: Modal) -> float:
     """Programmed: of the block where it moves, otherwise what is in force."""
     if block is not None and block.moves and block.kind is not Kind.ROTATE:
-        return block.feed
+        # A tap goes by its lead, also where the feed that is in force counts a minute.
+        by_minute = block.coupled and block.per_rev and not block.modal.per_rev
+        return block.feed * abs(block.rpm) / 60.0 if by_minute else block.feed
     return modal.feed or 0.0

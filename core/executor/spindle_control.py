@@ -121,8 +121,16 @@ class SpindleControl:
     it keeps what it was asked, its command is withdrawn, and it starts when it is permitted to.
     """
 
-    def __init__(self, port: Spindle, model: SpindleModel, lock: SpindleHold | None = None) -> None:
+    def __init__(
+        self,
+        port: Spindle,
+        model: SpindleModel,
+        lock: SpindleHold | None = None,
+        lay_out: Callable[[float], None] = lambda _: None,
+    ) -> None:
+        """``lay_out`` hears before each speed up to how many rpm the radius may take it."""
         self._port = port
+        self._lay_out = lay_out
         self._lock = lock
         self._model = model
         self.limit: float | None = None  # F10, until restart
@@ -338,7 +346,15 @@ class SpindleControl:
         if rpm * self.command <= 0.0:
             self._turned, self._stands = False, None
         self.command = rpm
+        self._lay_out(self._highest_by_radius())
         self._port.run(rpm)
+
+    def _highest_by_radius(self) -> float:
+        """rpm; 0 without a surface speed."""
+        ask = self._ask
+        if ask is None or ask.surface is None:
+            return 0.0
+        return min(min(ask.highest or self.highest, self.highest) * self.override, self._model.rpm_max)
 
     def _note_fall(self, rpm: float, now: float) -> None:
         """From where another speed begins; measured, since it may still coast from an E-stop."""

@@ -83,7 +83,9 @@ def at_speed(context: MachineContext, *, thread: bool = False) -> Wait:
         if spindle.why_slow:
             wait.since = context.now
         read = spindle.angle.known or context.ports.spindle.angle() is None
-        return spindle.at_speed(context.now) and (read or not thread)
+        turns = spindle.at_speed(context.now)
+        wait.alarm = "late" if turns else "at-speed"  # its encoder is not read often enough
+        return turns and (read or not thread)
 
     wait.done = done
     return wait
@@ -178,10 +180,13 @@ class Next(Enum):
 
 
 class Standstill:
-    """What comes next while all is at rest. ``done``: a block was executed since the last stop."""
+    """What comes next while all is at rest. ``done``: a block was executed since the last stop.
 
-    def __init__(self, context: MachineContext, feed: ReadAhead) -> None:
-        self._context, self._feed = context, feed
+    ``in_hole`` tells whether a tap is in its hole, where single block does not stop.
+    """
+
+    def __init__(self, context: MachineContext, feed: ReadAhead, in_hole: Callable[[], bool]) -> None:
+        self._context, self._feed, self._in_hole = context, feed, in_hole
         self._wait: Wait | None = None
         self._settled = True  # in position since the last motion
         self.done = False
@@ -202,7 +207,7 @@ class Standstill:
         if not self._settled:
             self._wait = in_position(self._context)
             return Next.GO_ON
-        if self.done and self._context.switches.single_block:
+        if self.done and self._context.switches.single_block and not self._in_hole():
             return Next.BLOCK_END
         if feed.pending:
             self._settled, self.done = False, True

@@ -17,6 +17,7 @@ from core.executor.snapshot import Starts, State
 from core.interpreter.checkpoint import Begin
 from core.interpreter.machine_requirements import THREAD
 from core.interpreter.modal_state import Modal
+from core.tool_edges import edge_name
 
 INHIBIT = "start_inhibit"  # the input that keeps every cycle from being started or going on
 _BUSY = {
@@ -59,7 +60,10 @@ def hindrance(context: MachineContext, state: State) -> str:
         return station_stop(context)
     if context.ports.blocks is not None and context.ports.blocks.state().hindrance:
         return context.ports.blocks.state().hindrance
-    away = [a.name for a, homed in zip(context.machine.axes, context.sample.homed, strict=True) if not homed]
+    name = context.machine.shown
+    away = [
+        name(a.name) for a, homed in zip(context.machine.axes, context.sample.homed, strict=True) if not homed
+    ]
     if away:
         return f"{', '.join(away)} must be homed first"
     return ""
@@ -73,7 +77,12 @@ def job_refusal(context: MachineContext, state: State, job: Job | None, proof: P
 def lacking(context: MachineContext, proof: Proof | None) -> str:
     """What the program asks for and this machine cannot do; empty when nothing."""
     blocks = context.ports.blocks
+    absent = {f"output {name}" for name in context.machine.absent}
     for need in proof.needs if proof is not None else ():
+        if need.builders_m:
+            return f"line {need.line}: nothing on this machine answers {need.words}"
+        if need.what in absent:
+            return f"line {need.line}: this machine has no {need.words}"
         if blocks is not None and need.what not in blocks.caps:
             return f"line {need.line}: this controller cannot do {need.words}"
         if blocks is None and need.what == THREAD and context.ports.spindle.angle() is None:
@@ -91,9 +100,8 @@ def unproved(job: Job | None, proof: Proof | None) -> str:
         return "the proof belongs to another program or to other offsets: load it again"
     if proof.errors:
         return f"the program has errors: {proof.errors[0]}"
-    missing = sorted(set(proof.tools) - job.tools_set)
-    if missing:
-        return f"tool offset {', '.join(f'T{number}' for number in missing)} has never been set"
+    if missing := proof.unset(job):
+        return f"tool offset {', '.join(edge_name(number) for number in missing)} has never been set"
     return ""
 
 
@@ -101,7 +109,7 @@ def unproved(job: Job | None, proof: Proof | None) -> str:
 
 
 _NOTHING = {
-    Starts.LINE: "no line is ready: type one and press Enter",
+    Starts.LINE: "no line is ready",
     Starts.RESTART: "no restart is ready: search a line and confirm it",
 }
 _SAME = 0.01  # mm, degrees: nearer than this the slides stand where a way was planned from
@@ -151,7 +159,7 @@ def _changed(context: MachineContext, status: ControlStatus, job: Job | None) ->
 def _again(begin: Begin) -> str:
     """How the operator has it proved anew."""
     if begin.single:
-        return "ask for the way out again" if begin.approach else "press Enter again"
+        return "ask for the way out again" if begin.approach else "ask for it again"
     return "search for the line again"
 
 

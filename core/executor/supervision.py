@@ -93,8 +93,8 @@ class OutputsWatch:
         if trips is not None and trip is not None:
             trips.acknowledge(trip)  # first: the hold is setpoints too
             self._tripped(trip)
-        if Unknown.OUTPUTS in self._context.unknown:
-            return
+        if Unknown.OUTPUTS in self._context.unknown or self._context.sample.fault:
+            return  # what a fault has switched off is the fault's, which is told in this tick
         if self._program_run.status.state not in CYCLE:
             self._known_off = frozenset()
             for each in self._context.outputs.accept():
@@ -115,12 +115,16 @@ class OutputsWatch:
                 yield Starting(f"output {name}", words, begin)
 
     def _tripped(self, trip: Trip) -> None:
+        """Lamps are no outputs of the program: they are lit again, and nothing is held or told for them."""
         context = self._context
-        off = [*(["SPINDLE"] if trip.spindle else []), *(name.upper() for name in trip.outputs)]
+        outputs = tuple(name for name in trip.outputs if name not in context.machine.lamps)
+        off = [*(["SPINDLE"] if trip.spindle else []), *(name.upper() for name in outputs)]
+        if not off:
+            return
         if trip.spindle:
             context.spindle.dropped("THE FEEDER HAS SWITCHED OFF")
-        context.outputs.fell(trip.outputs)
-        self._known_off |= set(trip.outputs)
+        context.outputs.fell(outputs)
+        self._known_off |= set(outputs)
         who = "THE MACHINE WAS NOT HEARD" if trip.found else "CONTROL WAS SILENT"
         what = "FOUND ON, SWITCHED OFF" if trip.found else "SWITCHED OFF"
         self._disturbed("feeder-tripped", f"{who} FOR {trip.away:.1f} S, {what}: {', '.join(off)}")

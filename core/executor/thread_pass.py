@@ -14,6 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from core.executor.spindle_control import SpindleAngle
+from core.executor.thread_curve import turns_of
 from core.executor.thread_path import Phases, ThreadPath
 from core.interpreter.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
@@ -44,6 +45,15 @@ class SpindlePass:
         self._stopped = False
         self._reported = False
         self.worst = 0.0  # turns between the slide and the spindle while in step
+
+    def cut_at(self, turns: float) -> Block:
+        """The block of the thread that is cut so many turns behind the start of the pass."""
+        cut = [self.blocks[0], *(block for block in self.blocks[1:] if block.continues)]
+        for block in cut:
+            turns -= turns_of(block)
+            if turns < 0.0:
+                return block
+        return cut[-1]
 
     @property
     def complete(self) -> bool:
@@ -82,18 +92,22 @@ class ThreadPass(SpindlePass):
 
     def block(self, now: float) -> Block:
         """The block being played."""
-        return self.blocks[-1] if now >= self._leaves else self.blocks[0]
+        if now >= self._leaves:
+            return self.blocks[-1]
+        return self.cut_at(self._demand(now)[0] / self._lead) if len(self.blocks) > 1 else self.blocks[0]
 
     def begin(self) -> None:
         """Choose the index and queue the pass from rest."""
         now = self._axes.now()
-        self._stopped, self._index = False, 0.0
+        # Nothing of it is done: what cannot be queued begins when it goes on.
+        self._stopped, self._ends, self._leaves, self._index = True, now, math.inf, 0.0
         turns, speed = self._state(now)
         v = min(self._lead * speed, self._top)
         earliest = now + self._axes.commit + _EARLY + 0.5 * v / self._ramp
         self._index = math.ceil(turns + speed * (earliest - now) - 1e-9)
         for _ in range(_TRIES):
             if self._replan():
+                self._stopped = False
                 return
         raise DriverError("the thread could not be queued in time", "late")
 

@@ -206,7 +206,7 @@ class TrimError(Exception):
 
 def around(element: Element, apart: float) -> list[Element]:
     """Curves that hold the edge of all that lies within ``apart`` of an element; they lie in it or on it."""
-    return [*_moved(element, apart), *_moved(element, -apart), *(_ring(p, apart) for p in _ends(element))]
+    return [*moved(element, apart), *moved(element, -apart), *(_ring(p, apart) for p in _ends(element))]
 
 
 def trimmed_offset(elements: Sequence[Element], apart: float) -> list[Element]:
@@ -216,18 +216,18 @@ def trimmed_offset(elements: Sequence[Element], apart: float) -> list[Element]:
     """
     if apart <= 0:
         return list(elements)
-    contour = _Boxed(elements)
-    edges = _Boxed([edge for element in elements for edge in around(element, apart)])
+    contour = Boxed(elements)
+    edges = Boxed([edge for element in elements for edge in around(element, apart)])
     kept = [
         part
         for piece in _pieces(elements, apart)
-        for part in _split(piece, edges)
+        for part in split_at(piece, edges)
         if _far(part, contour, apart - _NEARER)
     ]
     return _chained(kept)
 
 
-class _Boxed:
+class Boxed:
     """Elements that are found by where they are."""
 
     def __init__(self, elements: Sequence[Element]) -> None:
@@ -244,23 +244,24 @@ class _Boxed:
 
 def _pieces(elements: Sequence[Element], apart: float) -> list[Element]:
     """The left offset of each element, and an arc about each corner that lies inwards of the path."""
-    pieces = _moved(elements[0], apart)
+    pieces = moved(elements[0], apart)
     for before, after in pairwise(elements):
         angle = turn(before.end_direction, after.start_direction)
         if angle < 0:
             pieces += _corner(before, after, apart)
-        pieces += _moved(after, apart)
+        pieces += moved(after, apart)
     return pieces
 
 
 def _corner(before: Element, after: Element, apart: float) -> list[Element]:
-    first, last = _moved(before, apart), _moved(after, apart)
+    first, last = moved(before, apart), moved(after, apart)
     if not first or not last or dist(first[0].end, last[0].start) < SAME_POINT:
         return []
     return [Arc(first[0].end, last[0].start, after.start, clockwise=True)]
 
 
-def _moved(element: Element, apart: float) -> list[Element]:
+def moved(element: Element, apart: float) -> list[Element]:
+    """The element that much to its left; none where an arc has no radius left."""
     try:
         return [offset_element(element, apart)]
     except GougeError:
@@ -276,7 +277,7 @@ def _ring(centre: Point, radius: float) -> Arc:
     return Arc(start, start, centre, clockwise=True)
 
 
-def _split(piece: Element, edges: _Boxed) -> list[Element]:
+def split_at(piece: Element, edges: Boxed) -> list[Element]:
     """The parts of a piece between the points where it meets any edge."""
     length = piece.length
     at = {0.0: piece.start, length: piece.end}
@@ -289,7 +290,7 @@ def _split(piece: Element, edges: _Boxed) -> list[Element]:
     return [piece.part(at[a], at[b]) for a, b in pairwise(places) if b - a > SAME_POINT or len(places) == 2]
 
 
-def _far(part: Element, contour: _Boxed, least: float) -> bool:
+def _far(part: Element, contour: Boxed, least: float) -> bool:
     """Whether the middle of a part, and with it all of it, is far enough from every element."""
     x, z = middle = part.point(part.length / 2)
     return all(distance(element, middle) >= least for element in contour.near((x, x, z, z), least))

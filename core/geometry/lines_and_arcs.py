@@ -213,6 +213,14 @@ def arc_between(start: Point, end: Point, centre: Point, *, clockwise: bool) -> 
     return Arc(start, end, (centre[0] - off * ux, centre[1] - off * uz), clockwise)
 
 
+def shifted(element: Element, x: float, z: float) -> Element:
+    """A line or an arc so much further on, mm."""
+    start, end = (element.start[0] + x, element.start[1] + z), (element.end[0] + x, element.end[1] + z)
+    if isinstance(element, Line):
+        return Line(start, end)
+    return Arc(start, end, (element.centre[0] + x, element.centre[1] + z), element.clockwise)
+
+
 def left_of(direction: Point) -> Point:
     """The unit vector to the left of a way, seen from above."""
     return -direction[1], direction[0]

@@ -1,4 +1,4 @@
-"""Arcs and helices of a mill in its working plane, on machine axes."""
+"""Arcs and helices of a mill, on machine axes: in its working plane, or upright in it."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from core.geometry.lines_and_arcs import Arc
 from core.geometry.rotary_axes import Place
+from core.geometry.rotation_frames import IDENTITY, Matrix
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -19,7 +20,8 @@ class HelixMove:
     """``arc`` in X Y of the system that ``place`` takes to the machine, while Z goes from ``z0`` to ``z1``.
 
     ``standing`` are the machine positions of all axes in the machine's order, of which X, Y and Z, at
-    ``columns``, move; mm, degrees.
+    ``columns``, move; mm, degrees. Of an upright arc ``frame`` (rows) holds the directions, in that system,
+    of the two axes that it lies in and of the third: X Y Z of the arc are those then.
     """
 
     place: Place
@@ -28,6 +30,7 @@ class HelixMove:
     z1: float
     standing: tuple[float, ...]
     columns: tuple[int, int, int]
+    frame: Matrix = IDENTITY
 
     @property
     def length(self) -> float:
@@ -52,7 +55,8 @@ class HelixMove:
         z = self.z0 + share * (self.z1 - self.z0)
         points = np.stack([cx + radius * np.cos(angle), cy + radius * np.sin(angle), z], axis=1)
         rows = np.repeat(np.array([self.standing]), len(share), axis=0)
-        rows[:, self.columns] = points @ np.array(self.place.turn).T + np.array(self.place.shift)
+        turn = np.array(self.place.turn) @ np.array(self.frame)
+        rows[:, self.columns] = points @ turn.T + np.array(self.place.shift)
         return rows
 
     def part(self, points: FloatArray) -> FloatArray:

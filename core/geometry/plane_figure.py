@@ -8,7 +8,27 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from core.geometry.lines_and_arcs import Arc, Point
-from core.geometry.rotation_frames import Vector, cos_sin
+from core.geometry.rotation_frames import Matrix, Vector, cos_sin
+
+Order = tuple[int, int, int]
+"""Columns of X Y Z: the two that a plane lies in, from the first to the second, and the third."""
+
+XY: Order = (0, 1, 2)
+YZ: Order = (1, 2, 0)
+ZX: Order = (2, 0, 1)
+
+
+def seen(order: Order, point: Vector) -> Vector:
+    """A point by the axes of a plane."""
+    return point[order[0]], point[order[1]], point[order[2]]
+
+
+def unseen(order: Order, point: Vector) -> Vector:
+    """The point X Y Z of one that is told by the axes of a plane."""
+    at = [0.0, 0.0, 0.0]
+    for column, value in zip(order, point, strict=True):
+        at[column] = value
+    return at[0], at[1], at[2]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +68,16 @@ class Figure:
             return arc
         start, end, centre = (self._flat(at) for at in (arc.start, arc.end, arc.centre))
         return Arc(start, end, centre, arc.clockwise != self.reverses)
+
+    def upright(self, arc: Arc, order: Order) -> tuple[Arc, Matrix]:
+        """An arc in another plane of the program, and the directions (rows of a matrix) of its axes."""
+        start, end, centre = (
+            (at[0] * self.factor, at[1] * self.factor) for at in (arc.start, arc.end, arc.centre)
+        )
+        units = (unseen(order, unit) for unit in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
+        u, v, w = (tuple(part / self.factor for part in self.plane(unit)) for unit in units)
+        rows = tuple((u[row], v[row], w[row]) for row in range(3))
+        return Arc(start, end, centre, arc.clockwise), (rows[0], rows[1], rows[2])
 
     def _flat(self, at: Point) -> Point:
         return self.plane((*at, 0.0))[:2]

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -97,13 +97,25 @@ class Place:
         return applied(transposed(self.turn), minus(machine, self.shift))
 
 
+@dataclass(frozen=True, slots=True)
+class DatumPreset:
+    """A row of the preset table: ``origin`` is the machine position of the workpiece's zero, mm, ``rotation``
+    the angle by which the workpiece lies turned about Z (basic rotation), degrees. Rotary axes read 0 at
+    ``zeros`` (by name, degrees in the machine), where ``origin`` and ``rotation`` hold; absent ones at 0."""
+
+    origin: Vector
+    rotation: float = 0.0
+    zeros: tuple[tuple[str, float], ...] = ()
+
+
 @dataclass(frozen=True)
 class Kinematics:
     """A mill: slides X Y Z and rotary axes from the workpiece to the tool, tables before heads.
 
     ``origin`` is the machine position of the workpiece's zero with all rotary axes at 0; ``basic_rotation``
-    the angle by which the workpiece system is turned about Z against the machine. ``order`` names all axes in
-    the machine's own order.
+    the angle by which the workpiece system is turned about Z against the machine, with the rotary axes at
+    ``zeros``, where they read 0. ``order`` names all axes in the machine's own order. Angles are the
+    machine's where nothing else is said.
     """
 
     slides: tuple[Slide, Slide, Slide]
@@ -111,11 +123,39 @@ class Kinematics:
     origin: Vector
     basic_rotation: float = 0.0
     order: tuple[str, ...] = field(default=())
+    zeros: tuple[tuple[str, float], ...] = ()
 
     @cached_property
     def basic(self) -> Matrix:
         """The workpiece system as it stands in the machine with all rotary axes at 0."""
-        return turned(Z_AXIS, self.basic_rotation)
+        turn, _ = self._tables(self.zero)
+        return product(transposed(turn), turned(Z_AXIS, self.basic_rotation))
+
+    @cached_property
+    def zero(self) -> Mapping[str, float]:
+        """Where each rotary axis reads 0, by name."""
+        return {axis.name: 0.0 for axis in self.rotaries} | dict(self.zeros)
+
+    def with_preset(self, preset: DatumPreset) -> Kinematics:
+        """The same machine with the workpiece there."""
+        zeros = tuple(each for each in preset.zeros if self.rotary(each[0]) is not None and each[1])
+        moved = replace(self, basic_rotation=preset.rotation, zeros=zeros)
+        return replace(moved, origin=moved.at_home(preset.origin))
+
+    def at_home(self, spot: Vector) -> Vector:
+        """Where a point of the workpiece lies with the tables at 0 that lies at ``spot`` with them at their
+        zeros; mm in the machine."""
+        turn, shift = self._tables(self.zero)
+        return applied(transposed(turn), minus(spot, shift))
+
+    def at_zeros(self, spot: Vector) -> Vector:
+        """The other way: from the tables at 0 to their zeros."""
+        turn, shift = self._tables(self.zero)
+        return plus(applied(turn, spot), shift)
+
+    def shown(self, axis: Rotary, angle: float) -> float:
+        """An angle of the machine as words and displays have it: from the axis' zero, modulo 0 to 360."""
+        return axis.displayed(angle - self.zero[axis.name])
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -258,10 +298,20 @@ def _noses(machine: Kinematics, at: Mapping[str, FloatArray], tool_length: float
 
 def _carried(axis: Rotary, degrees: FloatArray, points: FloatArray) -> FloatArray:
     """Points (k, 3), or one for all, turned about the axis' line by the angles (k,) (Rodrigues' formula)."""
-    along, angle = np.array(axis.direction), np.radians(degrees)[:, np.newaxis]
-    from_line = points - np.array(axis.point)
-    straight: FloatArray = along * (from_line @ along)[:, np.newaxis]
-    aside: FloatArray = np.cross(along, from_line)
-    there: FloatArray = from_line * np.cos(angle) + aside * np.sin(angle) + straight * (1.0 - np.cos(angle))
-    there += np.array(axis.point)
+    line, along, aside = _turning(axis)
+    angle = np.radians(degrees)[:, np.newaxis]
+    cosine = np.cos(angle)
+    from_line = points - line
+    there: FloatArray = from_line * cosine
+    there += (from_line @ aside) * np.sin(angle)
+    there += (from_line @ along) * (1.0 - cosine)
+    there += line
     return there
+
+
+@lru_cache(maxsize=64)
+def _turning(axis: Rotary) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """A point of the axis' line, and what takes rows of points onto its direction and square to both."""
+    x, y, z = axis.direction
+    aside = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
+    return np.array(axis.point), np.outer(axis.direction, axis.direction), aside

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from core.geometry.rotary_axes import TURN, Kinematics, Rotary
+from core.geometry.rotary_axes import TURN, Kinematics
 from core.geometry.rotation_frames import (
     Z_AXIS,
     Matrix,
@@ -66,16 +66,16 @@ class Solution:
 def solutions(machine: Kinematics, frame: Matrix, *, table_rot: bool = False) -> list[Solution]:
     """Every way to stand square to ``frame`` (in the machine-parallel system), ranges not looked at.
 
-    A rotary axis that is free, the first of the chain and parallel to the tool, goes to 0, with ``table_rot``
-    to where no turn about the tool is left.
+    A rotary axis that is free, the first of the chain and parallel to the tool, goes to its zero, with
+    ``table_rot`` to where no turn about the tool is left.
     """
     normal = applied(frame, Z_AXIS)
     found: list[Solution] = []
-    for angles, symmetry, primary in _tilts(machine.rotaries, normal):
+    for angles, symmetry, primary in _tilts(machine, normal):
         spin = _wrapped(about_z(product(transposed(machine.frame(angles)), frame)))
         first = machine.rotaries[0] if machine.rotaries else None
         if table_rot and first is not None and math.hypot(*cross(first.direction, normal)) < FREE:
-            angles[first.name] = math.copysign(1.0, dot(first.direction, normal)) * spin
+            angles[first.name] += math.copysign(1.0, dot(first.direction, normal)) * spin
             spin = 0.0
         made = Solution(angles, spin, symmetry, primary)
         if not any(_same(machine, made, other) for other in found):
@@ -117,10 +117,10 @@ def fitting(
     return sorted(fits, key=lambda each: -each.symmetry)
 
 
-def _tilts(chain: tuple[Rotary, ...], normal: Vector) -> Iterator[tuple[dict[str, float], float, float]]:
+def _tilts(machine: Kinematics, normal: Vector) -> Iterator[tuple[dict[str, float], float, float]]:
     """Angles that bring the tool to ``normal``, with the primary axis' angle from symmetry and from 0."""
-    angles = dict.fromkeys((axis.name for axis in chain), 0.0)
-    tilting = list(chain)
+    angles = dict(machine.zero)
+    tilting = list(machine.rotaries)
     while tilting and math.hypot(*cross(tilting[-1].direction, Z_AXIS)) < UNREACHED:
         tilting.pop()  # it spins about the tool and tilts nothing
     if not tilting:
@@ -136,7 +136,7 @@ def _tilts(chain: tuple[Rotary, ...], normal: Vector) -> Iterator[tuple[dict[str
         for tilt, symmetry in _second(first.direction, second.direction, normal):
             tool = applied(turned(second.direction, tilt), Z_AXIS)
             free = math.hypot(*cross(first.direction, normal)) < FREE
-            turn = 0.0 if free else _angle(first.direction, tool, normal)
+            turn = angles[first.name] if free else _angle(first.direction, tool, normal)
             yield angles | {first.name: turn, second.name: tilt}, symmetry, tilt
 
 

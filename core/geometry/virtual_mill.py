@@ -1,13 +1,14 @@
 """Plane switching: lines and arcs of a virtual mill, and where lathe X, Z and C stand along them.
 
 XC mills on the face of the part, ZC on its side, unrolled at a diameter. The live tool stands on the negative
-X side of the lathe; mill X is to the right and Y up for a tool that looks at the part from there.
+X side of the lathe, or ``far`` on the positive one; mill X is to the right and Y up for a tool that looks at
+the part from there.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -22,11 +23,17 @@ class Face:
     """XC, the face. ``c0`` (degrees) is C at the entry, ``h`` (mm) the tool's height above the axis.
 
     A point (X, Y) of the part at the distance rho from the axis comes under the tool when X stands at
-    -sqrt(rho² - h²) and C has turned the point there.
+    -sqrt(rho² - h²), far at plus that, and C has turned the point there.
     """
 
     c0: float
     h: float = 0.0
+    far: bool = False
+
+    @property
+    def heading(self) -> float:
+        """Where on the part, which counts from the negative X side at C0, mill X points: degrees."""
+        return _heading(self.c0, far=self.far)
 
     def machine(self, points: FloatArray, theta: FloatArray) -> FloatArray:
         """Lathe X (radius), Z, C (n, 3) of mill points X, Y, Z (n, 3); mm and degrees.
@@ -35,13 +42,13 @@ class Face:
         nearer to the axis than |h| cannot be reached; it is taken to be at |h|.
         """
         rho = np.hypot(points[:, 0], points[:, 1])
-        x = -np.sqrt(np.maximum((rho - self.h) * (rho + self.h), 0.0))
-        lead = np.arctan2(np.full(len(x), self.h), -x) if self.h else np.zeros(len(x))
-        return np.column_stack([x, points[:, 2], self.c0 + np.degrees(lead - theta)])
+        x = np.sqrt(np.maximum((rho - self.h) * (rho + self.h), 0.0))
+        lead = np.arctan2(np.full(len(x), self.h), x) if self.h else np.zeros(len(x))
+        return np.column_stack([x if self.far else -x, points[:, 2], self.c0 + np.degrees(lead - theta)])
 
     def mill(self, machine: FloatArray) -> FloatArray:
         """Mill points X, Y, Z (n, 3) that stand under the tool at lathe X, Z, C (n, 3)."""
-        x = -machine[:, 0]
+        x = machine[:, 0] if self.far else -machine[:, 0]
         rho = np.hypot(x, self.h)
         theta = np.arctan2(self.h, x) - np.radians(machine[:, 2] - self.c0)
         return np.column_stack([rho * np.cos(theta), rho * np.sin(theta), machine[:, 1]])
@@ -58,17 +65,23 @@ class Side:
     c0: float
     z0: float
     diameter: float
+    far: bool = False
 
     def machine(self, points: FloatArray) -> FloatArray:
         """Lathe X (radius), Z, C (n, 3) of mill points X, Y, Z (n, 3), Z as a radius; mm and degrees."""
         x, y, z = points.T
         c = self.c0 - y * (360.0 / (math.pi * self.diameter))
-        return np.column_stack([-z, self.z0 - x, c])
+        return np.column_stack([z if self.far else -z, self.z0 - x, c])
 
     def mill(self, machine: FloatArray) -> FloatArray:
         """Mill points X, Y, Z (n, 3), Z as a radius, of lathe X, Z, C (n, 3)."""
         x, z, c = machine.T
-        return np.column_stack([self.z0 - z, (self.c0 - c) * (math.pi * self.diameter / 360.0), -x])
+        up = x if self.far else -x
+        return np.column_stack([self.z0 - z, (self.c0 - c) * (math.pi * self.diameter / 360.0), up])
+
+
+def _heading(c0: float, *, far: bool) -> float:
+    return 180.0 - c0 if far else -c0
 
 
 Spot = tuple[float, float, float]
@@ -155,6 +168,29 @@ class PlaneMove:
         begin = self._winding(self.points(both), both)[0]
         wound: FloatArray = self.theta - begin + self._winding(points, share)
         return wound
+
+    def parts(self) -> list[PlaneMove]:
+        """The way as it is, or in two where it goes through the axis, at which C has to turn meanwhile."""
+        if isinstance(self.frame, Side) or self.length <= CENTRE:
+            return [self]
+        share = self.nearest()
+        if self.rho(share) > CENTRE or any(math.hypot(*end[:2]) <= CENTRE for end in (self.start, self.end)):
+            return [self]
+        z = float(self.points(np.array([share]))[0, 2])
+        return [replace(self, end=(0.0, 0.0, z)), replace(self, start=(0.0, 0.0, z))]
+
+    def turn_at_start(self) -> float:
+        """By what the polar angle changes before a way that begins on the axis: radians, the short way."""
+        if isinstance(self.frame, Side) or math.hypot(*self.start[:2]) > CENTRE or self.length <= CENTRE:
+            return 0.0
+        x, y = self.points(np.array([0.0, 1.0]))[1][:2].tolist()
+        if self.centre is not None:
+            i, j = self.centre
+            x, y = (-j, i) if self.clockwise else (j, -i)
+        turn = (math.atan2(y, x) - self.theta + math.pi) % (2 * math.pi) - math.pi
+        if abs(abs(turn) - math.pi) < 1e-6:
+            return abs(turn)  # straight through: C counts down, as it does beside a centre on the left
+        return turn
 
     def nearest(self) -> float:
         """Fraction of the path at which it is nearest to the axis."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from core.interpreter.actions import Action
+from core.interpreter.kept_pass import KeptPass
 from core.interpreter.modal_state import Modal
 
 
@@ -42,6 +43,8 @@ class Checkpoint(NamedTuple):
     coarse_at: tuple[float, float] | None = None  # machine point of the G35 in force
     blocks: int = 0  # elementary blocks before it
     flow: FlowPlace = ()  # the loops and calls in which it stands
+    kept: KeptPass[Any] | None = None  # of Klartext and SINUMERIK: all that they have in force
+    at: tuple[float, ...] = ()  # of a mill: machine positions of all axes
 
     @property
     def machine(self) -> tuple[float, float]:
@@ -56,6 +59,15 @@ class Leg(NamedTuple):
     z: float | None
     feed: float
     rapid: bool
+    text: str
+
+
+class AxesLeg(NamedTuple):
+    """A straight way of a mill to machine positions of some of its axes, mm and degrees; ``feed`` mm/s or
+    degrees/s, None in rapid."""
+
+    goal: tuple[tuple[str, float], ...]
+    feed: float | None
     text: str
 
 
@@ -74,7 +86,7 @@ class FunctionStep(NamedTuple):
     text: str
 
 
-ApproachStep = Leg | CTurn | FunctionStep
+ApproachStep = Leg | AxesLeg | CTurn | FunctionStep
 """What leads from where the slides stand to where a program goes on."""
 
 

@@ -12,8 +12,8 @@ from core.language.source import Dialect, Source
 
 if TYPE_CHECKING:
     from core.interpreter.omniturn.conditional_calls import Branching, Guide
-    from core.interpreter.omniturn.omniturn_interpreter import Interpreter as OmniTurnPass
     from core.interpreter.omniturn.omniturn_program import Program
+    from core.language.code_book import CodeBook
 
 
 _LATHE_AXES = 3
@@ -41,12 +41,39 @@ class _OmniTurn:
         return Interpreter(self.program.for_one_pass(), setup)
 
 
-def line_alone(source: Source, setup: Setup) -> OmniTurnPass:
-    """One line of MDI, beginning with what ``setup.begin`` says; MDI speaks OmniTurn alone."""
+def line_alone(source: Source, setup: Setup) -> Interpretation:
+    """One line of MDI in the machine's language, beginning with what ``setup.begin`` says."""
+    if refused := _refusal(source.dialect, setup):
+        return refused
+    return _LINES[source.dialect](source, setup)
+
+
+def _omniturn_line(source: Source, setup: Setup) -> Interpretation:
     from core.interpreter.omniturn.mdi_line import read_single
     from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 
     return Interpreter(read_single(source), setup)
+
+
+def _sinumerik_line(source: Source, setup: Setup) -> Interpretation:
+    from core.interpreter.sinumerik.sinumerik_interpreter import Interpreter
+
+    return Interpreter(source, setup)
+
+
+def _klartext_line(source: Source, setup: Setup) -> Interpretation:
+    from core.interpreter.klartext.klartext_interpreter import Interpreter
+    from core.interpreter.klartext.mdi_block import read_single
+
+    assert setup.kinematics is not None  # else it was refused
+    return Interpreter(read_single(source, inch=not setup.metric), setup, setup.kinematics)
+
+
+_LINES: Mapping[Dialect, Callable[[Source, Setup], Interpretation]] = {
+    Dialect.OMNITURN: _omniturn_line,
+    Dialect.SINUMERIK: _sinumerik_line,
+    Dialect.KLARTEXT: _klartext_line,
+}
 
 
 def _sinumerik(source: Source, _strict: bool) -> PassFactory:
@@ -73,20 +100,34 @@ def _refusal(dialect: Dialect, setup: Setup) -> RefusedPass | None:
     lathe = len(setup.start) == _LATHE_AXES
     if dialect is Dialect.OMNITURN and not lathe:
         why = "An OmniTurn program needs a lathe with X, Z and C; this machine has other axes."
-        return RefusedPass(why, "Choose the machine file of a lathe.")
+        return RefusedPass(why, "Choose the machine file of a lathe: --machine gt75.")
     if dialect is Dialect.SINUMERIK and not lathe:
         why = "A SINUMERIK turning program needs a lathe with X and Z; this machine has other axes."
-        return RefusedPass(why, "Choose the machine file of a lathe.")
+        return RefusedPass(why, "Choose the machine file of a lathe: --machine sinumerik-modulo.")
     if dialect is Dialect.KLARTEXT and setup.kinematics is None:
         why = "A Klartext program needs a mill with X, Y and Z, and its [kinematics]; this machine is none."
         return RefusedPass(why, "Choose the machine file of a mill: --machine ac-table-mill.")
-    if dialect is not Dialect.OMNITURN and setup.begin is not None:
-        why = f"A {_NAMES[dialect]} program begins with its first block."
-        return RefusedPass(why, "Start it from the beginning.")
     return None
 
 
-_NAMES = {Dialect.SINUMERIK: "SINUMERIK", Dialect.KLARTEXT: "Klartext"}
+NAMES = {Dialect.OMNITURN: "OmniTurn", Dialect.SINUMERIK: "SINUMERIK", Dialect.KLARTEXT: "Klartext"}
+"""What sentences call them."""
+
+
+def code_book(dialect: Dialect) -> CodeBook:
+    """All codes of a language, with examples."""
+    if dialect is Dialect.KLARTEXT:
+        from core.language.klartext.klartext_book import BOOK as KLARTEXT
+
+        return KLARTEXT
+    if dialect is Dialect.SINUMERIK:
+        from core.language.sinumerik.sinumerik_book import BOOK as SINUMERIK
+
+        return SINUMERIK
+    from core.interpreter.omniturn.omniturn_book import book
+
+    return book()
+
 
 # A language is loaded when a program of it is: the others cost nothing.
 _READERS: Mapping[Dialect, Callable[[Source, bool], PassFactory]] = {
@@ -112,7 +153,7 @@ class ReadProgram:
         dialect = self.source.dialect
         if refused := _refusal(dialect, setup):
             return refused
-        if dialect is Dialect.OMNITURN and setup.begin is not None and setup.begin.single:
+        if setup.begin is not None and setup.begin.single:
             return line_alone(self.source, setup)
         return self._begin(setup)
 

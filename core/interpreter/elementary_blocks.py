@@ -38,6 +38,9 @@ class Kind(StrEnum):
     ACTION = "action"
 
 
+_MAY_BE_RAPID = frozenset({Kind.PLANE, Kind.PLANE_LINE})
+
+
 @dataclass(slots=True, eq=False)
 class Block:
     """One elementary block, never changed once made. Lengths in mm, X a radius, C in degrees.
@@ -75,6 +78,10 @@ class Block:
     plane: PlaneMove | None = None  # the same way in the frame of the virtual mill
     travel: Travel | None = None  # all axes, on machines that have more than X, Z and C
     swivel: Swivel | None = None  # where a mill's block stands in its working plane
+    growth: float = 0.0  # of a thread's lead, mm a revolution more with each; ``feed`` is then its mean
+    coupled: bool = False  # a tap: its feed follows the spindle alone, the feed override leaves it as it is
+    in_hole: bool = False  # behind it a tap is still in its hole: neither hold nor single block stops there
+    continues: bool = False  # a thread that goes on with that of the block before, in one pass
 
     @property
     def mx(self) -> float:
@@ -132,7 +139,7 @@ class Block:
     @property
     def rapid(self) -> bool:
         """Whether the rapid override counts for it, and no spindle has to be at its speed."""
-        return self.kind is Kind.RAPID or (self.kind is Kind.PLANE and self.modal.rapid)
+        return self.kind is Kind.RAPID or (self.kind in _MAY_BE_RAPID and self.modal.rapid)
 
     @property
     def swivels(self) -> bool:

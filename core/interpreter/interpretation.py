@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
+from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Series
 from core.interpreter.job_setup import ToolOffset
+from core.interpreter.machine_requirements import Need
 from core.interpreter.modal_state import Modal
 from core.language.diagnostics import Diagnostic, refusal
 
@@ -29,10 +31,14 @@ class ToolUse:
         self.used: list[int] = []
         self.missing: list[int] = []
 
-    def offset(self, number: int, offsets: Mapping[int, ToolOffset]) -> ToolOffset | None:
-        """The offset of this tool, which is used from now on; None where it has never been set."""
+    def call(self, number: int) -> None:
+        """This tool is used from now on, whoever tells its measures."""
         if number not in self.used:
             self.used.append(number)
+
+    def offset(self, number: int, offsets: Mapping[int, ToolOffset]) -> ToolOffset | None:
+        """The offset of this tool, which is used from now on; None where it has never been set."""
+        self.call(number)
         if number not in offsets and number not in self.missing:
             self.missing.append(number)
         return offsets.get(number)
@@ -48,7 +54,10 @@ class Interpretation(ABC):
     def __init__(self, log: Log) -> None:
         self._log = log
         self._tools = ToolUse()
+        self._lacking: list[Need] = []
         self._stopped = False  # an error has been met: no more blocks
+        self.stop_before: Callable[[int], bool] | None = None  # asked of each line of the main program
+        self.stopped_before = False  # a line is about to be executed at which the pass was asked to stop
 
     @abstractmethod
     def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
@@ -73,6 +82,16 @@ class Interpretation(ABC):
         """The state after the last block that was taken."""
 
     @property
+    def checkpoint(self) -> Checkpoint:
+        """What the line inherits that would be executed next: here the modal state alone."""
+        return Checkpoint(self.modal)
+
+    @property
+    def waits_for(self) -> str:
+        """Why no other pass can go on from here, in words: moves that wait for lines to come; empty."""
+        return ""
+
+    @property
     def diagnostics(self) -> list[Diagnostic]:
         """All findings so far, those of reading the program first."""
         return self._log.found
@@ -86,6 +105,11 @@ class Interpretation(ABC):
     def used_tools(self) -> list[int]:
         """Tool numbers asked for so far, in the order of first use."""
         return self._tools.used
+
+    @property
+    def lacking(self) -> list[Need]:
+        """What the program asks of the machine's builder and nothing on this machine answers."""
+        return self._lacking
 
     @property
     def missing_tools(self) -> list[int]:

@@ -11,16 +11,22 @@ from core.interpreter.elementary_blocks import Block, Kind
 ARC = "arc"
 THREAD = "thread"
 PULL_OUT = "pull-out"  # of a thread, in step with the spindle
+THREAD_CHAIN = "thread-chain"
 SURFACE = "surface-speed"
+SURFACE_THREAD = "surface-thread"
 C_AXIS = "c-axis"
 PLANE = "plane"
 AXES = "axes"
+BUILDERS_M = "M"
+"""Before the number of an M function that nothing on this machine answers."""
 
 _WORDS = {
     ARC: "arcs",
     THREAD: "threads",
     PULL_OUT: "a thread that pulls out in step with the spindle; end it in a groove",
+    THREAD_CHAIN: "threads in a chain or with a lead that changes; cut each with a lead of its own",
     SURFACE: "constant surface speed; program the spindle in rpm with G97",
+    SURFACE_THREAD: "a thread under constant surface speed; program G97 before it",
     C_AXIS: "the C axis",
     PLANE: "milling in a switched plane",
     AXES: "more axes than X and Z",
@@ -34,9 +40,26 @@ class Need(NamedTuple):
     line: int
 
     @property
+    def builders_m(self) -> int:
+        """The number of the M function that nothing answers; 0 for another need."""
+        number = self.what.removeprefix(BUILDERS_M)
+        return int(number) if self.what != number and number.isdigit() else 0
+
+    @property
     def words(self) -> str:
         """The need in words for the operator, where it has any."""
+        if self.builders_m:
+            return f"{self.what}; {how_bound(self.builders_m)}"
         return _WORDS.get(self.what, self.what)
+
+
+def how_bound(code: int) -> str:
+    """The lines of a machine file that give a builder's M function its meaning."""
+    return (
+        f'write {code} = {{ output = "NAME", on = true }} under [m_codes] of the machine file, '
+        "NAME one of [io.out], "
+        f"or {code} = {{ ignored = true }} if it does nothing on this machine"
+    )
 
 
 def needs_of(blocks: Iterable[Block], before: Block | None = None) -> Iterator[Need]:
@@ -67,9 +90,14 @@ def _needs(block: Block, before: Block | None) -> Iterator[str]:
     if block.kind is Kind.ARC:
         yield ARC
     if block.kind is Kind.THREAD:
-        yield PULL_OUT if before is not None and before.kind is Kind.THREAD else THREAD
+        if block.continues or block.growth:
+            yield THREAD_CHAIN
+        else:
+            yield PULL_OUT if before is not None and before.kind is Kind.THREAD else THREAD
     if block.css is not None and block.rpm != 0.0:
         yield SURFACE
+        if block.kind is Kind.THREAD:
+            yield SURFACE_THREAD
 
 
 def _of_action(action: Action) -> Iterator[str]:

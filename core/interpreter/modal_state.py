@@ -64,8 +64,11 @@ class Modal(NamedTuple):
     c_locked: bool = False  # M19 or M89: C is an axis, and a C word turns it
     c_rpm: float | None = None  # S beside M19 or a C word, unsigned
     offset_c: float = 0.0  # machine C minus program C, whole turns: M19 begins to count again at 0
+    edge: int | None = None  # SINUMERIK: D in force, 0 without a tool offset; ``tool`` is then the edge's row
     settable: int = 0  # SINUMERIK: 54 to 59, 0 under G500
-    zero_x: float = 0.0  # SINUMERIK: TRANS and ATRANS, mm; G54 stands in tool_x, both of C in offset_c
+    settable_x: float = 0.0  # of it, mm; those of C are in offset_c
+    settable_z: float = 0.0
+    zero_x: float = 0.0  # SINUMERIK: TRANS and ATRANS, mm
     zero_z: float = 0.0
     wraps_c: bool = False  # C counts 0..<360 in this program: its display does too
     mill: Mill | None = None  # between (~PLXC) or (~PLZC) and (END)
@@ -95,9 +98,19 @@ class Modal(NamedTuple):
     @property
     def offset_x(self) -> float:
         """Machine X minus program X, mm."""
-        return self.tool_x + self.shift_x + self.preset_x + self.zero_x
+        return self.base_x + self.shift_x + self.preset_x + self.zero_x
 
     @property
     def offset_z(self) -> float:
         """Machine Z minus program Z, mm."""
-        return self.tool_z + self.shift_z + self.preset_z + self.zero_z
+        return self.base_z + self.shift_z + self.preset_z + self.zero_z
+
+    @property
+    def base_x(self) -> float:
+        """Machine X of the zero that is drawn from: tool offset and settable offset together, mm."""
+        return self.settable_x if self.edge == 0 else self.tool_x + self.settable_x
+
+    @property
+    def base_z(self) -> float:
+        """Machine Z of it."""
+        return self.settable_z if self.edge == 0 else self.tool_z + self.settable_z

@@ -15,13 +15,13 @@ class SectionEnds:
     """Goes with the elementary blocks of one pass through a program, in their order.
 
     A standstill is needed before every action, before the first block after a spindle command that must not
-    begin without its speed, and before and behind each thread pass, which is the thread and what pulls out
-    of it. All other blocks are moved through without one: they are one path section.
+    begin without its speed, and before and behind each thread pass, which is the thread or a chain of them,
+    and what pulls out of it. All other blocks are moved through without one: they are one path section.
     """
 
     def __init__(self) -> None:
         self._new_speed = False  # a speed was commanded that no block has waited for yet
-        self._pass = 0  # blocks of the thread pass under way
+        self._pass = 0  # of the thread pass under way: 1 in its threads, 2 in what pulls out of them
 
     @property
     def in_thread(self) -> bool:
@@ -37,7 +37,7 @@ class SectionEnds:
             self._new_speed = self._new_speed or isinstance(block.action, SpindleRun)
             return True
         if self._pass == 1 and _pulls_out(block):
-            self._pass = 2
+            self._pass = 1 if block.continues else 2
             return False
         return self._pass > 0 or block.kind is Kind.THREAD or (self._new_speed and needs_speed(block))
 

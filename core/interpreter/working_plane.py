@@ -37,7 +37,9 @@ class PlaneSystem:
 
     def levelled(self) -> PlaneSystem:
         """The workpiece's own system with the same tool: what is left when a program has been given up."""
-        place = self.kinematics.place({}, self.kinematics.basic, tool_length=self.tool_length)
+        place = self.kinematics.place(
+            self.kinematics.zero, self.kinematics.basic, tool_length=self.tool_length
+        )
         return PlaneSystem(place, self.kinematics, tool_length=self.tool_length, blank=self.blank)
 
 

@@ -35,6 +35,13 @@ class Operation(NamedTuple):
 
 
 Formula = Number | Parameter | Operation
+TRIGONOMETRY = {
+    "SIN": "sine",
+    "COS": "cosine",
+    "TAN": "tangent",
+    "ASIN": "arc sine",
+    "ACOS": "arc cosine",
+}  # what every language calls them
 
 
 class FormulaError(Exception):
@@ -63,6 +70,7 @@ class Grammar:
     constants: Mapping[str, float] = field(default_factory=dict)
     separator: str = ""
     negation: int = 50  # precedence of a sign before an operand
+    indexed: bool = False  # a parameter may have its number, a formula, in square brackets
     _sign: re.Pattern[str] = field(init=False, repr=False)
     _word: re.Pattern[str] = field(init=False, repr=False)
     _constant: re.Pattern[str] = field(init=False, repr=False)
@@ -94,8 +102,13 @@ def _any_of(words: Mapping[str, object]) -> re.Pattern[str]:
         return re.compile(r"(?!)")
     ordered = sorted(words, key=len, reverse=True)
     return re.compile(
-        "|".join(re.escape(word) + ("(?![A-Z_])" if word.isalpha() else "") for word in ordered)
+        "|".join(
+            re.escape(word) + ("(?![A-Z_])" if word.isalpha() else _APART.get(word, "")) for word in ordered
+        )
     )
+
+
+_APART = {"<": "(?!<)"}  # << joins texts
 
 
 _CLOSEST = 1000
@@ -159,14 +172,24 @@ class FormulaReader:
 
     def _figure(self, at: int) -> Formula:
         """A parameter or a number."""
-        if match := self._grammar.parameter.match(self._text, at):
+        grammar = self._grammar
+        if match := grammar.parameter.match(self._text, at):
             self.at = match.end()
             letters, number = match.group(1), match.group(2)
+            if not number and grammar.indexed and self._text.startswith("[", self.at):
+                return Parameter(letters, self._index(), at + 1)
             return Parameter(letters, int(number) if number else None, at + 1)
-        if match := self._grammar.number.match(self._text, at):
+        if match := grammar.number.match(self._text, at):
             self.at = match.end()
             return Number(float(match.group().replace(",", ".").replace("EX", "E")))
         raise FormulaError(at, "The formula needs a number or a parameter", "Complete it.")
+
+    def _index(self) -> Formula:
+        self.at += 1
+        made = self._expression(0)
+        if not self._takes("]"):
+            raise FormulaError(self.at, "The square bracket is not closed", "Write ] behind the index.")
+        return made
 
     def _enclosed(self) -> Formula:
         made = self._expression(0)

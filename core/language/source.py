@@ -84,7 +84,14 @@ def load_source(path: Path, said: Dialect | None = None) -> Source:
         raise _refused(
             "file-unreadable", f"{path.name} cannot be read: {reason}.", "Look at the name and the disk."
         ) from problem
-    return Source(path.name, _decoded(path.name, data), said)
+    return source_of(path.name, data, said)
+
+
+def source_of(name: str, data: bytes, said: Dialect | None = None) -> Source:
+    """The program in these bytes, under this name. Raises SourceError where they are no text."""
+    if len(data) > _LARGEST_FILE:
+        raise _refused("file-too-large", f"{name} is over 64 MB.", "Split the program.")
+    return Source(name, _decoded(name, data), said)
 
 
 def _decoded(name: str, data: bytes) -> str:

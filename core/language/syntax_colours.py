@@ -5,6 +5,9 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import NamedTuple
 
+PLAIN = 0
+"""The state that a line hands on to the next where nothing goes on."""
+
 
 class Ink(StrEnum):
     """What a part of a line is."""

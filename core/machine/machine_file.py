@@ -123,13 +123,18 @@ def _machine(reading: Reading, added: DriverReading, kinematics: KinematicsReadi
         manual_rapid=values.number("limits.manual_rapid"),
         resolution=values.number("limits.resolution"),
         outputs={name: _output(reading, name) for name in reading.outputs},
+        absent=frozenset(reading.absent),
         inputs={name: _input(reading, name) for name in reading.inputs},
         m_codes={code: (output, on) for code, output, on in signal_rules.enabled_codes(reading)},
         m_disabled=frozenset(signal_rules.disabled_codes(reading)),
+        m_ignored=frozenset(signal_rules.ignored_codes(reading)),
         source=source,
         clearance=values.number("limits.clearance"),
         inch=bool(values.inch),
         kind=reading.kind,
+        language=values.text("machine.language"),
+        control=values.text("machine.control"),
+        third_axis=values.text("axis.C.name") if reading.kind == "lathe" else "C",
         c_modulo=_of_c(reading, "modulo"),
         c_own_drive=_of_c(reading, "own_drive"),
         hardware=added.hardware(reading.outputs),
@@ -159,15 +164,17 @@ def _axis(reading: Reading, name: str) -> Axis:
     homed = values.has(f"{path}.home.order")
     whole = _ONE_TURN if name == "C" and reading.kind == "lathe" and not _of_c(reading, "modulo") else _NONE
     travel = values.pair(f"{path}.travel") if values.has(f"{path}.travel") else whole
+    slide = name in machine_tables.SLIDES[reading.kind]
     return values.model(
         Axis,
         path,
         _AXIS_KEYS,
         name=name,
+        fixed_points=values.numbers(f"{path}.fixed_points") if slide else (),
         travel=travel if math.isfinite(travel[0]) else None,
         home_order=values.whole(f"{path}.home.order") if homed else 0,
         home_speed=values.number(f"{path}.home.speed") if homed else 0.0,
-        rotary=name not in machine_tables.SLIDES[reading.kind],
+        rotary=not slide,
     )
 
 

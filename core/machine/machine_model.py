@@ -8,6 +8,7 @@ from math import inf
 
 from core.machine.hardware_model import Hardware
 from core.machine.mill_kinematics import KinematicsModel
+from core.machine.signal_table import LAMPS
 
 _ROUNDING = 1e-6  # mm, degrees: the step of the control is coarser
 
@@ -28,6 +29,7 @@ class Axis:
     home_order: int = 0
     home_speed: float = 0.0
     rotary: bool = False
+    fixed_points: tuple[float, ...] = ()  # from home, X a radius: where G75 of SINUMERIK goes
     still_window: float = 0.2  # how far it may be off where it rests
     still_time: float = 0.2  # s from the end of a motion until that counts, and for which it must be off
 
@@ -136,6 +138,8 @@ class Machine:
     inputs: Mapping[str, InputModel]
     m_codes: Mapping[int, tuple[str, bool]]  # M code → output, state
     m_disabled: frozenset[int] = frozenset()  # defined with enabled = false
+    m_ignored: frozenset[int] = frozenset()  # of other machines: they do nothing on this one
+    absent: frozenset[str] = frozenset()  # outputs that it has not: a collet closed by hand
     source: str = ""  # the file it came from
     clearance: float = 0.0  # mm, how far a slide may run on after the last renewal of a jog
     inch: bool = True  # what its builder counts in
@@ -143,6 +147,9 @@ class Machine:
     tooling: str = "single"  # "gang": all tools ride one slide; "turret"; one at a time
     silenced: tuple[str, ...] = ()  # checks of the part that count for nothing on this machine
     kind: str = "lathe"  # or "mill"
+    language: str = "omniturn"  # in which MDI is typed: omniturn, sinumerik or klartext
+    control: str = "840d"  # which SINUMERIK its programs were written for
+    third_axis: str = "C"  # what SINUMERIK programs, positions and keys call C
     c_modulo: bool = True  # C counts 0..<360 where a language asks; else its travel is -360..+360
     c_own_drive: bool = False  # C is no second use of the spindle
     hardware: Hardware = field(default_factory=Hardware)  # what it is wired to
@@ -153,6 +160,15 @@ class Machine:
     def spindle_is_c(self) -> bool:
         """Whether C is a second use of the spindle, so that it cannot be positioned while that turns."""
         return self.kind == "lathe" and not self.c_own_drive
+
+    def shown(self, name: str) -> str:
+        """What the operator calls an axis: C of a lathe by the name that its builder has given it."""
+        return self.third_axis if self.kind == "lathe" and name == "C" else name
+
+    @property
+    def lamps(self) -> tuple[str, ...]:
+        """Its outputs that are lamps of the signal tower, which the control lights by itself."""
+        return tuple(name for name in LAMPS if name in self.outputs)
 
     def axis(self, name: str) -> Axis:
         """The axis of this name. Raises KeyError where the machine has none."""

@@ -18,6 +18,7 @@ class Reading:
         self.values = Values(_inch(data))
         self.kind = _kind(data)
         self.outputs: list[str] = []
+        self.absent: list[str] = []  # outputs of which the file says that there is none
         self.inputs: list[str] = []
         self.m_codes: list[str] = []
         self.findings = _unknown_tables(data, machine_tables.top_tables(drivers))
@@ -32,9 +33,20 @@ class Reading:
                 self._table(path, keys)
         self._axes()
         io = self._parent("io", ("in", "out", "analog"))
-        self.outputs = self._named(io.get("out"), "io.out", machine_tables.OUTPUT)
+        self.absent, wired = _absent(io.get("out"))
+        self.outputs = self._named(wired, "io.out", machine_tables.OUTPUT)
         self.inputs = self._named(io.get("in"), "io.in", machine_tables.INPUT)
-        self.m_codes = self._named(self.data.get("m_codes", {}), "m_codes", machine_tables.M_CODE)
+        self.m_codes = self._m_codes(self.data.get("m_codes", {}))
+        self._language()
+
+    def _language(self) -> None:
+        """In which language MDI is typed: the machine's kind decides which it may be."""
+        spoken = machine_tables.LANGUAGES[self.kind]
+        said = self.values.found.get("machine.language") or spoken[0]
+        self.values.found["machine.language"] = said
+        if said not in spoken:
+            expected = f"a {self.kind} speaks {' or '.join(spoken)}"
+            self.findings.append(Finding("machine.language", written(said), expected))
 
     def _table(self, path: str, keys: tuple[Field, ...]) -> None:
         table = self.data.get(path, {} if path in machine_tables.MAY_BE_MISSING else None)
@@ -84,6 +96,13 @@ class Reading:
         else:  # what the control asks of every machine stands still on this one
             self._keys({}, path, machine_tables.TABLES_OF_A_LATHE[path])
 
+    def _m_codes(self, table: object) -> list[str]:
+        """M codes that switch an output, and those of which the file says that they do nothing."""
+        ignored, switching = _ignored(table)
+        names = {*self._named(ignored, "m_codes", machine_tables.M_IGNORED)}
+        names |= {*self._named(switching, "m_codes", machine_tables.M_CODE)}
+        return [name for name in table if name in names] if isinstance(table, dict) else []
+
     def _named(self, table: object, path: str, keys: tuple[Field, ...]) -> list[str]:
         """Reads tables under names of the owner's choice; returns those names."""
         if not isinstance(table, dict):
@@ -116,3 +135,25 @@ def _unknown_tables(data: Mapping[str, object], top: Sequence[str]) -> list[Find
         near = f"{guess} " if guess.startswith("did") else ""
         findings.append(Finding(f"[{found.path}]", "", f"unknown table; {near}{known}"))
     return findings
+
+
+def _ignored(table: object) -> tuple[dict[str, object], object]:
+    """Entries of M codes that do nothing, and the table without them."""
+    if not isinstance(table, dict):
+        return {}, table
+    ignored: dict[str, object] = {}
+    switching: dict[str, object] = {}
+    for name, entry in table.items():
+        (ignored if isinstance(entry, dict) and "ignored" in entry else switching)[name] = entry
+    return ignored, switching
+
+
+_NONE = "none"  # terminal of an output that this machine has not: a collet that is closed by hand
+
+
+def _absent(outputs: object) -> tuple[list[str], object]:
+    """Names of outputs that are said to be absent, and the table without them."""
+    if not isinstance(outputs, dict):
+        return [], outputs
+    absent = [name for name, entry in outputs.items() if isinstance(entry, dict) and entry.get("at") == _NONE]
+    return absent, {name: entry for name, entry in outputs.items() if name not in absent}

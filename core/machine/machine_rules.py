@@ -47,6 +47,26 @@ def _home_inside(axis: str) -> Rule:
     return Rule(path, (), wrong)
 
 
+def _fixed_points(axis: str) -> Rule:
+    path = f"axis.{axis}.fixed_points"
+
+    def wrong(values: Values) -> str:
+        points, (low, high) = values.numbers(path), values.pair(f"axis.{axis}.travel")
+        if points and values.text("machine.kind") != "lathe":
+            return "only a lathe goes to fixed points (G75 of SINUMERIK); take them out"
+        outside = next((point for point in points if not low <= point <= high), None)
+        if outside is None:
+            return ""
+        inch = bool(values.inch)
+        point, ends = (
+            shown(outside, Unit.LENGTH, inch),
+            (shown(end, Unit.LENGTH, inch) for end in (low, high)),
+        )
+        return f"{point} lies outside axis.{axis}.travel, {' to '.join(ends)}; the slide cannot go there"
+
+    return Rule(path, (f"axis.{axis}.travel", "machine.kind"), wrong)
+
+
 def _jog_run_on(axis: str) -> Rule:
     """A key held by nobody: lease · vmax + vmax² / 2a is how far the slide still goes."""
     vmax, amax = f"axis.{axis}.vmax", f"axis.{axis}.amax"
@@ -111,6 +131,7 @@ def _slide(axis: str) -> tuple[Rule, ...]:
     path = f"axis.{axis}"
     return (
         _home_inside(axis),
+        _fixed_points(axis),
         _jog_run_on(axis),
         _homing(axis),
         _below("limits.max_feed", f"{path}.vmax", "no slide goes faster than its vmax", Unit.FEED),

@@ -9,6 +9,7 @@ from core.machine.driver_tables import tables_of
 from core.table_schema import Driver, Field, Kind, Unit
 
 KINDS = ("lathe", "mill")
+LANGUAGES = {"lathe": ("omniturn", "sinumerik"), "mill": ("klartext",)}  # the first one is the default
 SLIDES = {"lathe": ("X", "Z"), "mill": ("X", "Y", "Z")}
 ROTARY = {"lathe": (), "mill": ("A", "B", "C")}  # those a machine may have; a lathe's C is its spindle
 
@@ -18,6 +19,8 @@ _MACHINE = (
     Field("name", _TEXT),
     Field("units", _CHOICE, choices=("inch", "mm")),
     Field("kind", _CHOICE, choices=KINDS, default="lathe"),
+    Field("language", _CHOICE, choices=("omniturn", "sinumerik", "klartext"), default=""),
+    Field("control", _CHOICE, choices=("802d", "808d", "828d", "840d"), default="840d"),  # SINUMERIK's words
     Field("feeder", _FLAG, default=False),
     Field("x_is", _CHOICE, choices=("radius", "diameter"), default="diameter"),
     Field("commit_ms", _NUMBER, Unit.MILLISECONDS, 0.001, 0.2),
@@ -35,6 +38,7 @@ LIMITS = (
 _STILL = Field("still_ms", _NUMBER, Unit.MILLISECONDS, 0.05, 2.0, default=0.2)  # a servo settles in less
 SLIDE = (
     Field("travel", Kind.PAIR, Unit.LENGTH, -5000.0, 5000.0),
+    Field("fixed_points", Kind.NUMBERS, Unit.LENGTH, -5000.0, 5000.0, default=()),  # G75 of SINUMERIK
     Field("vmax", _NUMBER, Unit.FEED, 1.0, 1000.0),
     Field("amax", _NUMBER, Unit.ACCEL, 10.0, 30000.0),
     Field("count", _NUMBER, Unit.LENGTH, 1e-5, 0.02),
@@ -60,6 +64,7 @@ ROTARY_HOME = (
     Field("latch", _NUMBER, Unit.DEGREES_PER_MINUTE, 0.1, 200.0, default=0.0),
     Field("offset", _NUMBER, Unit.DEGREES, -360.0, 360.0, default=0.0),
 )
+THIRD_AXIS_NAMES = (*"ABCUVWY", *(f"{letter}{digit}" for letter in "ABCQUVWY" for digit in range(1, 10)))
 C_AXIS = (
     Field("enabled", _FLAG, default=False),
     Field("vmax", _NUMBER, Unit.TURNS_PER_MINUTE, 6.0, 6000.0, derived=True),
@@ -72,6 +77,7 @@ C_AXIS = (
     _STILL,
     Field("absolute", _FLAG, default=False),
     Field("modulo", _FLAG, default=True),  # SINUMERIK: 0..<360; false: -360..+360
+    Field("name", _CHOICE, choices=THIRD_AXIS_NAMES, default="C"),  # SINUMERIK: what programs call it
     Field("own_drive", _FLAG, default=False),  # false: the spindle is C, and cannot turn meanwhile
 )
 ROTARY_AXIS = (
@@ -134,6 +140,8 @@ M_CODE = (
     Field("on", _FLAG),
     Field("enabled", _FLAG, default=True),
 )
+M_IGNORED = (Field("ignored", _CHOICE, choices=(True,)), Field("enabled", _FLAG, default=True))
+"""An M code of another machine of which this one's owner says that it does nothing here."""
 
 
 def machine_fields(drivers: Sequence[Driver]) -> tuple[Field, ...]:
@@ -194,5 +202,9 @@ TABLES_OF_A_LATHE: dict[str, tuple[Field, ...]] = {
 }
 MAY_BE_MISSING = ("limits", "collet", "clamping", "tooling", "checks", "c_axis", "interlocks", "m_codes")
 
-# M codes with a meaning of their own; the machine file cannot assign them.
-FIXED_M_CODES = frozenset((0, 1, 2, 3, 4, 5, 8, 9, 12, 13, 19, 30, 31, 89, *range(91, 100)))
+# M codes with a meaning of their own in the machine's language; the machine file cannot assign them.
+FIXED_M_CODES = {
+    "omniturn": frozenset((0, 1, 2, 3, 4, 5, 8, 9, 12, 13, 19, 30, 31, 89, *range(91, 100))),
+    "sinumerik": frozenset((0, 1, 2, 3, 4, 5, 7, 8, 9, 17, 19, 30, 70, 98, 99)),
+    "klartext": frozenset((0, 1, 2, 3, 4, 5, 8, 9, 13, 14, 19, 30, 31, 89, *range(91, 100))),
+}

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from core.machine.machine_reading import Reading
-from core.machine.machine_tables import FIXED_M_CODES
+from core.machine.machine_tables import FIXED_M_CODES, LANGUAGES
+from core.machine.signal_table import LAMPS, PREFIX, RED
 from core.table_schema import Finding, written
 
 # Codes of the language and the outputs they switch.
 NEEDED_OUTPUTS = {"coolant": "M08 and M09 switch it", "collet": "M12 and M13 switch it"}
 ESTOP = "estop"
-_NUMBERS = frozenset(str(number) for number in range(100))
+_NUMBERS = frozenset(str(number) for number in range(1000))
 
 
 def broken(reading: Reading) -> Iterator[Finding]:
@@ -19,6 +20,7 @@ def broken(reading: Reading) -> Iterator[Finding]:
     yield from _needed(reading)
     yield from _m_codes(reading)
     yield from _never_off(reading)
+    yield from _lamps(reading)
 
 
 def terminals(reading: Reading) -> dict[str, str]:
@@ -30,8 +32,11 @@ def terminals(reading: Reading) -> dict[str, str]:
 
 def _needed(reading: Reading) -> Iterator[Finding]:
     for name, why in NEEDED_OUTPUTS.items():
-        if name not in reading.outputs and not (name == "collet" and reading.kind != "lathe"):
-            yield Finding(f"io.out.{name}", "", f"missing; {why}")
+        there = {*reading.outputs, *reading.absent}
+        if name not in there and not (name == "collet" and reading.kind != "lathe"):
+            yield Finding(
+                f"io.out.{name}", "", f'missing; {why}. Where the machine has none: {{ at = "none" }}'
+            )
     needed = {ESTOP: "the control mirrors it"}
     values = reading.values
     if values.has("interlocks.two_hand_start") and values.flag("interlocks.two_hand_start"):
@@ -49,14 +54,28 @@ def _m_codes(reading: Reading) -> Iterator[Finding]:
     for code in reading.m_codes:
         path = f"m_codes.{code}"
         if code not in _NUMBERS:
-            yield Finding(path, "", "expected the number of an M code, 0…99 without a leading zero")
-        elif int(code) in FIXED_M_CODES:
+            yield Finding(path, "", "expected the number of an M code, 0…999 without a leading zero")
+        elif int(code) in FIXED_M_CODES[_language(reading)]:
             yield Finding(path, "", f"M{int(code):02d} has a meaning of its own; expected a free M code")
         elif reading.values.has(f"{path}.output"):
             output = reading.values.text(f"{path}.output")
             if output not in reading.outputs:
                 known = ", ".join(reading.outputs)
                 yield Finding(f"{path}.output", written(output), f"expected an output of [io.out]: {known}")
+
+
+def _language(reading: Reading) -> str:
+    """The language of MDI; that of its kind where the file names none rightly, which is told elsewhere."""
+    said = str(reading.values.found.get("machine.language"))
+    return said if said in FIXED_M_CODES else LANGUAGES[reading.kind][0]
+
+
+def ignored_codes(reading: Reading) -> Iterator[int]:
+    """M codes of which the file says that they do nothing on this machine."""
+    for code in reading.m_codes:
+        keys = f"m_codes.{code}.ignored", f"m_codes.{code}.enabled"
+        if code in _NUMBERS and reading.values.has(*keys) and all(map(reading.values.flag, keys)):
+            yield int(code)
 
 
 def enabled_codes(reading: Reading) -> Iterator[tuple[int, str, bool]]:
@@ -88,3 +107,25 @@ def _never_off(reading: Reading) -> Iterator[Finding]:
         if on and output not in off:
             expected = f"switches {output} on and no M code switches it off; expected one with on = false"
             yield Finding(f"m_codes.{code}", "", expected)
+
+
+def _lamps(reading: Reading) -> Iterator[Finding]:
+    """Lamps are the control's own; a dead control must leave none that says that all is well."""
+    for name in (each for each in reading.outputs if each.startswith(PREFIX)):
+        path = f"io.out.{name}"
+        if name not in LAMPS:
+            yield Finding(
+                path, "", f"a lamp of the signal tower is {', '.join(LAMPS)}; expected one of these"
+            )
+        elif reading.values.has(f"{path}.safe"):
+            safe = reading.values.found[f"{path}.safe"]
+            if safe == "keep" or (safe is True and name != RED):
+                told = "true or false" if name == RED else "false"
+                why = "what it shows when nobody drives it must be no promise"
+                yield Finding(f"{path}.safe", written(safe), f"expected {told}: {why}")
+    for code in reading.m_codes:
+        path = f"m_codes.{code}.output"
+        if reading.values.has(path) and reading.values.text(path) in LAMPS:
+            yield Finding(
+                path, written(reading.values.text(path)), "the control lights it by itself, no M code"
+            )

@@ -145,7 +145,7 @@ def read_blocks(blocks: Sequence[MotionBlock], rpm_max: float) -> BlockTable:
 def _rapid(blocks: Sequence[MotionBlock], kinds: FloatArray) -> BoolArray:
     """Blocks (m,) for which the rapid override counts."""
     rapid: BoolArray = kinds == KINDS["rapid"]
-    for i in np.flatnonzero(kinds == KINDS["plane"]).tolist():
+    for i in np.flatnonzero((kinds == KINDS["plane"]) | (kinds == KINDS["plane-line"])).tolist():
         rapid[i] = blocks[i].rapid
     return rapid
 

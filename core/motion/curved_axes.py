@@ -66,7 +66,8 @@ def chords(move: CurvedMove, rate: float, limits: MotionLimits) -> FloatArray:
     if np.abs(share - nearest).min() > _ROUNDING:
         share = np.sort(np.append(share, nearest))
     for _ in range(_HALVINGS):
-        wide = _leaves(move, share) | _jerks(move, share, OVERRIDE_MAX * rate, limits)
+        ends = move.machine(share)
+        wide = _leaves(move, share, ends) | _jerks(move, share, ends, OVERRIDE_MAX * rate, limits)
         wide &= np.diff(share) * move.length > _SHORTEST
         if not wide.any():
             break
@@ -74,22 +75,23 @@ def chords(move: CurvedMove, rate: float, limits: MotionLimits) -> FloatArray:
     return share
 
 
-def _leaves(move: CurvedMove, share: FloatArray) -> BoolArray:
-    """Chords (k,) that leave the way by more than CHORD_ERROR, as the part sees it."""
-    ends = move.machine(share)
+def _leaves(move: CurvedMove, share: FloatArray, ends: FloatArray) -> BoolArray:
+    """Chords (k,) between ``ends`` (at ``share``) that leave the way by over CHORD_ERROR, for the part."""
     span, change = np.diff(share), np.diff(ends, axis=0)
-    worst = np.zeros(len(span))
-    for spot in _SPOTS:
-        true = move.machine(share[:-1] + spot * span)
-        off = move.part(ends[:-1] + spot * change) - move.part(true)
-        worst = np.maximum(worst, np.sqrt((off**2).sum(axis=1)))
-    return worst > CHORD_ERROR
+    true = move.machine((share[:-1] + _SPOTS[:, None] * span).ravel())
+    chord = (ends[:-1] + _SPOTS[:, None, None] * change).reshape(true.shape)
+    seen = move.part(np.concatenate([chord, true]))
+    off = seen[: len(true)] - seen[len(true) :]
+    worst: FloatArray = (off**2).sum(axis=1).reshape(len(_SPOTS), len(span)).max(axis=0)
+    return worst > CHORD_ERROR**2
 
 
-def _jerks(move: CurvedMove, share: FloatArray, speed: float, limits: MotionLimits) -> BoolArray:
+def _jerks(
+    move: CurvedMove, share: FloatArray, ends: FloatArray, speed: float, limits: MotionLimits
+) -> BoolArray:
     """Chords (k,) at whose ends an axis would have to change its velocity too much at once."""
     length = np.diff(share) * move.length
-    direction = np.diff(move.machine(share), axis=0) / length[:, None]
+    direction = np.diff(ends, axis=0) / length[:, None]
     turn = np.abs(np.diff(direction, axis=0))
     mean = 0.5 * (length[:-1] + length[1:])
     fastest = np.minimum(speed, least_ratio(limits.speeds, np.abs(direction)))

@@ -28,9 +28,9 @@ def plane_path(move: PlaneMove, lift: float = 0.0, chord: float = CHORD) -> Floa
     """
     shares = np.linspace(0.0, 1.0, _chords(move, chord) + 1)
     if isinstance(move.frame, Side):
-        return radial_path(move.machine(shares) + np.array([0.0, lift, 0.0]))
+        return radial_path(move.machine(shares) + np.array([0.0, lift, 0.0]), far_side=move.frame.far)
     points = move.part(move.machine(shares))
-    turn = math.radians(-move.frame.c0)
+    turn = math.radians(move.frame.heading)
     return _turned(points, np.full(len(points), turn), lift)
 
 

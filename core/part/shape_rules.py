@@ -9,7 +9,8 @@ from core.part.holder_codes import holder_of
 from core.part.insert_codes import InsertCodeError, decoded
 from core.part.tool_outline import BORING_ENTRIES, ENTRIES
 from core.part.tool_polygons import convex_pieces
-from core.part.tool_shape import TIP_DIRECTIONS, Hand, ToolKind, ToolShape
+from core.part.tool_shape import Hand, ToolKind, ToolShape
+from core.tool_edges import TIP_DIRECTIONS
 
 _EDGED = ("hand", "tip", "nose_radius", "insert", "holder", "entry", "stick_out", "rear")
 _ROUND = ("tip", "diameter", "length", "stick_out")

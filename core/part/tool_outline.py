@@ -32,7 +32,8 @@ from core.part.tool_polygons import (
     rounded,
     walked,
 )
-from core.part.tool_shape import TIP_DIRECTIONS, Hand, ToolKind, ToolShape
+from core.part.tool_shape import Hand, ToolKind, ToolShape
+from core.tool_edges import TIP_DIRECTIONS
 
 # Entering angles of the usual holders, ISO 5608: MCLN, DDJN, MVJN, MTJN, MWLN, MSRN, CKJN and the like.
 ENTRIES: Mapping[str, float] = {

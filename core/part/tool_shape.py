@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from core.tool_edges import TIP_DIRECTIONS
+
 
 class ToolKind(StrEnum):
     """What a tool is for; it decides which of the sizes mean anything."""
@@ -34,20 +36,6 @@ class Hand(StrEnum):
 ROUND_TOOLS = frozenset(
     {ToolKind.DRILL, ToolKind.CENTRE_DRILL, ToolKind.REAMER, ToolKind.TAP, ToolKind.END_MILL}
 )
-
-# Tip quadrant → (z, x) from the nose centre to the tip, x away from the spindle axis. 0 and 9: the centre.
-TIP_DIRECTIONS = {
-    0: (0, 0),
-    1: (1, 1),
-    2: (-1, 1),
-    3: (-1, -1),
-    4: (1, -1),
-    5: (1, 0),
-    6: (0, 1),
-    7: (-1, 0),
-    8: (0, -1),
-    9: (0, 0),
-}
 
 Point = tuple[float, float]
 

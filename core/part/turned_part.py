@@ -60,6 +60,10 @@ class Cut(NamedTuple):
             self.parts or other.parts,
         )
 
+    def followed(self, other: Cut) -> Cut:
+        """This, then the other: pieces of one move, none of which is deeper because of the others."""
+        return self.joined(other)._replace(depth=max(self.depth, other.depth))
+
 
 NOTHING = Cut()
 

@@ -16,6 +16,8 @@ _NEAR_FACE, _CENTRE = 1.0, 1.0  # mm; a cut from outside to the axis here is the
 _BEYOND = 6.35  # mm; what is fed further out than the outside is no bore
 _LEAST = 0.5  # mm of radius
 _WALL = 2.0  # mm around a bore
+_BEFORE = 5.0  # mm before Z0; a lost minus is nearer, or one move of many
+_MOST = 0.5  # of what is fed
 
 
 def assumed_stock(
@@ -28,9 +30,11 @@ def assumed_stock(
     """The bar for the moves of outside tools; a tube where tools of a bore begin without a drill before them.
 
     ``face``: Z at which a bar stop has held it, mm; None: Z0. ``drill``: diameter of the largest, 0: none.
-    None where nothing is cut behind the face.
+    None where nothing is cut behind the face, and where part zero is no face: then nothing says where one is.
     """
     cuts = [move for move in (*outside, *bore) if not move.quick]
+    if face is None and zero_behind(cuts):
+        return None
     front = _front((*outside, *bore)) if face is None else face
     milled = [step for step in live if not step.block.rapid and step.block.feed < QUICK]
     depths = [z for move in cuts for z, _ in move.points] + [b.reach()[2] + dz for b, (_, dz) in milled]
@@ -43,6 +47,12 @@ def assumed_stock(
     ends = back - _BEHIND, front
     inner = tuple((z, hole) for z in ends) if hole > 0.0 else ()
     return Stock("", tuple((z, radius) for z in ends), inner)
+
+
+def zero_behind(cuts: Sequence[TipMove]) -> bool:
+    """Whether part zero lies behind the part, at the chuck: most is fed well before Z0."""
+    before = sum(move.length for move in cuts if min(z for z, _ in move.points) > _BEFORE)
+    return before > _MOST * sum(move.length for move in cuts)
 
 
 def _front(moves: Sequence[TipMove]) -> float:

@@ -14,6 +14,7 @@ from itertools import pairwise
 from core.interpreter.elementary_blocks import Block, Kind
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.proving.tip_moves import QUICK, LiveStep, TipMove
+from core.tool_edges import edge_name
 
 _ON_AXIS = 0.05  # mm; a tool that feeds along Z no further off it is a drill
 _SQUARE = 0.02  # mm of Z, in a plunge
@@ -66,6 +67,7 @@ _METRIC_COARSE = {
     **{2.0: 0.4, 2.5: 0.45, 3.0: 0.5, 4.0: 0.7, 5.0: 0.8, 6.0: 1.0, 8.0: 1.25, 10.0: 1.5, 12.0: 1.75},
     **{14.0: 2.0, 16.0: 2.0, 20.0: 2.5, 24.0: 3.0},
 }  # ISO 261, mm
+_POINT_SIGN = re.compile(r"(?<=\d)P(?=\d)")  # 0P062 WIDE: a comment of this control has no point
 _RELEASES = r"TAPMATIC|REVERSING|RELEAS|COLLAPS|DIE\s?HEAD|SELF[\s-]?REV"
 _LEFT_HAND = r"\bL\.?H\b|\bLEFT[ -]?HAND"
 
@@ -81,6 +83,12 @@ class ToolUse:
     pushes_bar: bool = False  # it fed while the collet was open
     paused: bool = False  # the program waits, or switches something, while it stands ready
     live: list[LiveStep] = field(default_factory=list)  # with C held, or in a plane of the virtual mill
+
+    @property
+    def metric(self) -> bool:
+        """Whether the program counts in mm where it uses this tool."""
+        modals = [*(move.modal for move in self.moves[:1]), *(block.modal for block, _ in self.live[:1])]
+        return any(modal.metric for modal in modals)
 
     @property
     def live_blocks(self) -> list[Block]:
@@ -123,7 +131,7 @@ class Assumed:
     shape: ToolShape | None
     words: str
 
-    def with_diameter(self, bore: Sequence[TipMove]) -> Assumed:
+    def with_diameter(self, use: ToolUse, bore: Sequence[TipMove]) -> Assumed:
         """A drill without a diameter gets one: just under what is cut in the ``bore`` behind it."""
         shape = self.shape
         if shape is None or not shape.turns_itself or shape.diameter:
@@ -131,7 +139,7 @@ class Assumed:
         bore = bore if shape.kind in _OPENS else ()
         inside = [abs(r) for m in bore if not m.quick for z, r in m.points if z < -_SQUARE]
         diameter = max(2.0 * min(inside) - _ALLOWANCE, _SMALLEST) if inside else _USUAL
-        words = f"{self.words}, its diameter as {diameter / 25.4:.3f} in"
+        words = f"{self.words}, its diameter as {_size(diameter, use)}"
         return Assumed(replace(shape, diameter=diameter), words)
 
     def with_width(self, use: ToolUse, threads: Sequence[TipMove]) -> Assumed:
@@ -140,7 +148,7 @@ class Assumed:
         if shape is None or shape.kind not in GROOVERS or shape.width:
             return self
         width = groove_width(shape, use.moves, threads)
-        return Assumed(replace(shape, width=width), f"{self.words}, its width as {width / 25.4:.3f} in")
+        return Assumed(replace(shape, width=width), f"{self.words}, its width as {_size(width, use)}")
 
 
 def groove_width(shape: ToolShape, moves: Iterable[TipMove], threads: Iterable[TipMove]) -> float:
@@ -161,9 +169,9 @@ def assumed_tool(use: ToolUse, said: ToolShape | None = None) -> Assumed:
     """The shape to be taken for a tool that has none, or for one that lacks a size, and a sentence of it."""
     kind, why = (said.kind, "by its shape") if said is not None else _kind(use)
     if kind is None:
-        return Assumed(None, f"T{use.number} is taken for a bar stop")
+        return Assumed(None, f"{edge_name(use.number)} is taken for a bar stop")
     shape = said or _shape(kind, use)
-    return Assumed(shape, f"T{use.number} is taken for {_names(kind, shape)} ({why})")
+    return Assumed(shape, f"{edge_name(use.number)} is taken for {_names(kind, shape, use)} ({why})")
 
 
 def _kind(use: ToolUse) -> tuple[ToolKind | None, str]:
@@ -251,9 +259,14 @@ def _groover(kind: ToolKind, use: ToolUse, *, rear: bool) -> ToolShape:
     return ToolShape(kind, tip=_edge(use, rear=rear), width=width, rear=rear)
 
 
+def _plain(comment: str) -> str:
+    """In capitals, and with a point where a P stands for one between two digits."""
+    return _POINT_SIGN.sub(".", comment.upper())
+
+
 def edge_width(comment: str) -> float:
     """mm, as a comment gives it: .045 WIDE, 045 WIDE (thousandths), 3MM WIDE; 0 where none does."""
-    found = re.search(_WIDTH, comment.upper())
+    found = re.search(_WIDTH, _plain(comment))
     if found is None:
         return 0.0
     figure = float(found[1])
@@ -275,7 +288,7 @@ def _round_tool(kind: ToolKind, use: ToolUse) -> ToolShape:
 
 def tap_size(comment: str) -> tuple[float, float]:
     """Diameter and pitch, mm, of a tap as a comment names it: 1/4-20, 10-32, M6X1; 0 where it does not."""
-    text = comment.upper()
+    text = _plain(comment)
     if found := re.search(_TAP_METRIC, text):
         across = float(found[1])
         return across, float(found[2]) if found[2] else _METRIC_COARSE.get(across, 0.0)
@@ -330,7 +343,7 @@ def _edge(use: ToolUse, *, rear: bool) -> int:
 
 def _diameter(comment: str) -> float:
     """mm, as a comment such as 1/4 DRILL or DRILL .250 DIA gives it; 0 where none does."""
-    text = comment.upper()
+    text = _plain(comment)
     if found := re.search(_MILLIMETRES, text):
         return float(found[1])
     if found := re.search(_SIZE, text):
@@ -339,8 +352,13 @@ def _diameter(comment: str) -> float:
     return 0.0
 
 
-def _names(kind: ToolKind, shape: ToolShape) -> str:
-    size = f", {shape.diameter / 25.4:.3f} in" if shape.diameter and shape.turns_itself else ""
+def _size(mm: float, use: ToolUse) -> str:
+    """As the program counts."""
+    return f"{mm:.2f} mm" if use.metric else f"{mm / 25.4:.3f} in"
+
+
+def _names(kind: ToolKind, shape: ToolShape, use: ToolUse) -> str:
+    size = f", {_size(shape.diameter, use)}" if shape.diameter and shape.turns_itself else ""
     if shape.width:
-        size = f", {shape.width / 25.4:.3f} in wide"
+        size = f", {_size(shape.width, use)} wide"
     return f"{_NAMES[kind]}{size}"

@@ -11,6 +11,7 @@ from core.interpreter.modal_state import Modal
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
 from core.machine.machine_model import Machine
+from core.proving.tip_moves import taps
 
 LIVE = "live"
 """The names of outputs that turn a live tool begin with it in the machine file."""
@@ -118,6 +119,8 @@ class CuttingChecks:
             self._collet_open(block)
         if any(name.startswith(LIVE) for name in modal.outputs):
             self._clear("live-tool-off", "spindle-off")
+        elif taps(block):
+            return
         elif modal.c_locked or block.kind in _MILLING:
             self._live_tool_off(block)
         elif not modal.spindle and not block.per_rev and self._has_run:

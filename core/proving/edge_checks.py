@@ -16,6 +16,7 @@ from core.part.turned_part import Cut, TurnedPart
 from core.proving.assumed_tools import GROOVERS
 from core.proving.thread_checks import Found
 from core.proving.tip_moves import TipMove
+from core.tool_edges import edge_name
 
 _COARSE = 0.8  # of the nose radius: the usual limit of a turned face
 _OF_WIDTH = 0.25  # of a grooving edge
@@ -64,12 +65,17 @@ class EdgeChecks:
         shown = move.modal.feed_text(feed, per_rev=True)
         text = move.modal.length_text
         if shape.kind in _DRILLS and held and feed > _OF_DRILL * shape.diameter > 0.0:
-            yield Found("chip-load", f"T{tool} feeds {shown} with a diameter of {text(shape.diameter)}.")
+            yield Found(
+                "chip-load", f"{edge_name(tool)} feeds {shown} with a diameter of {text(shape.diameter)}."
+            )
         elif shape.kind in GROOVERS and held and feed > _OF_WIDTH * shape.width > 0.0:
-            yield Found("chip-load", f"T{tool} feeds {shown} with an edge {text(shape.width)} wide.")
+            yield Found(
+                "chip-load", f"{edge_name(tool)} feeds {shown} with an edge {text(shape.width)} wide."
+            )
         elif shape.kind in _INSERTS and feed > _COARSE * shape.nose_radius > 0.0:
             yield Found(
-                "chip-load", f"T{tool} feeds {shown} with a nose radius of {text(shape.nose_radius)}."
+                "chip-load",
+                f"{edge_name(tool)} feeds {shown} with a nose radius of {text(shape.nose_radius)}.",
             )
 
     def _spindle(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
@@ -80,7 +86,9 @@ class EdgeChecks:
             needed = {Hand.RIGHT: 1.0, Hand.LEFT: -1.0}.get(shape.hand, 0.0)
             if move.rpm * needed < 0.0:
                 code = "M04" if move.rpm < 0.0 else "M03"
-                words = f"T{tool}, which is {shape.hand}-hand, cuts while the spindle turns by {code}."
+                words = (
+                    f"{edge_name(tool)}, which is {shape.hand}-hand, cuts while the spindle turns by {code}."
+                )
                 yield Found("wrong-spindle-direction", words)
             return
         if shape.turns_itself:
@@ -91,7 +99,9 @@ class EdgeChecks:
         way = math.copysign(1.0, move.rpm) * math.copysign(1.0, radii[0])
         if self._turned.setdefault(tool, way) != way and tool not in self._told:
             self._told.add(tool)
-            words = f"T{tool} cuts with the spindle turning the other way than where it has cut before."
+            words = (
+                f"{edge_name(tool)} cuts with the spindle turning the other way than where it has cut before."
+            )
             yield Found("wrong-spindle-direction", words)
 
     def _over_axis(self, move: TipMove, cutter: Cutter, tool: int) -> Iterator[Found]:
@@ -99,7 +109,7 @@ class EdgeChecks:
         z, r = move.points[-1]
         behind = z < (self.stock.front if self.stock is not None else 0.0) - _BEHIND_FACE
         if cutter.side is Side.OUTSIDE and behind and r * cutter.across < -_OVER_AXIS:
-            words = f"T{tool} cuts {move.modal.length_text(abs(r))} beyond the axis"
+            words = f"{edge_name(tool)} cuts {move.modal.length_text(abs(r))} beyond the axis"
             yield Found("over-axis", f"{words}, on the side where it does not stand.")
 
     def _past_part_off(self, move: TipMove, shape: ToolShape, cutter: Cutter, tool: int) -> Iterator[Found]:
@@ -110,14 +120,17 @@ class EdgeChecks:
         if z < self.parted_at - max(_PAST, long):
             text = move.modal.length_text
             yield Found(
-                "past-part-off", f"T{tool} cuts at Z {text(z)}; the part ends at {text(self.parted_at)}."
+                "past-part-off",
+                f"{edge_name(tool)} cuts at Z {text(z)}; the part ends at {text(self.parted_at)}.",
             )
 
     def _drilled(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
         deep = part_depth(move, self.stock)
         if shape.turns_itself and shape.length and deep > shape.length:
             text = move.modal.length_text
-            yield Found("drill-too-deep", f"T{tool} goes {text(deep)} deep; it cuts {text(shape.length)}.")
+            yield Found(
+                "drill-too-deep", f"{edge_name(tool)} goes {text(deep)} deep; it cuts {text(shape.length)}."
+            )
 
 
 def part_depth(move: TipMove, stock: Stock | None) -> float:
@@ -132,7 +145,7 @@ def _too_deep(move: TipMove, met: Cut, shape: ToolShape, cutter: Cutter, tool: i
         return
     if met.depth > cutter.height:
         text = move.modal.length_text
-        words = f"T{tool} cuts {text(met.depth)} deep; its edge reaches {text(cutter.height)}."
+        words = f"{edge_name(tool)} cuts {text(met.depth)} deep; its edge reaches {text(cutter.height)}."
         yield Found("feed-into-holder", words)
 
 
@@ -149,7 +162,9 @@ def _wrong_side(
     text = move.modal.length_text
     if along < -_NEAR and abs(inwards) < -along * 0.05:
         if met.depth > max(_WRONG_SIDE, 2.0 * shape.nose_radius):
-            yield Found("wrong-side", f"T{tool} cuts {text(met.depth)} deep with the back of its insert.")
+            yield Found(
+                "wrong-side", f"{edge_name(tool)} cuts {text(met.depth)} deep with the back of its insert."
+            )
         return
     if along < 0.0 or inwards <= _NEAR:
         return
@@ -159,7 +174,7 @@ def _wrong_side(
     behind = met.front - z0 if forward < 0 else z0 - met.back
     beyond = _stands_behind(part, met, forward, abs(r1), cutter.side)
     if behind > 2.0 * shape.nose_radius + _BEHIND and met.depth > _BEHIND and beyond:
-        words = f"T{tool} goes in at {steep:.0f}°, and the back of its insert clears {clears:.0f}°."
+        words = f"{edge_name(tool)} goes in at {steep:.0f}°, and the back of its insert clears {clears:.0f}°."
         yield Found("wrong-side", words)
 
 

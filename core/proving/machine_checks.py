@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from core.interpreter.elementary_blocks import Block, Kind, Series
 from core.language.diagnostics import Diagnostic, Severity
 from core.machine.machine_model import Axis, Machine
+from core.tool_edges import edge_name
 
 MM_PER_INCH = 25.4
 
@@ -67,7 +68,7 @@ def _beyond(machine: Machine, block: Block, axis: Axis, low: float, high: float)
 def _hint(machine: Machine, block: Block, axis: Axis) -> str:
     if machine.kind != "lathe" or axis.rotary:
         return f"check the {axis.name} word and the shifts in force"
-    return f"check the {axis.name} word, the offset of T{block.modal.tool} and any G10 or G92"
+    return f"check the {axis.name} word, the offset of {edge_name(block.modal.tool)} and any G10 or G92"
 
 
 # --- C as the spindle -----------------------------------------------------------------------------------

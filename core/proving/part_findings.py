@@ -23,6 +23,7 @@ from core.proving.edge_checks import EdgeChecks
 from core.proving.part_checks import CHECKS, Check
 from core.proving.thread_checks import Found, ThreadChecks
 from core.proving.tip_moves import TipMove
+from core.tool_edges import edge_name
 
 if TYPE_CHECKING:
     from core.part.polar_field import Taken
@@ -86,7 +87,7 @@ class PartFindings:
         self.threads.before_cut(move, part)
         met, struck = _executed(move, cutter, part)
         if struck:
-            text = f"The holder of T{tool} runs into metal, {_depth(struck, move)}."
+            text = f"The holder of {edge_name(tool)} runs into metal, {_depth(struck, move)}."
             if move.quick:
                 self._add("holder-into-stock", move, text)
             else:
@@ -95,7 +96,11 @@ class PartFindings:
         if self.neighbours is not None and (
             other := self.neighbours.struck(part, tool, pairwise(move.points))
         ):
-            self._add("neighbour-tool", move, f"T{other} beside T{tool} on the plate runs into the stock.")
+            self._add(
+                "neighbour-tool",
+                move,
+                f"{edge_name(other)} beside {edge_name(tool)} on the plate runs into the stock.",
+            )
         if move.quick:
             self._rapid(move, met)
             self._found_by(move, self._airs.rapid(move, met, tool))
@@ -118,10 +123,12 @@ class PartFindings:
             return
         if met := _reached(self._chuck, move, cutter):
             self.into_clamping["into-chuck", move.line] = met
-            self._add("into-chuck", move, f"T{tool} runs into the chuck, {_depth(met, move)}.")
+            self._add("into-chuck", move, f"{edge_name(tool)} runs into the chuck, {_depth(met, move)}.")
         if met := _reached(self._tailstock, move, cutter):
             self.into_clamping["into-tailstock", move.line] = met
-            self._add("into-tailstock", move, f"T{tool} runs into the tailstock, {_depth(met, move)}.")
+            self._add(
+                "into-tailstock", move, f"{edge_name(tool)} runs into the tailstock, {_depth(met, move)}."
+            )
         highest = self.clamping.max_rpm
         if highest and abs(move.rpm) > highest:
             text = f"The spindle turns at {abs(move.rpm):.0f} rpm; the chuck may turn at {highest:.0f}."
@@ -153,7 +160,9 @@ class PartFindings:
         """The program has ended."""
         self._tell_left()
         for line, n, tool in self._airs.never_milled:
-            self._tell("unmade-cut", line, n, f"The live tool T{tool} is fed, and never meets metal.")
+            self._tell(
+                "unmade-cut", line, n, f"The live tool {edge_name(tool)} is fed, and never meets metal."
+            )
 
     def nothing_cut(self, line: int, n: int, text: str) -> None:
         """What the moves of a tool, or of a whole program, should have cut."""
@@ -164,7 +173,9 @@ class PartFindings:
     ) -> None:
         """A live tool has moved; ``touches`` tells whether it has gone along metal where it has met none."""
         if not move.axial and self._over_axis(move):
-            self._tell("through-part", move.line, move.n, f"T{tool} goes over the axis, through the part.")
+            self._tell(
+                "through-part", move.line, move.n, f"{edge_name(tool)} goes over the axis, through the part."
+            )
         if not move.quick:
             self._airs.mill(move.line, move.n, tool, lambda: bool(met) or touches())
         if move.quick and met.volume > RAPID * math.pi * (shape.diameter / 2.0) ** 2:
@@ -192,7 +203,9 @@ class PartFindings:
         if self._left is not None:
             tool, move = self._left
             thick = move.modal.length_text(2.0 * abs(move.points[-1][1]))
-            self._add("part-off-left", move, f"T{tool} parts off down to {thick}, and nothing falls.")
+            self._add(
+                "part-off-left", move, f"{edge_name(tool)} parts off down to {thick}, and nothing falls."
+            )
         self._left = None
 
     def parted(self, move: TipMove, piece: Piece) -> None:
@@ -236,8 +249,8 @@ def _executed(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[Cut, Cut
             met = met.joined(cutter.thread(part, start, end, move.per_rev, turns))
             turns += abs(end[0] - start[0]) / move.per_rev
         else:
-            met = met.joined(cutter.cut(part, start, end))
-        struck = struck.joined(cutter.strikes(part, start, end))
+            met = met.followed(cutter.cut(part, start, end))
+        struck = struck.followed(cutter.strikes(part, start, end))
     return met, struck
 
 

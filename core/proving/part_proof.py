@@ -35,7 +35,7 @@ from core.part.stock_spec import StockSpec
 from core.part.tool_outline import outline
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import STEP, Piece, TurnedPart
-from core.proving.assumed_stock import assumed_stock
+from core.proving.assumed_stock import assumed_stock, zero_behind
 from core.proving.assumed_tools import GROOVERS, Assumed, ToolUse, assumed_tool, releases
 from core.proving.part_checks import STOCK, TOOL, Check
 from core.proving.part_findings import PartFindings
@@ -45,6 +45,7 @@ from core.proving.prove_program import Progress, prove
 from core.proving.thread_checks import UNKNOWN, Drives, ThreadChecks
 from core.proving.tip_moves import QUICK, LiveStep, Place, Step, Steps, TipMove
 from core.proving.unchecked_parts import unchecked
+from core.tool_edges import edge_name
 
 if TYPE_CHECKING:
     from core.proving.mill_moves import MillMove
@@ -243,7 +244,8 @@ class Tools:
         bore = [m for n, use in self.uses.items() if (s := self.shape(n)) and s.internal for m in use.moves]
         threads = [m for use in self.uses.values() for m in use.moves if m.kind is Kind.THREAD]
         for number, each in self.assumed.items():
-            self.assumed[number] = each.with_diameter(bore).with_width(self.uses[number], threads)
+            use = self.uses[number]
+            self.assumed[number] = each.with_diameter(use, bore).with_width(use, threads)
 
     def shape(self, number: int) -> ToolShape | None:
         """The tool's shape; None for a bar stop, and where nothing is known that would cut."""
@@ -290,7 +292,7 @@ class Tools:
         cutting = [use for n, use in self.uses.items() if self.shape(n) is not None]
         for use in cutting:
             if (move := use.never_fed) is not None:
-                yield move.line, move.n, f"T{use.number} is never fed: all its moves are rapids."
+                yield move.line, move.n, f"{edge_name(use.number)} is never fed: all its moves are rapids."
         if stock is not None:
             return
         if (lost := self.fed_away) is not None:
@@ -298,14 +300,20 @@ class Tools:
         for use in cutting:
             fed = [block for block in use.live_blocks if not block.rapid and block.feed < QUICK]
             if fed:
-                yield fed[0].line, fed[0].n, f"The live tool T{use.number} is fed, and never comes behind Z0."
+                yield (
+                    fed[0].line,
+                    fed[0].n,
+                    f"The live tool {edge_name(use.number)} is fed, and never comes behind Z0.",
+                )
 
     @property
     def fed_away(self) -> TipMove | None:
         """The longest feed away from the chuck, where all feeds together lead that way."""
         feeds = [m for n, use in self.uses.items() if self.shape(n) for m in use.moves if not m.quick]
         along = [move.points[-1][0] - move.points[0][0] for move in feeds]
-        return feeds[along.index(max(along))] if sum(along) > _FED_AWAY else None
+        if sum(along) <= _FED_AWAY or zero_behind(feeds):
+            return None
+        return feeds[along.index(max(along))]
 
     def assumed_stock(self) -> Stock | None:
         """A bar for what the tools cut."""
@@ -388,7 +396,7 @@ class Making:
         """What a finding of this check rests on and nobody has described, at the tool in work."""
         stock = (STOCK,) if STOCK in check.rests_on and not self._stock_said else ()
         assumed = TOOL in check.rests_on and self._tool in self._tools.assumed
-        return (*stock, f"T{self._tool}") if assumed else stock
+        return (*stock, edge_name(self._tool)) if assumed else stock
 
     def copy(self) -> Making:
         """The same once more, to be gone on with later; what never changes is shared."""
@@ -515,7 +523,7 @@ class Making:
         stock = self._stock
         assumed = [each.words for _, each in sorted(self._tools.assumed.items())]
         if stock is None and self._tools.uses:
-            assumed.append("no stock is assumed: no feed cuts behind Z0")
+            assumed.append("no stock is assumed: the feeds cut before Z0, where no face of it can lie")
         for line, n, text in self._tools.nothing_cut(stock):
             self.findings.nothing_cut(line, n, text)
         volume = TurnedPart(stock).volume if stock is not None else 0.0
@@ -535,4 +543,7 @@ class Making:
 
 
 def _cut_standing(lines: Mapping[int, int]) -> list[str]:
-    return [f"what T{tool} cuts from line {line} on while the spindle stands" for tool, line in lines.items()]
+    return [
+        f"what {edge_name(tool)} cuts from line {line} on while the spindle stands"
+        for tool, line in lines.items()
+    ]

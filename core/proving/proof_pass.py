@@ -245,7 +245,7 @@ class ProofPass:
             final=(end.x, end.z, _shown_c(end)) if end else _lathe(timeline.start),
             machine_final=end.machine_end if end else timeline.start,
             mill=self._mill(),
-            needs=self._needs,
+            needs=first_needs((*self._needs, *interpreter.lacking)),
             stops=self._stops,
             optional_stops=self._optional_stops,
         )

@@ -14,6 +14,7 @@ from core.part.swept_edge import FloatArray
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import Cut, TurnedPart
 from core.proving.tip_moves import TipMove
+from core.tool_edges import edge_name
 
 _LATENCY = 0.08  # s before a drive follows a new command
 _POINT = 60.0  # degrees, of a thread that nobody has described
@@ -113,7 +114,10 @@ class ThreadChecks:
         if shape is not None and shape.pitch and shape.kind is ToolKind.THREADING:
             starts = move.per_rev / shape.pitch
             if abs(starts - round(starts)) > 0.02 * max(starts, 1.0) or not 0 < round(starts) <= _MOST_STARTS:
-                words = f"T{tool} cuts a pitch of {text(shape.pitch)}; the lead is {text(move.per_rev)}."
+                words = (
+                    f"{edge_name(tool)} cuts a pitch of {text(shape.pitch)}; "
+                    f"the lead is {text(move.per_rev)}."
+                )
                 yield Found("thread-form", words)
         before, needed = self._run_up(move, met), self._braking(move)
         if met and before < needed:
@@ -189,32 +193,36 @@ class ThreadChecks:
         feed = _per_turn(move)
         if feed and shape.pitch and abs(feed - shape.pitch) > _OTHER_PITCH * shape.pitch:
             text = move.modal.length_text
-            yield Found("tap-pitch", f"T{tool} feeds {text(feed)} a turn; its pitch is {text(shape.pitch)}.")
+            yield Found(
+                "tap-pitch", f"{edge_name(tool)} feeds {text(feed)} a turn; its pitch is {text(shape.pitch)}."
+            )
 
     def _out(self, move: TipMove, fed: TipMove, tool: int) -> Iterator[Found]:
         if not fed.rpm:
             return  # a spindle that is switched by hand
         if move.quick:
-            yield Found("tap-reversal", f"T{tool} is torn out of its thread by a rapid.")
+            yield Found("tap-reversal", f"{edge_name(tool)} is torn out of its thread by a rapid.")
         elif fed.rpm * move.rpm > 0.0:
             words = "while the spindle turns on as it went in"
-            yield Found("tap-reversal", f"T{tool} is drawn out of its thread {words}.")
+            yield Found("tap-reversal", f"{edge_name(tool)} is drawn out of its thread {words}.")
         elif not move.rpm:
-            yield Found("tap-reversal", f"T{tool} is drawn out of its thread with the spindle stopped.")
+            yield Found(
+                "tap-reversal", f"{edge_name(tool)} is drawn out of its thread with the spindle stopped."
+            )
         else:
             yield from self._reversed(move, fed, tool)
 
     def _reversed(self, move: TipMove, fed: TipMove, tool: int) -> Iterator[Found]:
         text, into, out = move.modal.length_text, _per_turn(fed), _per_turn(move)
         if abs(out - into) > _OTHER_FEED * into:
-            words = f"T{tool} goes in by {text(into)} a turn and out by {text(out)}."
+            words = f"{edge_name(tool)} goes in by {text(into)} a turn and out by {text(out)}."
             yield Found("tap-reversal", words)
         slows = self.drives.spindle_decel
         if not slows:
             return
         turns = abs(fed.rpm) / 60.0 * (_LATENCY + abs(fed.rpm) / slows / 2.0)
         if turns * into > _GIVES:
-            words = f"T{tool} goes on for {text(turns * into)} until the spindle stands"
+            words = f"{edge_name(tool)} goes on for {text(turns * into)} until the spindle stands"
             yield Found("tap-reversal", f"{words}: more than a holder gives.")
 
 

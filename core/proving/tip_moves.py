@@ -54,6 +54,9 @@ Place = tuple[float, float]
 """What brings X and Z of a block to its place from part zero, mm."""
 
 
+_ON_AXIS = 0.05  # mm
+
+
 class LiveStep(NamedTuple):
     """A block that moves with C held, or in a plane of the virtual mill, and where part zero is for it."""
 
@@ -90,7 +93,7 @@ class Steps:
             if block.action is not None:
                 self._act(block)
                 yield block
-            elif block.kind in _TURNED and block.travel is None and not block.modal.c_locked:
+            elif block.kind in _TURNED and block.travel is None and (not block.modal.c_locked or taps(block)):
                 self._moved = True
                 place = self._part_zero(block)
                 yield _move(block, block.n, block.line, tuple(_points(block, *place)), place)
@@ -108,7 +111,10 @@ class Steps:
     def _part_zero(self, block: Block) -> Place:
         """Work shift, preset and zero offset together, without what has only said where zero is."""
         modal = block.modal
-        x, z = self._tips.get(modal.settable or modal.tool, (modal.tool_x, modal.tool_z))
+        x, z = self._tips.get(modal.tool, (modal.tool_x, modal.tool_z))
+        if modal.settable:
+            zero_x, zero_z = self._tips.get(modal.settable, (modal.settable_x, modal.settable_z))
+            x, z = x + zero_x, z + zero_z
         return block.offset_x - x - self._zero[0], block.offset_z - z - self._zero[1]
 
     def _of_series(self, series: Series) -> Iterator[TipMove]:
@@ -124,12 +130,21 @@ def zero_of(block: Block, place: Place) -> Place:
     return block.offset_x - place[0], block.offset_z - place[1]
 
 
+def taps(block: Block) -> bool:
+    """Whether the spindle, held as C, turns in proportion to a way along Z on the axis: a rigid tap."""
+    turned = block.kind is Kind.FEED and block.c != block.c0 and block.z != block.z0
+    return turned and block.modal.c_locked and block.x == block.x0 and abs(block.x) < _ON_AXIS
+
+
 def _move(block: Block, n: int, line: int, points: tuple[Point, ...], place: Place) -> TipMove:
-    per_rev = block.feed if block.per_rev and not block.rapid else 0.0
-    speed = per_rev * abs(block.rpm) / 60.0 if per_rev else block.feed
+    per_rev, rpm = (block.feed if block.per_rev and not block.rapid else 0.0), block.rpm
+    speed = per_rev * abs(rpm) / 60.0 if per_rev else block.feed
+    if taps(block):
+        per_rev = abs((block.z - block.z0) / (block.c - block.c0)) * 360.0
+        rpm = math.copysign(speed / per_rev * 60.0, block.c - block.c0)
     quick = block.rapid or (not per_rev and block.feed >= QUICK and block.kind is not Kind.THREAD)
     return TipMove(
-        n, line, block.kind, points, speed, quick, per_rev, block.rpm, block.modal, zero_of(block, place)
+        n, line, block.kind, points, speed, quick, per_rev, rpm, block.modal, zero_of(block, place)
     )
 
 

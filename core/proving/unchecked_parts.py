@@ -8,6 +8,7 @@ from core.part.clamping import Clamping
 from core.part.stock import Point
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.assumed_tools import ToolUse
+from core.tool_edges import edge_name
 
 _DEEP = frozenset({ToolKind.DRILL, ToolKind.REAMER, ToolKind.TAP, ToolKind.END_MILL})
 
@@ -42,4 +43,4 @@ def _phrases(
 
 
 def _names(numbers: Iterable[int]) -> str:
-    return ", ".join(f"T{n}" for n in numbers)
+    return ", ".join(edge_name(n) for n in numbers)

@@ -70,7 +70,7 @@ def ball_bar(demand: FloatArray, actual: FloatArray) -> BallBar:
     u0, v0, radius = circle_of(demand)
     away = demand - (u0, v0)
     if np.abs(np.hypot(*away.T) - radius).max() > _ROUND or not np.isfinite(radius):
-        raise AnalysisError("there is no arc in this time: choose the line of a G02 or G03")
+        raise AnalysisError("there is no arc in this time: choose the line of an arc")
     turned = np.unwrap(np.arctan2(away[:, 1], away[:, 0]))
     if abs(np.ptp(turned)) < math.radians(LEAST_ANGLE):
         raise AnalysisError(f"the arc is shorter than {LEAST_ANGLE:g} degrees: too short for a ball-bar plot")

@@ -22,9 +22,10 @@ _SAME = 1e-9  # mm: points nearer than that are one
 
 @dataclass(frozen=True, slots=True)
 class PathError:
-    """Of each measured sample (m,): its distance to the path, mm, positive to the left of the way it goes.
+    """Of each measured sample (m,): its distance to the path, mm; of two slides positive to the left of the
+    way it goes, of three without a sign.
 
-    ``foot`` (m, 2) is the nearest point of the path, ``along`` how far along the path that lies, mm,
+    ``foot`` (m, 2 or 3) is the nearest point of the path, ``along`` how far along the path that lies, mm,
     ``lines`` the source line there.
     """
 
@@ -40,7 +41,7 @@ class PathError:
         return float(np.abs(self.distance).max())
 
     def magnified(self, factor: float) -> FloatArray:
-        """The measured path (m, 2) with its distance from the programmed one so many times as large."""
+        """The measured path (m, 2 or 3) with its distance from the programmed one so many times as large."""
         return self.foot + factor * (self.measured - self.foot)
 
 
@@ -50,14 +51,16 @@ class WorstPlace:
 
     line: int
     distance: float
-    place: tuple[float, float]
+    place: tuple[float, ...]
     sample: int
 
 
 def path_error(
     programmed: FloatArray, lines: IntArray, measured: FloatArray, due: IntArray, reach: int
 ) -> PathError:
-    """Distances of ``measured`` (m, 2) from the polyline ``programmed`` (n, 2) with its ``lines`` (n,).
+    """Distances of ``measured`` (m, k) from the polyline ``programmed`` (n, k) of k = 2 or 3 slides.
+
+    ``lines`` (n,) are the source lines of its points.
 
     ``due`` (m,) is the point of the polyline at which each sample was to be; its foot is sought ``reach``
     points to both sides of it, so that a path that crosses itself is not taken for its own neighbour.
@@ -65,7 +68,7 @@ def path_error(
     """
     _check(programmed, lines, measured, due)
     n = len(programmed)
-    lengths = np.hypot(*np.diff(programmed, axis=0).T)
+    lengths = np.linalg.norm(np.diff(programmed, axis=0), axis=1)
     come = np.concatenate([[0.0], np.cumsum(lengths)])
     best = np.full(len(measured), np.inf)
     segment, share = np.zeros(len(measured), dtype=np.int64), np.zeros(len(measured))
@@ -80,9 +83,11 @@ def path_error(
         best[nearer], segment[nearer], share[nearer] = off[nearer], at[nearer], part[nearer]
     start, way = programmed[segment], programmed[segment + 1] - programmed[segment]
     foot = start + share[:, None] * way
-    beside = measured - foot
-    side = np.sign(way[:, 0] * beside[:, 1] - way[:, 1] * beside[:, 0])
-    distance = np.where(side < 0.0, -1.0, 1.0) * np.sqrt(best)
+    distance = np.sqrt(best)
+    if programmed.shape[1] == 2:
+        beside = measured - foot
+        side = np.sign(way[:, 0] * beside[:, 1] - way[:, 1] * beside[:, 0])
+        distance = np.where(side < 0.0, -1.0, 1.0) * distance
     return PathError(distance, foot, come[segment] + share * lengths[segment], lines[segment], measured)
 
 
@@ -102,7 +107,7 @@ def _check(programmed: FloatArray, lines: IntArray, measured: FloatArray, due: I
 def of_samples(
     demand: FloatArray, actual: FloatArray, lines: FloatArray, rate: float, late: float = 0.1
 ) -> PathError:
-    """Of a record: the setpoints (m, 2) are the programmed path, ``actual`` (m, 2) what was measured.
+    """Of a record: the setpoints (m, 2 or 3) are the programmed path, ``actual`` what was measured.
 
     A sample's foot is sought within ``late`` s of the path before and behind. Raises AnalysisError.
     """
@@ -128,6 +133,6 @@ def worst_places(error: PathError, most: int = 10) -> tuple[WorstPlace, ...]:
     for line in np.unique(error.lines[error.lines > 0]):
         of_line = np.flatnonzero(error.lines == line)
         sample = int(of_line[np.argmax(np.abs(error.distance[of_line]))])
-        x, z = error.foot[sample]
-        found.append(WorstPlace(int(line), float(error.distance[sample]), (float(x), float(z)), sample))
+        place = tuple(float(each) for each in error.foot[sample])
+        found.append(WorstPlace(int(line), float(error.distance[sample]), place, sample))
     return tuple(sorted(found, key=lambda each: -abs(each.distance))[:most])

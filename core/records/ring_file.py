@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from core.file_lock import lock
 from core.records.record import FloatArray, Record
 from core.records.record_errors import RecordError, why
 from core.records.record_ring import Recorded, Ring, Rows, record_of, sound
@@ -97,13 +98,9 @@ class RingFile:
 
 
 def _lock(file: int, path: Path) -> None:
-    """Raises RecordError while another process has it. Systems without such locks go without."""
+    """Raises RecordError while another process has it."""
     try:
-        import fcntl  # noqa: PLC0415  not on every system
-    except ImportError:
-        return
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        lock(file)
     except OSError as error:
         raise RecordError(f"{path} is being written by another TurnDesk") from error
 

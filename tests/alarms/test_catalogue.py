@@ -6,6 +6,8 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Literal, get_args, get_origin
 
@@ -86,41 +88,50 @@ def raised(tree: ast.AST) -> Iterator[tuple[str, int]]:
                     yield code.value, node.lineno
 
 
+@dataclass(frozen=True)
+class Told:
+    """What a source says of alarms."""
+
+    raises: list[tuple[str, int]]
+    words: set[str]  # of its strings
+    makes: int  # alarms by hand
+
+
+@cache
+def house() -> dict[Path, Told]:
+    """All sources of the product, read once."""
+    told = {}
+    for path in (each for room in ("core", "drivers", "app") for each in (HOUSE / room).rglob("*.py")):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        nodes = list(ast.walk(tree))
+        strings = {node.value for node in nodes if isinstance(node, ast.Constant)}
+        calls = [node.func for node in nodes if isinstance(node, ast.Call)]
+        makes = sum(isinstance(called, ast.Name) and called.id == "Alarm" for called in calls)
+        told[path] = Told(list(raised(tree)), {each for each in strings if isinstance(each, str)}, makes)
+    return told
+
+
 def test_no_alarm_exists_outside_the_catalogue() -> None:
     found = 0
-    for room in ("core", "drivers", "app"):
-        for path in (HOUSE / room).rglob("*.py"):
-            for code, line in raised(ast.parse(path.read_text(encoding="utf-8"))):
-                found += 1
-                assert code in CATALOGUE, f"{path.relative_to(HOUSE)}:{line} raises {code!r}"
+    for path, told in house().items():
+        for code, line in told.raises:
+            found += 1
+            assert code in CATALOGUE, f"{path.relative_to(HOUSE)}:{line} raises {code!r}"
     assert found > 60
 
 
 def test_every_entry_is_raised_somewhere() -> None:
     """An entry that nothing raises is a promise that nobody keeps."""
-    sources = [path for room in ("core", "drivers", "app") for path in (HOUSE / room).rglob("*.py")]
     catalogue = {HOUSE / "core" / "faults.py", *(HOUSE / "core" / "alarms").iterdir()}
-    said = {
-        node.value
-        for path in sources
-        if path not in catalogue
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if isinstance(node, ast.Constant) and isinstance(node.value, str)
-    }
+    said = {word for path, told in house().items() if path not in catalogue for word in told.words}
     unused = [code for code, entry in CATALOGUE.items() if not {code, entry.text.upper()} & said]
     assert unused == []
 
 
 def test_an_alarm_is_made_in_one_place() -> None:
     """Whoever makes an Alarm by hand goes round the catalogue."""
-    makers = [
-        str(path.relative_to(HOUSE))
-        for room in ("core", "drivers", "app")
-        for path in (HOUSE / room).rglob("*.py")
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Alarm"
-    ]
-    assert makers == ["core/executor/raised_alarm.py"]
+    makers = {str(path.relative_to(HOUSE)): told.makes for path, told in house().items() if told.makes}
+    assert makers == {"core/executor/raised_alarm.py": 1}
 
 
 def test_a_plain_entry_is_whole() -> None:

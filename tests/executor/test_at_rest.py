@@ -94,6 +94,31 @@ def test_a_late_tick_at_rest_is_still_told() -> None:
     assert max(late) == pytest.approx(0.06)
 
 
+@HAPPENS
+def test_whoever_shows_it_is_called_when_it_changes(
+    happens: Callable[[Rig], object], seen: Callable[[Rig], bool]
+) -> None:
+    rig = rested()
+    called: list[bool] = []
+    rig.executor.stirs = lambda: called.append(seen(rig))
+    rig.run(1.0)
+    assert not called
+    happens(rig)
+    rig.run(0.1)
+    assert any(called), "and what has changed is in the snapshot by then"
+
+
+def test_what_moves_is_shown_anyway_and_calls_nobody() -> None:
+    rig = rested()
+    rig.executor.post(Jog("X", 5.0, 2.0))
+    rig.run(0.2)
+    called: list[bool] = []
+    rig.executor.stirs = lambda: called.append(True)
+    rig.run(0.5)
+    assert rig.state is State.JOG
+    assert not called
+
+
 # --- between two ticks ------------------------------------------------------------------------------------
 
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from app.compose.machine_files import shipped_machine
 from core.executor.commands import FeedHold, ForceOutput, Reset, SpindleLimit, SpindleStop, UseOffsets
+from core.executor.control_status import modal_given_up
 from core.executor.snapshot import State
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.modal_state import Modal
 from tests.executor.rig import INCH, Rig
 
 TOOLS = {1: ToolOffset(-12.7, -50.8), 2: ToolOffset(6.35, -25.4)}
@@ -150,3 +153,11 @@ def test_the_collet_is_not_opened_by_hand_while_the_spindle_turns() -> None:
     rig.post(ForceOutput("collet", False))
     rig.tick()
     assert not rig.shot.modal.collet_closed
+
+
+@pytest.mark.parametrize(("machine", "diameter"), [("sinumerik-modulo", True), ("gt75", False)])
+def test_sinumerik_counts_x_in_diameters_at_power_up_and_behind_a_reset(machine: str, diameter: bool) -> None:
+    rig = Rig(machine=shipped_machine(machine))
+    assert rig.shot.modal.diameter is diameter
+    left = modal_given_up(Modal(diameter=not diameter), rig.machine.language)
+    assert left.diameter is diameter

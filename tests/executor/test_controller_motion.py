@@ -55,7 +55,7 @@ def test_an_arc_stays_on_its_circle_and_ends_exactly() -> None:
 def test_a_slow_controller_makes_the_pieces_shorter() -> None:
     rapid = block(Kind.RAPID, z=-100.0, feed=127.0)
     assert len(list(parts_of(rapid, FULL))) == 4
-    slow = list(parts_of(rapid, FULL, fastest=10.0))
+    slow = list(parts_of(rapid, FULL, lambda _: 10.0))
     assert len(slow) == 50
     assert all(piece.seconds <= LONGEST + 1e-9 for piece in slow)
     assert isinstance(slow[0].op, RapidOp)

@@ -95,7 +95,7 @@ def test_nothing_starts_in_mdi_without_a_line_and_the_program_does_not_either() 
     rig.load("G90G94F300\nX1\nM30\n")
     rig.post(Prepare(Starts.LINE))
     rig.post(CycleStart())
-    assert rig.shot.start_refused == "no line is ready: type one and press Enter"
+    assert rig.shot.start_refused == "no line is ready"
     assert rig.state is State.IDLE
 
 

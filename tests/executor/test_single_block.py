@@ -29,6 +29,8 @@ GOLDEN = sorted(
     path
     for path in (ROOT / "tests" / "programs").glob("*.nc")
     if "\nerror" not in "\n" + path.with_suffix(".expected").read_text("utf-8")
+    # Of a contour in four ways of writing: both units, radius and diameter; the blocks are the same.
+    and not path.stem.endswith(("_inch_rad", "_mm_dia"))
 )
 WORKED = sorted(FOLDER.glob("*.nc")) if FOLDER.is_dir() else [Path("absent")]
 RADIUS = 0.015 * INCH  # of the tool nose in the worked examples
@@ -65,7 +67,7 @@ def test_a_worked_example_is_stepped_through_to_its_end(path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["pinbar", "bushing", "grooves", "knob", "pin"])
 def test_a_sample_is_stepped_through_to_its_end(name: str) -> None:
-    tools, secondary, _ = read_offsets(SAMPLES / "offsets.toml")
+    tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
     check(load_source(SAMPLES / f"{name}.nc"), setup_for(LATHE, tools=tools, secondary=secondary))
 
 
@@ -74,7 +76,7 @@ def test_a_sample_is_stepped_through_to_its_end(name: str) -> None:
     [("roof.h", "ac-table-mill"), ("ring.mpf", "sinumerik-modulo"), ("ring.mpf", "sinumerik-linear")],
 )
 def test_a_sample_of_another_dialect_is_stepped_through_to_its_end(name: str, machine: str) -> None:
-    tools, secondary, _ = read_offsets(SAMPLES / "offsets.toml")
+    tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
     model = shipped_machine(machine)
     source = with_called_files(load_source(SAMPLES / name), [SAMPLES])
     check(source, setup_for(model, tools=tools, secondary=secondary), model)

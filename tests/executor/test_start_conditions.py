@@ -23,7 +23,7 @@ from core.executor.job import Proof, make_job
 from core.executor.snapshot import TRANSITIONS, State, TransitionError, demand_allowed
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.machine_requirements import THREAD, Need
-from core.language.source import Source
+from core.language.source import Dialect, Source
 from tests.executor.rig import Rig, unhomed_machine
 
 TEXT = "G90G94F300\nX1\nM30\n"
@@ -95,6 +95,14 @@ def test_with_a_tool_that_was_never_set() -> None:
     job = rig.load(TEXT)
     rig.post(GiveProof(Proof(job.digest, (), tools=(3, 4))))
     assert refused(rig) == "tool offset T3, T4 has never been set"
+
+
+def test_a_tool_that_the_program_measures_itself_needs_no_offset() -> None:
+    rig = Rig()
+    rig.ready()
+    job = rig.load(TEXT)
+    rig.post(GiveProof(Proof(job.digest, (), tools=(3, 4), measured=(4,))))
+    assert refused(rig) == "tool offset T3 has never been set"
 
 
 def test_with_drives_off() -> None:
@@ -298,6 +306,16 @@ def test_a_thread_on_a_spindle_without_an_encoder(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(rig.sim.ports.spindle, "angle", lambda: None)
     rig.post(LoadJob(job, Proof(job.digest, (), tools=(1,), needs=(Need(THREAD, 5),))))
     assert refused(rig) == "line 5: a thread needs an encoder on the spindle, and there is none"
+
+
+def test_an_m_function_that_nothing_answers_says_which_lines_bind_it() -> None:
+    rig = Rig()
+    rig.ready()
+    job = make_job(Source("part.mpf", "M80\nG0 X30\nM30\n", Dialect.SINUMERIK), Setup())
+    rig.post(LoadJob(job, Proof(job.digest, (), needs=(Need("M80", 1),))))
+    said = refused(rig)
+    assert said.startswith("line 1: nothing on this machine answers M80; write 80 = { output =")
+    assert said.endswith("or 80 = { ignored = true } if it does nothing on this machine")
 
 
 def slapped(rig: Rig, seconds: float) -> None:

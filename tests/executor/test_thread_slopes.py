@@ -103,7 +103,7 @@ SLOPES = {
     ),
     "up": lambda rig, _: rig.sim.machine.set_spindle_pot(1.0),
 }
-_PAIRS = [(60, 0.05), (150, 0.4), (300, 0.1), (300, 0.4), (600, 0.05), (600, 0.2), (1200, 0.1), (2500, 0.05)]
+_PAIRS = [(60, 0.2), (150, 0.4), (300, 0.1), (300, 0.4), (600, 0.05), (600, 0.2), (1200, 0.1), (2500, 0.05)]
 
 
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -208,7 +208,7 @@ def test_in_the_pull_out_the_thread_is_told_as_cut() -> None:
 @pytest.mark.parametrize("gear", [True, False], ids=["gear", "time"])
 def test_a_pass_that_waits_for_its_index_is_given_back(gear: bool) -> None:
     """Switched OFF before anything has moved: a hold, and the pass begins at another index."""
-    rig, slides = begun(60, 0.05, "P", gear=gear)
+    rig, slides = begun(60, 0.2, "P", gear=gear)
     rig.until_true(lambda shot: shot.block_text.startswith("G33"))
     stood = rig.shot.demand
     rig.sim.machine.set_spindle_auto(False)

@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-import random
 from math import isfinite
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import ToolOffset
 from core.language.omniturn import lex_line
-from core.language.source import Source
-from core.proving.prove_program import prove
-from tests.interpreter.mutation import mutated
 from tests.interpreter.programs import lines, passed, setup
 
 pytestmark = pytest.mark.long
@@ -107,22 +100,6 @@ def test_moves_read_as_numbers_do_what_they_do_as_words(program: list[str]) -> N
     )
     assert [figures(block) for block in numbers.blocks] == [figures(block) for block in words.blocks]
     assert numbers.interpreter.diagnostics == words.interpreter.diagnostics
-
-
-@pytest.mark.parametrize("seed", range(150))
-def test_spoilt_programs_are_proved_or_refused(seed: int) -> None:
-    machine = load_machine(None)
-    text = mutated(random.Random(seed))
-    report = prove(Source("spoilt", text), setup_for(machine, tools={1: ToolOffset()}, secondary={}), machine)
-    assert report.elementary > 0 or report.errors
-    low, high = report.ways.cycle
-    assert report.ways.proved >= 1
-    assert report.errors or low - 1e-6 <= report.times.cycle <= high + 1e-6
-    for found in report.diagnostics:
-        assert 0 <= found.line <= text.count("\n")
-        assert found.message
-        assert found.count >= 1
-        assert not found.check or (found.code == found.check and found.hint)
 
 
 WRITTEN = st.text(alphabet="XZGMTFO0123456789.- ABCDERUN(),;%\u2212\u201c/", max_size=60)

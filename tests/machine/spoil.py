@@ -43,12 +43,28 @@ def leaves(value: object, place: Place = ()) -> Iterator[tuple[Place, object]]:
 
 def with_value(data: Table, place: Place, value: object) -> str:
     """The file's text with one value changed."""
-    spoilt = copy.deepcopy(data)
+    spoilt: Table = dict(data)
     inner: object = spoilt
     for step in place[:-1]:
+        inner[step] = copy.copy(inner[step])  # type: ignore[index]
         inner = inner[step]  # type: ignore[index]
     inner[place[-1]] = value  # type: ignore[index]
-    return "".join(f"{_key(key)} = {_toml(part)}\n" for key, part in spoilt.items())
+    same, changed = _texts(data), place[0]
+    return "".join(_line(key, part) if key == changed else same[key] for key, part in spoilt.items())
+
+
+_WRITTEN: list[tuple[Table, dict[str, str]]] = []  # the file that was spoilt last, as it is
+
+
+def _texts(data: Table) -> dict[str, str]:
+    """Each table of a file as it is written; of the last file they are kept."""
+    if not _WRITTEN or _WRITTEN[0][0] is not data:
+        _WRITTEN[:] = [(data, {key: _line(key, part) for key, part in data.items()})]
+    return _WRITTEN[0][1]
+
+
+def _line(key: str, value: object) -> str:
+    return f"{_key(key)} = {_toml(value)}\n"
 
 
 def path_of(place: Place) -> str:

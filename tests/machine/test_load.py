@@ -146,13 +146,26 @@ def test_wrong_value_is_named_with_what_was_expected(old: str, new: str, path: s
         ('collet_closed = { at = "IN-5" }', "", "io.in.collet_closed", "collet open"),
         ('16 = { output = "live1"', '16 = { output = "mill"', "m_codes.16.output", "live1"),
         ('25 = { output = "catcher"', '8 = { output = "catcher"', "m_codes.8", "meaning of its own"),
-        ('25 = { output = "catcher"', '250 = { output = "catcher"', "m_codes.250", "0…99"),
+        ('25 = { output = "catcher"', '2500 = { output = "catcher"', "m_codes.2500", "0…999"),
     ],
 )
 def test_values_that_do_not_go_together(old: str, new: str, path: str, expected: str) -> None:
     found = [finding for finding in findings(changed(old, new)) if finding.path == path]
     assert found
     assert expected in str(found[0])
+
+
+def test_m_codes_that_do_nothing_on_this_machine() -> None:
+    machine = parse_machine(
+        changed("[m_codes]", "[m_codes]\n80 = { ignored = true }\n81 = { ignored = true, enabled = false }"),
+        "t",
+    )
+    assert machine.m_ignored == {80}
+    assert machine.m_disabled >= {81}
+    assert 80 not in machine.m_codes
+    for wrong in ("{ ignored = false }", '{ ignored = true, output = "catcher" }', "{ ignored = 1 }"):
+        assert findings(changed("[m_codes]", f"[m_codes]\n80 = {wrong}"))[0].path.startswith("m_codes.80.")
+    assert only(changed("[m_codes]", "[m_codes]\n8 = { ignored = true }")).path == "m_codes.8"
 
 
 def test_axis_that_is_not_absolute_needs_homing() -> None:

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from app.compose.machine_files import parse_machine
+from app.compose.machine_files import named_machine, parse_machine
 from core.table_schema import MachineFileError
 from tests.machine.mill import MILL
 
@@ -34,6 +34,8 @@ def test_rotary_figures_are_degrees_and_seconds() -> None:
         (("[axis.Y]", "[axis.U]"), "[axis.Y]"),
         (("[io.out]", "[collet]\nopen_s = 1\nclose_s = 1\n[io.out]"), "[collet]"),
         (('kind = "mill"', 'kind = "router"'), "machine.kind"),
+        (('kind = "mill"', 'kind = "mill"\nlanguage = "sinumerik"'), "machine.language"),
+        (('kind = "mill"', 'kind = "mill"\nlanguage = "klarttext"'), "machine.language"),
         (
             ("travel = [-120.0, 120.0]\nabsolute = true", "travel = [10.0, 120.0]\nabsolute = true"),
             "axis.A.travel",
@@ -45,6 +47,12 @@ def test_what_a_mill_cannot_be(change: tuple[str, str], path: str) -> None:
     with pytest.raises(MachineFileError) as caught:
         parse_machine(MILL.replace(*change, 1), "mill")
     assert path in str(caught.value)
+
+
+def test_the_kind_decides_the_language() -> None:
+    assert parse_machine(MILL, "mill").language == "klartext"
+    assert named_machine("gt75").language == "omniturn"
+    assert named_machine("sinumerik-linear").language == "sinumerik"
 
 
 def test_a_lathe_has_no_y() -> None:

@@ -22,6 +22,9 @@ SAMPLES = (
     "gt75-ethercat",
     "gt75-vfd",
     "ac-table-mill",
+    "bc-table-mill",
+    "fork-head-mill",
+    "head-table-mill",
     "sinumerik-modulo",
 )
 # What may be any text or any number is spoilt by its kind alone.
@@ -36,6 +39,8 @@ def wrong_values(path: str, value: object) -> list[object]:
         if path.startswith("grblhal.settings"):
             return [True, [], {}]
         return [*NUMBERS, *(() if path.startswith(FREE_NUMBERS) else (1e12, -1e12))]
+    if path.endswith(".fixed_points"):  # of any number up to four, in any order
+        return ["x", 3, [], [1, 2, 3, 4, 5], ["a"], [1e9], {}]
     if isinstance(value, list):
         return ["x", 3, [1.0], [1, 2, 3, 4], [2.0, 1.0] if len(value) == 2 else ["a", 1, 2], {}]
     texts = [5, [], {}] if path.endswith(".safe") else [5, True, [], {}]

@@ -76,9 +76,15 @@ def test_a_corner_steps_no_axis_by_more_than_one_interval(blocks: list[Block]) -
 def test_setpoints_ask_little_more_than_the_acceleration(blocks: list[Block]) -> None:
     """Sampled at the interval; what is over comes from several corners of tiny pieces within one."""
     profile = plan(build_path(blocks, LIMITS))
+    changes = np.append(profile.phases.t, profile.duration)
     for begin in (0.0, 0.3 * T, 0.6 * T):
-        p = profile.position(np.arange(begin - 2 * T, profile.duration + 2 * T, T))
-        assert np.abs(np.diff(p, 2, axis=0)).max(initial=0.0) / T**2 <= 1.7 * A
+        grid = np.arange(begin - 2 * T, profile.duration + 2 * T, T)
+        near = np.abs(grid - changes[np.searchsorted(changes, grid).clip(max=len(changes) - 1)]) < 3 * T
+        near |= np.abs(grid - changes[(np.searchsorted(changes, grid) - 1).clip(min=0)]) < 3 * T
+        near[::61] = True  # within a phase one sample is as good as another
+        here = grid[near]
+        bend = profile.position(here - T) - 2 * profile.position(here) + profile.position(here + T)
+        assert np.abs(bend).max(initial=0.0) / T**2 <= 1.7 * A
 
 
 @few

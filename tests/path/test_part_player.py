@@ -8,6 +8,7 @@ import pytest
 
 import resources
 from app.compose.machine_files import load_machine, parse_machine
+from app.compose.stored_offsets import NONE, Offsets
 from app.compose.workshop import workshop
 from app.path.part_player import FAST, PartPlayer, PartPlayers, SolidLook
 from app.path.path_aspects import Aspect, views_of
@@ -24,7 +25,7 @@ RAPID = SHAFT.replace("G95F.004Z-.3", "G00Z-.3")
 def picture(text: str) -> Picture:
     tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 4)}
     machine = load_machine(None)
-    steps = workshop(machine, lambda: (tools, {}, {}))
+    steps = workshop(machine, lambda: Offsets(tools, {}, {}))
     job = steps.make_job(Source("part.nc", text), False)
     steps.prove(job, lambda _count: None)
     return steps.draw(job, lambda _count: None)
@@ -187,7 +188,7 @@ def test_a_program_with_errors_is_shown_as_far_as_it_goes(player: PartPlayer) ->
 
 def test_a_mill_has_no_part() -> None:
     machine = parse_machine(resources.machine_file("ac-table-mill.toml"), "mill")
-    steps = workshop(machine, lambda: ({}, {}, {}))
+    steps = workshop(machine, lambda: NONE)
     job = steps.make_job(Source("roof.h", "BEGIN PGM A MM\nL X+1 Y+1 Z+1 F100\nEND PGM A MM\n"), False)
     steps.prove(job, lambda _count: None)
     assert steps.draw(job, lambda _count: None).part is None

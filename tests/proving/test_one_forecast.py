@@ -60,7 +60,7 @@ def test_worked_examples(path: Path) -> None:
 
 @pytest.mark.parametrize("path", sorted(SAMPLES.glob("*.nc")), ids=lambda path: path.stem)
 def test_samples(path: Path) -> None:
-    tools, secondary, _ = read_offsets(SAMPLES / "offsets.toml")
+    tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
     check(load_source(path), setup_for(MACHINE, tools=tools, secondary=secondary))
 
 

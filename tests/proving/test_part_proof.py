@@ -369,6 +369,13 @@ def test_a_cut_is_no_deeper_than_the_edge_is_long() -> None:
     assert checks(part) == []
 
 
+def test_an_arc_into_a_shoulder_is_as_deep_as_the_shoulder_is_high() -> None:
+    """60 degrees of a fillet of .15: .3 in of metal above it, of which each chord meets another slice."""
+    cut = "T1\nX[.7]Z[.05]\nX[.3]\nG95F[.004]Z[-.4]\nG03X[.375]Z[-.5299]R.15\nX[.7]\nG94F[300]Z[1]"
+    _, part = proved(text(cut), bar(30.48, 0.0, -60.0))
+    assert checks(part) == []
+
+
 def test_a_slot_that_is_turned_away_again_counts_once() -> None:
     turned = "M05\nM03S1500\nT1\nX[.6]Z[.1]\nX[.35]\nG95F[.004]Z[-1]\nX[.55]\nG94F[300]Z[1]"
     _, plain = proved(text(turned), bar(25.4, 0.0, -60.0), TOOLS)

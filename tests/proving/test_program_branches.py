@@ -215,7 +215,7 @@ def test_a_subroutine_that_nothing_calls_is_told() -> None:
 
 
 def test_the_bar_feeders_sample_proves_and_its_end_of_bar_too() -> None:
-    tools, secondary, _ = read_offsets(SAMPLES / "offsets.toml")
+    tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
     source = load_source(SAMPLES / "pinbar.nc")
     setup = setup_for(MACHINE, tools=tools, secondary=secondary)
     assert prove(source, setup, MACHINE).ways.proved == 2

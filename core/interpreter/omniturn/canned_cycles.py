@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from math import hypot
-from typing import NamedTuple
 
 from core.geometry.lines_and_arcs import Arc, Line, Point, arc_length
 from core.interpreter import units
 from core.interpreter.adjusted_moves import move_words
+from core.interpreter.contour_passes import Move
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.code_rules import check_when, checked
 from core.interpreter.omniturn.feeds import check_move
@@ -21,16 +21,6 @@ LIFT = 0.02 * units.MM_PER_INCH
 
 MOST_PASSES = 10_000
 _SAME = 1e-9  # mm
-
-
-class Move(NamedTuple):
-    """One motion of a cycle to a point in the program's frame, mm; ``rapid`` (mm/s) or at the feed."""
-
-    x: float
-    z: float
-    rapid: float | None = None
-    centre: Point | None = None
-    clockwise: bool = False
 
 
 def name(statement: Statement) -> str:

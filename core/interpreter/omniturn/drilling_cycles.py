@@ -5,7 +5,8 @@ from __future__ import annotations
 from math import ceil
 
 from core.interpreter import units
-from core.interpreter.omniturn.canned_cycles import LIFT, Move, check_count, length
+from core.interpreter.contour_passes import Move
+from core.interpreter.omniturn.canned_cycles import LIFT, check_count, length
 from core.interpreter.omniturn.code_rules import checked
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement

@@ -13,7 +13,7 @@ from core.interpreter.omniturn.code_table import carry_out
 from core.interpreter.omniturn.dwell import warn_of_short_dwell
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.language.diagnostics import Diagnostic, ProgramError, refusal
+from core.language.diagnostics import Diagnostic, ProgramError, Severity, refusal
 from core.language.omniturn import other_controls
 
 
@@ -81,7 +81,11 @@ def program_end(state: State, statement: Statement) -> Iterator[Block]:
 def check_m_codes(state: State, lines: tuple[Statement, ...]) -> None:
     """Report the M codes that neither the control nor the machine file knows."""
     for statement in lines:
-        if statement.m not in state.setup.limits.m_outputs:
+        if statement.m in state.setup.limits.m_ignored:
+            column = statement.m_word.column if statement.m_word else 0
+            text = f"M{statement.m:02d} has no effect here: the machine file says that it does nothing."
+            state.log.add(Diagnostic(statement.line, column, Severity.NOTE, "no-effect", text))
+        elif statement.m not in state.setup.limits.m_outputs:
             state.log.add(_unknown(state, statement))
 
 
@@ -103,6 +107,8 @@ def _done(state: State, statement: Statement, action: actions.Action) -> Block:
 def _machine_output(state: State, statement: Statement, *, on: bool) -> Iterator[Block]:
     """An M code of the machine file: an output switched on before the motion, or off after it."""
     output = state.setup.limits.m_outputs.get(statement.m or 0)
+    if statement.m in state.setup.limits.m_ignored:
+        return
     if output is None:
         raise ProgramError(_unknown(state, statement))
     name, wanted = output

@@ -8,13 +8,14 @@ from dataclasses import dataclass, field
 from math import dist
 from typing import NamedTuple
 
-from core.geometry.contour_offset import NEARER, WINDOW, GougeError, Offset, Piece
-from core.geometry.intersections import clearance, distance
+from core.geometry.contour_offset import WINDOW, GougeError, Offset, Piece
+from core.geometry.intersections import distance
 from core.geometry.lines_and_arcs import SAME_POINT, Element, Line, Point
 from core.interpreter.actions import ToolChange
 from core.interpreter.adjusted_moves import element_of, inserted_after, moved_along, standstill_at
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.nose_clearance import cuts_in
 from core.interpreter.omniturn.code_rules import check_when
 from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES
 from core.interpreter.omniturn.corners import STRAIGHT
@@ -23,10 +24,6 @@ from core.interpreter.omniturn.omniturn_statement import Statement
 from core.language.diagnostics import ProgramError, program_error
 
 # --- approach and departure: far enough from the part, and clear of it
-
-
-# An approach of one nose radius along the first move itself passes its start at .71 of the radius.
-_BESIDE = 0.5
 
 
 class ApproachOrDeparture(NamedTuple):
@@ -71,21 +68,11 @@ def check_distance(lead: ApproachOrDeparture, free: Point, corner: Point, log: L
 
 
 def check_clear(lead: ApproachOrDeparture, way: Line) -> None:
-    """The nose on its way must not cut the part. Raises ProgramError.
-
-    Next to the contour's end it always comes nearer than R where it does not come square; there _BESIDE of R
-    is asked.
-    """
-    if way.length < SAME_POINT:
-        return
-    far = 0.0
-    for element in lead.contour:
-        least = lead.radius * _BESIDE if far < 2 * lead.radius else lead.radius - NEARER
-        far += element.length
-        if clearance(way, element) < least - SAME_POINT:
-            text = f"On the {lead.name} the nose of G{lead.code} cuts into the part."
-            hint = f"Choose another way for the {lead.name}, or the other side."
-            raise program_error(lead.block.line, 0, "comp-gouge", text, hint)
+    """The nose on its way must not cut the part. Raises ProgramError."""
+    if cuts_in(way, lead.contour, lead.radius):
+        text = f"On the {lead.name} the nose of G{lead.code} cuts into the part."
+        hint = f"Choose another way for the {lead.name}, or the other side."
+        raise program_error(lead.block.line, 0, "comp-gouge", text, hint)
 
 
 _FOLLOWED = STRAIGHT | {Kind.ARC}

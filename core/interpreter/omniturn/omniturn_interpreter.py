@@ -12,9 +12,10 @@ from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Series
 from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES, Interpretation
 from core.interpreter.job_setup import Setup
+from core.interpreter.lathe_approach import approach_blocks
 from core.interpreter.modal_state import Modal
 from core.interpreter.omniturn.block_execution import execute
-from core.interpreter.omniturn.checkpoint_restore import approach_blocks, checkpoint_of, restore
+from core.interpreter.omniturn.checkpoint_restore import checkpoint_of, restore
 from core.interpreter.omniturn.coarse_feeds import looks_ahead
 from core.interpreter.omniturn.contour_modification import ContourModifier
 from core.interpreter.omniturn.loops_and_subroutines import Flow, takes_call, terminal
@@ -134,8 +135,10 @@ class Interpreter(Interpretation):
         return checkpoint_of(self._state)._replace(flow=self._flow.place)
 
     def _approach(self) -> Iterator[Block]:
-        begin = self._state.setup.begin
-        return iter(()) if begin is None or self._refused else approach_blocks(self._state, begin)
+        state, begin = self._state, self._state.setup.begin
+        if begin is None or self._refused:
+            return iter(())
+        return approach_blocks(begin, state.modal, state.setup.start, state.rpm_at)
 
     def _pass(self) -> Iterator[Block | Series]:
         if self._refused:

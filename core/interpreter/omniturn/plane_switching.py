@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import atan2, degrees, dist, hypot, pi
+from math import atan2, degrees, dist
 
 import numpy as np
 
-from core.geometry.virtual_mill import CENTRE, Face, PlaneMove, Side, Spot
+from core.geometry.virtual_mill import Face, PlaneMove, Side, Spot
 from core.interpreter import units
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Mill
@@ -20,6 +20,7 @@ from core.interpreter.omniturn.feeds import out_of_range
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import mill_step
+from core.interpreter.turn_at_axis import turns_at_axis
 from core.language.diagnostics import ProgramError
 
 # --- moves of the virtual mill, through the axis too
@@ -27,7 +28,6 @@ from core.language.diagnostics import ProgramError
 
 _TOLERANCE = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)
 _SAME_PLANE_MOVES = 1e-9
-_TOLD_TURN = 1.0  # degrees that C turns at the centre without a word about it
 _ENDS = np.array([0.0, 1.0])
 
 
@@ -87,37 +87,17 @@ def _legs(state: State, statement: Statement, whole: PlaneMove) -> list[PlaneMov
         raise plane_refusal(
             statement, "plane-reach", text, "The tool's centre line stands H beside the axis."
         )
-    if rho > CENTRE or whole.length <= CENTRE:
-        return [whole]
-    z = float(whole.points(np.array([share]))[0, 2])
-    ends = [hypot(*end[:2]) <= CENTRE for end in (whole.start, whole.end)]
-    if any(ends):
-        return [whole]
-    return [replace(whole, end=(0.0, 0.0, z)), replace(whole, start=(0.0, 0.0, z))]
+    return whole.parts()
 
 
 def _towards(state: State, statement: Statement, leg: PlaneMove) -> Iterator[Block]:
     """Standing on the axis C turns until the way leads out along X; nothing is done elsewhere."""
     mill = state.modal.mill
     assert mill is not None
-    if isinstance(leg.frame, Side) or hypot(*leg.start[:2]) > CENTRE or leg.length <= CENTRE:
-        return
-    x, y = leg.points(_ENDS)[1][:2].tolist()
-    if leg.centre is not None:
-        i, j = leg.centre
-        x, y = (-j, i) if leg.clockwise else (j, -i)
-    turn = (atan2(y, x) - mill.theta + pi) % (2 * pi) - pi
-    if abs(abs(turn) - pi) < 1e-6:
-        turn = abs(turn)  # straight through: C counts down, as it does beside a centre on the left
+    turn = replace(leg, theta=mill.theta).turn_at_start()
     state.adopt(state.modal._replace(mill=mill._replace(theta=mill.theta + turn)))
-    if abs(degrees(turn)) <= _SAME_PLANE_MOVES:
-        return
-    if abs(degrees(turn)) > _TOLD_TURN:
-        text = f"The way leads through the axis: C turns by {abs(degrees(turn)):.0f} degrees there."
-        state.log.warn(
-            statement.line, 1, "plane-centre", text, "The tool stands meanwhile; lead it past the axis."
-        )
-    yield rotation(state, statement.line, statement.text, state.c - degrees(turn))
+    if turns_at_axis(state.log, statement.line, turn):
+        yield rotation(state, statement.line, statement.text, state.c - degrees(turn))
 
 
 def _block(state: State, statement: Statement, leg: PlaneMove) -> Block:

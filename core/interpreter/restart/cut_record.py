@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from math import cos, hypot, inf, pi, sin, sqrt
+from math import cos, hypot, inf, nan, pi, sin, sqrt
 
 import numpy as np
 import numpy.typing as npt
@@ -98,6 +98,7 @@ class _Rows:
 
     def __init__(self) -> None:
         self.offsets: dict[int, tuple[float, float]] = {}
+        self._fed: dict[int, tuple[float, float]] = {}
         self._tables = [np.zeros((9, 0))]
         self._pieces: list[tuple[float, ...]] = []  # of blocks, which are no table yet
         self._opened = 0
@@ -135,8 +136,14 @@ class _Rows:
     def _frame(self, block: Block) -> tuple[float, float]:
         """From the program's frame to the tip's in that of part zero, mm."""
         modal = block.modal
-        self.offsets[modal.tool] = modal.tool_x, modal.tool_z
-        return block.offset_x - modal.tool_x, block.offset_z - modal.tool_z
+        base = modal.base_x, modal.base_z
+        if block.kind is Kind.RAPID:
+            self.offsets.setdefault(modal.tool, base)
+        elif self._fed.setdefault(modal.tool, base) == base:
+            self.offsets[modal.tool] = base
+        else:  # it cuts in two places, and nobody can tell which of them the slides stand in
+            self.offsets[modal.tool] = nan, nan
+        return block.offset_x - base[0], block.offset_z - base[1]
 
     def _finish_pieces(self) -> None:
         if self._pieces:

@@ -31,6 +31,7 @@ _SAME = 1e-6  # mm
 _TURN = 360.0
 _HELD = 0.5  # degrees that C may have turned under a tool that stands in a hole
 _INCH = 25.4
+_OWN_C = 60.0  # degrees/s: 10 rpm
 _LATER = 400  # rows behind the block that was kept in which a control that was cut off may have stood
 
 
@@ -137,7 +138,7 @@ def approach_steps(found: RestartPoint, now: MachineNow, choices: Choices) -> tu
     """Everything between the standstill of now and the first block of the line."""
     out = way_out(found.cut, now, choices) if found.cut is not None else ()
     at = _end(out, now.at)
-    return (*_stops(found.checkpoint.modal, now.modal), *out, *_over(found, at, choices),
+    return (*stopping(found.checkpoint.modal, now.modal), *out, *_over(found, at, choices),
             *_starts(found, now, choices), *_in(found, at, choices))  # fmt: skip
 
 
@@ -171,7 +172,7 @@ def starting(found: RestartPoint, now: MachineNow, choices: Choices) -> tuple[Ap
     return tuple(step for step in _starts(found, now, choices) if isinstance(step, FunctionStep))
 
 
-def _stops(wanted: Modal, now: Modal) -> Iterator[ApproachStep]:
+def stopping(wanted: Modal, now: Modal) -> Iterator[ApproachStep]:
     """What runs and must not, before anything moves."""
     if now.spindle and now.spindle != wanted.spindle:
         yield FunctionStep(SpindleStop(), "M05")
@@ -186,7 +187,9 @@ def _starts(found: RestartPoint, now: MachineNow, choices: Choices) -> Iterator[
     if wanted.c_locked:
         yield FunctionStep(SpindleLock(orient=False), "M89")
         yield CTurn(_near(point.c + wanted.offset_c, now.at[2]), (wanted.c_rpm or 10.0) * 6.0, "C")
-    elif wanted.spindle:
+    elif point.at:  # C has a drive of its own, and the program has positioned it
+        yield CTurn(_own_c(point.at[2], now.at[2]), _OWN_C, "C")
+    if wanted.spindle and not wanted.c_locked:
         surface = wanted.surface_speed if wanted.css else None
         text = f"{'M03' if wanted.spindle > 0 else 'M04'}"
         yield FunctionStep(SpindleRun(wanted.spindle * wanted.rpm, surface), text)
@@ -194,6 +197,11 @@ def _starts(found: RestartPoint, now: MachineNow, choices: Choices) -> Iterator[
         yield FunctionStep(Output(name, True), f"{name.upper()} ON")
     if wanted.coolant and choices.coolant:
         yield FunctionStep(Coolant(True), "M08")
+
+
+def _own_c(angle: float, now: float) -> float:
+    """Where C is turned to: its angle as it is, unless the program has counted it on over many turns."""
+    return angle if abs(angle) <= _TURN else _near(angle, now)
 
 
 def _over(found: RestartPoint, at: tuple[float, float], choices: Choices) -> Iterator[Leg]:
@@ -220,7 +228,7 @@ def _before(found: RestartPoint) -> list[tuple[float, float]]:
     """Machine points from the one before the work to that of the line."""
     goal = found.checkpoint.machine
     modal = found.checkpoint.modal
-    hops = [(hop.x + modal.tool_x, hop.z + modal.tool_z) for hop in found.back.legs]
+    hops = [(hop.x + modal.base_x, hop.z + modal.base_z) for hop in found.back.legs]
     return [*reversed(hops), goal]
 
 

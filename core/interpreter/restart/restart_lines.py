@@ -8,6 +8,7 @@ from operator import attrgetter
 from typing import NamedTuple
 
 from core.interpreter.checkpoint import Checkpoint
+from core.interpreter.omniturn.loops_and_subroutines import call_target
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import PLANE, Statement
 from core.interpreter.omniturn.plain_moves import ReadyLines
@@ -35,6 +36,7 @@ class RestartLines:
         self.ranges = sorted((*_structured(program), *_open(program.ready)), key=order)
         self.repeated = sorted(_repeated(program), key=order)
         self._apart = sorted((*self.ranges, *self.repeated), key=order)
+        self._calls = _calls(program)
 
     def why_not(self, line: int) -> str:
         """Why no program can go on from this line; empty when its text has nothing against it."""
@@ -52,8 +54,10 @@ class RestartLines:
     def nearest(self, line: int, way: int) -> int:
         """The nearest line below it (``way`` 1) or above it (-1) that is good by its text; 0: none is.
 
-        Loops and subroutines are passed by.
+        Loops and subroutines are passed by; from inside a subroutine the way up leads to its first call.
         """
+        if way < 0:
+            line = self._called_from(line)
         at = min(line + way, self.count) if way < 0 else line + way
         while 1 <= at <= self.count:
             lines = next((each for each in self._apart if each.first <= at <= each.last), None)
@@ -64,6 +68,28 @@ class RestartLines:
             else:
                 return at
         return 0
+
+    def _called_from(self, line: int) -> int:
+        """The line behind the call that leads to this one; the line itself where it is in no subroutine."""
+        at = line
+        for _ in self._calls:  # a call may stand in a subroutine itself
+            at = next((call for first, last, call in self._calls if first <= at <= last), at)
+        return line if at == line else at + 1
+
+
+def _calls(program: Program) -> list[tuple[int, int, int]]:
+    """First line, last line and first call from outside of each subroutine that is called."""
+    calls = [
+        (number, call_target(step))
+        for number, step in enumerate(program.ready, start=1)
+        if isinstance(step, Statement) and step.calls
+    ]
+    found = []
+    for first, last, number in _subroutines(program):
+        outside = (at for at, called in calls if called == number and not first <= at <= last)
+        if call := next(outside, 0):
+            found.append((first, last, call))
+    return found
 
 
 def _structured(program: Program) -> Iterator[LineRange]:
@@ -191,6 +217,7 @@ class RestartPoint:
     visit: LineVisit = field(default_factory=LineVisit)
     was: LineVisit | None = None  # the pass that was interrupted, where the line is run more than once
     left_out: tuple[int, int] = (0, 0)
+    axes: tuple[float | None, ...] = ()  # of a mill: where its axes stand there; None: one that never moved
 
 
 @dataclass(frozen=True, slots=True)

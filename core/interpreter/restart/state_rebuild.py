@@ -132,17 +132,7 @@ class StateRebuild:
     def _found(
         self, line: int, walk: PassToLine, visit: LineVisit, broken: Interruption | None
     ) -> RestartPoint | str:
-        point, cut = walk.checkpoint, self.cut
-        done = broken.done if broken is not None else point.blocks
-        back = _retract_from(cut, point)
-        if back.tool_place is ToolPlace.CLEAR or (back.known and point.blocks <= done):
-            return RestartPoint(line, point, back, cut, visit, left_out=_left_out(cut, done, point.blocks))
-        if point.blocks > done:
-            first, last = _left_out(cut, done, point.blocks)
-            which = f"line {first}" if first == last else f"lines {first} to {last}"
-            return f"Line {line} begins in metal that {which} would have had to cut."
-        how = _HOW.get(back.tool_place, "")
-        return f"Line {line} begins in the work, and no sure way leads there. {how}".strip()
+        return found_on_lathe(line, walk.checkpoint, self.cut, visit, broken)
 
     def _nearest_good(self, line: int, way: int, broken: Interruption | None) -> int:
         """The nearest line that the pass itself confirms; few upwards, where each costs a pass of its own."""
@@ -224,6 +214,22 @@ class StateRebuild:
             (not known, f"Where the slides stand at line {line} depends on where they stood at Cycle Start."),
         )
         return next((why for wrong, why in reasons if wrong), "")
+
+
+def found_on_lathe(
+    line: int, point: Checkpoint, cut: CutRecord, visit: LineVisit, broken: Interruption | None
+) -> RestartPoint | str:
+    """The line with the way from its place out of the work; in words where no sure way leads there."""
+    done = broken.done if broken is not None else point.blocks
+    back = _retract_from(cut, point)
+    if back.tool_place is ToolPlace.CLEAR or (back.known and point.blocks <= done):
+        return RestartPoint(line, point, back, cut, visit, left_out=_left_out(cut, done, point.blocks))
+    if point.blocks > done:
+        first, last = _left_out(cut, done, point.blocks)
+        which = f"line {first}" if first == last else f"lines {first} to {last}"
+        return f"Line {line} begins in metal that {which} would have had to cut."
+    how = _HOW.get(back.tool_place, "")
+    return f"Line {line} begins in the work, and no sure way leads there. {how}".strip()
 
 
 _HOW = {

@@ -46,7 +46,7 @@ def test_everything_that_a_line_inherits() -> None:
         (CONTOUR, 5, "Line 5 describes the contour of line 3.", 3, 8),
         (CORNER, 4, "Line 4 is in the corner of line 3.", 3, 6),
         (CORNER, 5, "Line 5 is in the corner of line 3.", 3, 6),
-        (CALLED, 6, "The program never comes to line 6.", 5, 0),
+        (CALLED, 6, "The program never comes to line 6.", 3, 0),  # its call
         (NEVER, 6, "The program never comes to line 6.", 4, 0),
         (BEHIND, 5, "Line 5 stands after the end of the program.", 4, 0),
         (PLANE, 5, "Line 5 is in the plane switching that begins on line 4.", 4, 7),

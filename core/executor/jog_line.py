@@ -1,0 +1,99 @@
+"""The line that a jog moves along: one axis, or X Y Z together along an axis of a tilted plane (3D-ROT)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from core.machine.machine_model import Axis
+from core.ports import Segments
+
+FloatArray = npt.NDArray[np.float64]
+Ramp = tuple[float, float, float]  # seconds, speed at its start, acceleration
+Direction = tuple[float, float, float]  # of a unit vector in the machine's X Y Z
+
+LIMIT_MARGIN = 0.01  # mm or degrees kept from the soft limit
+_UNIT = 1e-6  # by which the length of a direction may be off
+_ASIDE = 1e-9  # share of the line below which an axis stands still
+
+
+def room_to_limit(axis: Axis, at: float, direction: float) -> float:
+    """How far the axis may go in this direction; less than a count is nothing."""
+    if axis.travel is None:
+        return math.inf
+    low, high = axis.travel
+    left = (high - at if direction > 0.0 else at - low) - LIMIT_MARGIN
+    return left if left > axis.count else 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JogLine:
+    """Axes of a machine with their shares of the way; of one axis alone its share is 1."""
+
+    axes: Sequence[Axis]
+    shares: FloatArray
+
+    @classmethod
+    def of_axis(cls, axes: Sequence[Axis], index: int) -> JogLine:
+        """One axis alone."""
+        shares = np.zeros(len(axes))
+        shares[index] = 1.0
+        return cls(axes, shares)
+
+    @classmethod
+    def along(cls, axes: Sequence[Axis], direction: Direction) -> JogLine:
+        """X Y Z together; an axis whose share is nothing stands still."""
+        shares = np.zeros(len(axes))
+        for name, share in zip("XYZ", direction, strict=True):
+            index = next(place for place, axis in enumerate(axes) if axis.name == name)
+            shares[index] = share if abs(share) > _ASIDE else 0.0
+        return cls(axes, shares)
+
+    def same(self, other: JogLine | None) -> bool:
+        """Whether both are one line."""
+        return other is not None and bool(np.allclose(self.shares, other.shares, rtol=0.0, atol=_ASIDE))
+
+    def moving(self) -> Iterator[tuple[int, Axis, float]]:
+        """The axes that move: place, axis, share."""
+        yield from (
+            (place, axis, share)
+            for place, (axis, share) in enumerate(zip(self.axes, self.shares.tolist(), strict=True))
+            if share
+        )
+
+    @property
+    def amax(self) -> float:
+        """The acceleration along the line at which no axis goes beyond its own."""
+        return min(axis.amax / abs(share) for _, axis, share in self.moving())
+
+    def on(self, values: FloatArray) -> float:
+        """How far a place, or a velocity, goes along the line."""
+        return float(sum(values[place] * share for place, _, share in self.moving()))
+
+    def room(self, at: FloatArray | Sequence[float], sign: float) -> float:
+        """How far it goes along the line, + or −, before the first axis is at the end of its travel."""
+        return min(
+            room_to_limit(axis, at[place], math.copysign(share, share * sign)) / abs(share)
+            for place, axis, share in self.moving()
+        )
+
+    def setpoints(self, start: float, p: FloatArray, pieces: Sequence[Ramp]) -> Segments:
+        """The pieces from ``start`` on as setpoints of all axes; those aside stay at ``p``."""
+        n = len(pieces)
+        dt = np.array([piece[0] for piece in pieces])
+        t = start + np.concatenate([[0.0], np.cumsum(dt)[:-1]])
+        v = np.outer([piece[1] for piece in pieces], self.shares)
+        a = np.outer([piece[2] for piece in pieces], self.shares)
+        position = np.tile(p, (n, 1))
+        ways = (v + 0.5 * a * dt[:, np.newaxis]) * dt[:, np.newaxis]
+        position[1:] += np.cumsum(ways, axis=0)[:-1]
+        return Segments(t, dt, position, v, a)
+
+
+def wrong_direction(direction: Direction) -> bool:
+    """Whether it is no unit vector."""
+    return not abs(math.hypot(*direction) - 1.0) <= _UNIT

@@ -1,0 +1,91 @@
+"""The signal tower: red, amber, green and buzzer by the state of the machine, as ``signal_table`` has it.
+
+Lamps are no outputs of the program: one that fails holds no cycle, M30 leaves them, and a machine at rest
+sleeps with one on. A fault of the drives, the E-stop and the end of the control bring them to their safe
+state with all other outputs, by the drivers' own way; then the control lights what it can still light.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from core.executor.attempt import Attempt
+from core.executor.machine_context import MachineContext
+from core.executor.signal_kinds import SignalKinds
+from core.executor.snapshot import ACTIVE, State
+from core.machine.signal_table import BUZZER, HALF, SIGNALS
+from core.ports import DigitalIO, Unknown
+
+_AGAIN = 1.0  # s until a lamp that is not as it was switched is switched again
+_REFUSED = 5.0  # s until one that the driver refused is
+
+
+@dataclass(slots=True)
+class SignalLamps:
+    """``look`` is called last in a tick, on the executor's thread. It raises nothing and never waits."""
+
+    context: MachineContext
+    io: DigitalIO  # the driver's own: what is written here is no command of a program
+    _lamps: tuple[str, ...] = field(init=False)
+    _kinds: tuple[str, ...] = ()
+    _since: dict[str, float] = field(default_factory=dict)  # when each kind began
+    _signals: SignalKinds = field(default_factory=SignalKinds)
+    _due: dict[str, float] = field(default_factory=dict)  # before which a lamp is not switched again
+    _sent: dict[str, bool] = field(default_factory=dict)
+    _refused: dict[str, float] = field(default_factory=dict)  # by its driver; not asked again before
+    _told: str = ""
+
+    def __post_init__(self) -> None:
+        self._lamps = self.context.machine.lamps
+
+    def look(self, state: State, ends: int, *, barred: bool) -> None:
+        """The machine of this tick; ``barred``: no other part begins, for a tool or a measurement."""
+        if not self._lamps:
+            return
+        with Attempt():  # a lamp stops nothing, whatever its driver raises
+            self._see(self._signals.see(state, ends, barred=barred))
+            if Unknown.OUTPUTS not in self.context.unknown:
+                self._switch(self._wanted(state))
+
+    def _see(self, kinds: tuple[str, ...]) -> None:
+        if kinds != self._kinds:
+            now = self.context.now
+            self._since = {kind: self._since.get(kind, now) for kind in kinds}
+            self._kinds = kinds
+
+    def _wanted(self, state: State) -> dict[str, bool]:
+        """Each lamp as it ought to be now; what no kind lights is safe after a fault, and off elsewhere."""
+        now, outputs = self.context.now, self.context.machine.outputs
+        if now < self.context.lamp_test:
+            return dict.fromkeys(self._lamps, True)
+        fault = state in {State.FAULT, State.ESTOP}
+        wanted = {name: fault and bool(outputs[name].safe) for name in self._lamps}
+        steady = self.context.ports.blocks is not None and state in ACTIVE  # its lines wait behind blocks
+        for kind in self._kinds:
+            signal, age = SIGNALS[kind], now - self._since[kind]
+            dark = signal.blinks and not steady and age % (2.0 * HALF) >= HALF
+            if signal.lamp in wanted:
+                wanted[signal.lamp] = not dark
+            if BUZZER in wanted and age < signal.buzz:
+                wanted[BUZZER] = not dark
+        return wanted
+
+    def _switch(self, wanted: dict[str, bool]) -> None:
+        actual, now = self.io.outputs(), self.context.now
+        for name, on in wanted.items():
+            new = self._sent.get(name) is not on
+            waits = now < self._refused.get(name, 0.0) or (not new and now < self._due.get(name, 0.0))
+            if (new or actual.get(name) is not on) and not waits:
+                self._write(name, on, now)
+
+    def _write(self, name: str, on: bool, now: float) -> None:
+        with Attempt() as trial:
+            self.io.write(name, on)
+        if trial.error is None:
+            self._sent[name], self._due[name] = on, now + _AGAIN
+            return
+        self._refused[name] = now + _REFUSED
+        why = f"{name.upper()} CANNOT BE SWITCHED: {trial.error}"
+        if why != self._told:
+            self._told = why
+            self.context.log("disturbed", why)

@@ -1,0 +1,281 @@
+"""Areas of pockets with islands: their boundary in lines and arcs, and the area a distance inside of it.
+
+A boundary is a list of closed loops, each a list of elements that follow one another; the area lies to the
+left of the way along them: round a pocket counter-clockwise, round an island clockwise. X and Y, mm.
+
+The offset is exact: lines stay lines and arcs arcs. A point belongs to the offset area when no point of the
+boundary is nearer than the distance, so every part of a moved element that comes nearer to any other element
+is left out (`moved`, `split_at`), wherever the area falls apart or an island grows into a wall.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
+from math import ceil, dist, pi
+
+import numpy as np
+import numpy.typing as npt
+
+from core.geometry.contour_offset import Boxed, moved, split_at
+from core.geometry.intersections import clearance, distance
+from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Line, Point, arc_between, left_of, turn
+
+Loop = list[Element]
+Inside = Callable[[Point], bool]
+
+_NEARER = 0.0005  # mm by which an offset may be nearer to its boundary: programs round their corners
+_JOINED = 0.005  # mm between the end of one part and the start of the next: tangents are rounded, too
+_TOO_SHORT = 0.002  # mm: shorter parts of an offset are what two rounded tangents overlap by
+_TAIL = 0.5  # mm: a longer part that leads nowhere is a fault
+_ASIDE = 1e-5  # mm off a part, on either side, where it is asked whether a point lies in the area
+_HALF = pi - 1e-9
+
+
+class AreaError(Exception):
+    """Contours that enclose no area, or whose offset cannot be followed; a clause about them."""
+
+
+def follows(elements: Sequence[Element]) -> Loop:
+    """Elements as a closed loop: the end is led to the start by a line where it stops short of it."""
+    loop = list(elements)
+    if loop and dist(loop[-1].end, loop[0].start) > SAME_POINT:
+        loop.append(Line(loop[-1].end, loop[0].start))
+    return loop
+
+
+# --- inside or outside ----------------------------------------------------------------------------------
+
+
+class Winding:
+    """How often a loop goes round a point, counter-clockwise positive; for points off the loop."""
+
+    def __init__(self, loop: Sequence[Element]) -> None:
+        halves = [part for element in loop for part in _halves(element)]
+        self._start = np.array([part.start for part in halves])
+        self._end = np.array([part.end for part in halves])
+        self._centre = np.array([part.centre if isinstance(part, Arc) else (0.0, 0.0) for part in halves])
+        self._radius = np.array([part.radius if isinstance(part, Arc) else -1.0 for part in halves])
+        self._sense = np.array([(-1.0 if part.clockwise else 1.0) if isinstance(part, Arc) else 0.0
+                                for part in halves])  # fmt: skip
+
+    def round(self, point: Point) -> int:
+        """The angle under which the chords pass the point, and a turn for an arc that passes it beyond."""
+        a, b = self._start - point, self._end - point
+        cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+        angle = np.arctan2(cross, (a * b).sum(axis=1))
+        off = np.hypot(*(self._centre - point).T)
+        # Within an arc of up to half a turn: in its circle, and on the arc's side of its chord.
+        beyond = (off < self._radius) & (cross * self._sense < 0.0)
+        return round(float(angle.sum() + 2.0 * pi * (self._sense * beyond).sum()) / (2.0 * pi))
+
+
+def _halves(element: Element) -> Iterator[Element]:
+    """Arcs of more than half a turn in pieces of less."""
+    if isinstance(element, Line) or abs(element.sweep) <= _HALF:
+        yield element
+        return
+    count = ceil(abs(element.sweep) / (pi / 2.0))
+    points = [element.start, *(element.point(element.length * at / count) for at in range(1, count))]
+    for start, end in pairwise((*points, element.end)):
+        yield element.part(start, end)
+
+
+def enclosed(loop: Sequence[Element]) -> float:
+    """The area within a closed loop, mm^2; negative where it runs clockwise."""
+    total = 0.0
+    for element in loop:
+        (x0, y0), (x1, y1) = element.start, element.end
+        total += x0 * y1 - x1 * y0
+        if isinstance(element, Arc):
+            sweep = -element.sweep  # counter-clockwise positive
+            chord = (x0 - element.centre[0], y0 - element.centre[1])
+            last = (x1 - element.centre[0], y1 - element.centre[1])
+            total += element.radius**2 * sweep - (chord[0] * last[1] - chord[1] * last[0])
+    return total / 2.0
+
+
+def goes_round(loop: Sequence[Element]) -> bool:
+    """Whether it runs counter-clockwise; a way there and back, which encloses nothing, does too."""
+    return enclosed(loop) > -_JOINED * sum(element.length for element in loop)
+
+
+# --- boundary and offset ----------------------------------------------------------------------------------
+
+
+def boundary(curves: Sequence[Loop], inside: Inside) -> list[Loop]:
+    """The boundary of the area of which ``inside`` tells, all of it on these curves. Raises AreaError."""
+    elements = [part for loop in curves for element in loop for part in _halves(element)]
+    if not elements:
+        return []
+    every = Boxed(elements)
+    parts = [part for element in elements for part in _divided(element, every)]
+    kept = [side for part in parts if (side := _bounding(part, inside)) is not None]
+    return _chained(_single(kept))
+
+
+def _divided(element: Element, every: Boxed) -> list[Element]:
+    """The parts of an element between all points where another meets it or ends on it."""
+    parts = split_at(element, every)
+    ends = {end for other in every.near(element.box, SAME_POINT) for end in (other.start, other.end)}
+    for end in ends:
+        parts = [piece for part in parts for piece in _cut(part, end)]
+    return parts
+
+
+def _cut(part: Element, at: Point) -> list[Element]:
+    if distance(part, at) > SAME_POINT or min(dist(at, part.start), dist(at, part.end)) <= 2 * SAME_POINT:
+        return [part]
+    return [part.part(part.start, at), part.part(at, part.end)]
+
+
+def _bounding(part: Element, inside: Inside) -> Element | None:
+    """The part with the area on its left; None where both sides are in it, or none is."""
+    x, y = part.point(part.length / 2.0)
+    dx, dy = left_of(_direction_halfway(part))
+    left = inside((x + dx * _ASIDE, y + dy * _ASIDE))
+    right = inside((x - dx * _ASIDE, y - dy * _ASIDE))
+    if left == right:
+        return None
+    return part if left else part.reversed()
+
+
+def _direction_halfway(part: Element) -> Point:
+    middle = part.point(part.length / 2.0)
+    return part.part(middle, part.end).start_direction
+
+
+def inset(loops: Sequence[Loop], apart: float) -> list[Loop]:
+    """The boundary of the points that lie ``apart`` mm or more inside of these loops. Raises AreaError."""
+    if apart <= 0.0 or not loops:
+        return [list(loop) for loop in loops]
+    contour = Boxed([element for loop in loops for element in loop])
+    pieces = [piece for loop in loops for piece in _moved_inwards(loop, apart)]
+    if not pieces:
+        return []
+    every = Boxed(pieces)
+    parts = [part for piece in pieces for part in split_at(piece, every)]
+    within = [Winding(loop) for loop in loops]
+    long = (part for part in parts if part.length > _TOO_SHORT)
+    kept = [part for part in long if _apart(part, contour, apart - _NEARER, within)]
+    return _chained(_single(kept))
+
+
+def _moved_inwards(loop: Loop, apart: float) -> Iterator[Element]:
+    """Each element moved to its left, and an arc about each corner that the area goes round."""
+    for before, after in zip(loop, [*loop[1:], loop[0]], strict=True):
+        first, last = moved(before, apart), moved(after, apart)
+        for each in first:
+            yield from _halves(each)
+        if turn(before.end_direction, after.start_direction) < 0.0 and first and last:
+            start, end = first[0].end, last[0].start
+            if dist(start, end) > SAME_POINT:
+                yield from _halves(Arc(start, end, after.start, clockwise=True))
+
+
+def _apart(part: Element, contour: Boxed, least: float, within: Sequence[Winding]) -> bool:
+    x, y = middle = part.point(part.length / 2.0)
+    if any(distance(element, middle) < least for element in contour.near((x, x, y, y), least)):
+        return False
+    return sum(each.round(middle) for each in within) > 0
+
+
+def _single(parts: Sequence[Element]) -> list[Element]:
+    """Each part once: two that lie on one another and run the same way are one."""
+    found: dict[tuple[int, ...], Element] = {}
+    for part in parts:
+        if part.length < SAME_POINT:
+            continue
+        places = (*part.start, *part.end, *part.point(part.length / 2.0))
+        key = tuple(round(value / (4 * SAME_POINT)) for value in places)
+        found.setdefault(key, part)
+    return list(found.values())
+
+
+def _chained(parts: Sequence[Element]) -> list[Loop]:
+    """The parts as closed loops, the longest first. Raises AreaError where one has no other behind it."""
+    parts = _without_tails(parts)
+    starts = np.array([part.start for part in parts]).reshape(-1, 2)
+    free = np.ones(len(parts), dtype=bool)
+    order = sorted(range(len(parts)), key=lambda each: -parts[each].length)
+    loops = (_loop(parts, starts, free, at) for at in order if free[at])
+    return [loop for loop in loops if loop]
+
+
+def _without_tails(parts: Sequence[Element]) -> list[Element]:
+    """Without short parts that lead nowhere: behind a crossing at a small angle they are far enough off."""
+    left = list(parts)
+    while left:
+        starts, ends = np.array([part.start for part in left]), np.array([part.end for part in left])
+        away = np.hypot(*(ends[:, None, :] - starts[None, :, :]).transpose(2, 0, 1))
+        dead = (away.min(axis=1) > _JOINED) | (away.min(axis=0) > _JOINED)
+        kept = [part for part, ends_here in zip(left, dead, strict=True)
+                if not ends_here or part.length > _TAIL]  # fmt: skip
+        if len(kept) == len(left):
+            break
+        left = kept
+    return left
+
+
+def _loop(parts: Sequence[Element], starts: npt.NDArray[np.float64], free: npt.NDArray[np.bool_],
+          first: int) -> Loop:  # fmt: skip
+    """The loop that begins with a part, closed; its parts are taken. Empty for less than is worth a way."""
+    loop: Loop = [parts[first]]
+    free[first] = False
+    while dist(loop[-1].end, loop[0].start) > SAME_POINT:
+        away = np.hypot(*(starts - loop[-1].end).T)
+        away[~free] = np.inf
+        home = dist(loop[-1].end, loop[0].start)
+        nearest = float(away.min()) if away.size else np.inf
+        if min(home, nearest) > _JOINED:
+            if sum(part.length for part in loop) <= 2 * _JOINED:
+                return []
+            raise AreaError("its way breaks off")
+        if home <= nearest:
+            break
+        after = max(np.flatnonzero(away <= nearest + SAME_POINT).tolist(),
+                    key=lambda at: _turned(loop[-1], parts[at]))  # fmt: skip
+        free[after] = False
+        loop.append(parts[after])
+    return _closed(loop)
+
+
+def _turned(before: Element, after: Element) -> float:
+    """The turn from one to the other: the sharpest to the left keeps loops apart that touch in a point."""
+    angle = turn(before.end_direction, after.start_direction)
+    return angle if angle < _HALF else -pi  # straight back comes last
+
+
+def _closed(loop: Loop) -> Loop:
+    """The same with every element beginning exactly where the one before it ends."""
+    made: Loop = []
+    here = loop[-1].end
+    for element in loop:
+        if element.start == here:
+            made.append(element)
+        elif isinstance(element, Arc):
+            made.append(arc_between(here, element.end, element.centre, clockwise=element.clockwise))
+        elif dist(here, element.end) > SAME_POINT:
+            made.append(Line(here, element.end))
+        else:
+            continue
+        here = element.end
+    return made
+
+
+# --- ways within ------------------------------------------------------------------------------------------
+
+
+class Within:
+    """Whether ways stay in an area."""
+
+    def __init__(self, loops: Sequence[Loop]) -> None:
+        self._contour = Boxed([element for loop in loops for element in loop])
+        self._windings = [Winding(loop) for loop in loops]
+
+    def holds(self, element: Element, apart: float) -> bool:
+        """Whether all of an element lies inside, ``apart`` mm or more off the boundary (less rounding)."""
+        near = self._contour.near(element.box, apart)
+        if any(clearance(other, element) < apart - 2 * _NEARER for other in near):
+            return False
+        return sum(each.round(element.point(element.length / 2.0)) for each in self._windings) > 0

@@ -1,0 +1,236 @@
+"""Block search with calculation: Klartext and SINUMERIK programs gone through up to a line, all state kept.
+
+Every block before the line is interpreted as in a run, so that tool, spindle, datum, plane, parameters, loops
+and calls are those of the run. A second pass from another start goes beside the first: an axis that stands
+elsewhere in it has not been positioned by the program, and the line is refused unless that axis never moved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from math import inf, isclose
+
+from core.interpreter.actions import ProgramEnd
+from core.interpreter.checkpoint import Checkpoint
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.interpretation import Interpretation
+from core.interpreter.job_setup import Setup
+from core.interpreter.restart.cut_record import CutRecord, record_cuts
+from core.interpreter.restart.restart_lines import Interruption, LineVisit, NoRestart, RestartPoint
+from core.interpreter.restart.restart_retract import Retract, ToolPlace
+from core.interpreter.restart.state_rebuild import found_on_lathe
+
+Watch = Callable[[float], None]
+
+_ASIDE = 7.3  # mm, degrees: the other start; no program's words fall together with it
+_SAME = 1e-6
+_TRIED = 5  # lines on each side of one that is not good
+_WATCHED = 2000  # blocks between two looks at whether the work is still wanted
+
+
+@dataclass(slots=True)
+class _LinesOfRun:
+    """What a whole run tells: by line, how many blocks came before each of its visits."""
+
+    visits: dict[int, list[int]] = field(default_factory=dict)
+    waits: dict[int, str] = field(default_factory=dict)  # why a line is not good at its first visit
+    ended: int = 0  # line of the program's end
+
+
+class ProgramSearch:
+    """One program under fixed circumstances. ``watch`` is told how many blocks have passed and may raise."""
+
+    def __init__(self, reading: ReadProgram, setup: Setup, watch: Watch) -> None:
+        self._reading = reading
+        self._setup = replace(setup, begin=None, inputs=lambda _terminal: False)
+        self.watch = watch
+        self._count = 0
+
+    @cached_property
+    def cut(self) -> CutRecord:
+        """All that the program cuts on a lathe; gone through once."""
+        return record_cuts(self._pass().series(), self.watch)
+
+    def find(self, line: int, visit: int = 0, broken: Interruption | None = None) -> RestartPoint | NoRestart:
+        """What line ``line`` inherits the ``visit``-th time, or why the program cannot go on from it.
+
+        0: the pass that was interrupted, or the first. ``broken`` is where the program was interrupted.
+        """
+        found = self._search(line, visit, broken)
+        if isinstance(found, RestartPoint):
+            return found
+        return NoRestart(line, found, self._nearest(line, -1, broken), self._nearest(line, 1, broken))
+
+    # --- going through the program ------------------------------------------------------------------------
+
+    def _pass(self, aside: float = 0.0) -> Interpretation:
+        start = tuple(at + aside for at in self._setup.start)
+        return self._reading.begin(replace(self._setup, start=start))
+
+    def _watched(self, blocks: Iterator[Block]) -> Iterator[Block]:
+        for block in blocks:
+            self._count += 1
+            if self._count % _WATCHED == 0:
+                self.watch(self._count)
+            yield block
+
+    @cached_property
+    def _run(self) -> _LinesOfRun:
+        told, run, made = _LinesOfRun(), self._pass(), 0
+
+        def see(line: int) -> bool:
+            told.visits.setdefault(line, []).append(made)
+            told.waits.setdefault(line, run.waits_for)
+            return False
+
+        run.stop_before = see
+        for block in self._watched(run.blocks(to_first_error=True)):
+            made = block.n
+            if isinstance(block.action, ProgramEnd):
+                told.ended = block.line
+        return told
+
+    def _to(self, line: int, number: int, aside: float, broken: Interruption | None) -> _Stand:
+        """To the ``number``-th time that the run comes to a line."""
+        run, stand, left = self._pass(aside), _Stand(), number
+
+        def stop(at: int) -> bool:
+            nonlocal left
+            left -= at == line
+            return not left
+
+        run.stop_before = stop
+        done = broken.done if broken is not None else 0
+        for block in self._watched(run.blocks(to_first_error=True)):
+            stand.see(block, done if broken is not None else block.n)
+        stand.failed = run.failed or not run.stopped_before
+        stand.waits = run.waits_for
+        if not stand.failed and not stand.waits:
+            stand.point = run.checkpoint
+        return stand
+
+    # --- the answer ---------------------------------------------------------------------------------------
+
+    def _search(self, line: int, visit: int, broken: Interruption | None) -> RestartPoint | str:
+        lines = self._reading.source.lines
+        if not 1 <= line <= len(lines):
+            return f"There is no line {line}; the program has {len(lines)}."
+        visits = self._run.visits.get(line, [])
+        if not visits:
+            return self._why_never(line)
+        number = visit or max(1, sum(made < broken.block for made in visits) if broken is not None else 1)
+        if number > len(visits):
+            return f"The run comes to line {line} {len(visits)} times only."
+        here = self._to(line, number, 0.0, broken)
+        other = self._to(line, number, _ASIDE, None)
+        if here.failed or here.point is None:
+            return f"Line {line} is no place to go on: {here.waits or 'the program has errors before it'}."
+        at = self._places(here.point, other.point)
+        if isinstance(at, str):
+            return f"Line {line} is no place to go on: {at}"
+        return self._good(line, here, at, LineVisit(number, len(visits)), broken)
+
+    def _why_never(self, line: int) -> str:
+        ended = self._run.ended
+        if ended and line > ended:
+            return f"The program ends on line {ended}, before line {line}."
+        return f"Line {line} is empty, a comment, part of the block before it, or the run never comes to it."
+
+    def _places(self, here: Checkpoint, other: Checkpoint | None) -> tuple[float | None, ...] | str:
+        """Machine positions of all axes, None for one that has not moved; or why they are not known."""
+        if other is None:
+            return "what comes before it depends on where the slides stood at Cycle Start."
+        found: list[float | None] = []
+        for place, start in enumerate(self._setup.start):
+            a, b = _at(here)[place], _at(other)[place]
+            if isclose(a, b, abs_tol=_SAME):
+                found.append(a)
+            elif isclose(a, start, abs_tol=_SAME) and isclose(b, start + _ASIDE, abs_tol=_SAME):
+                found.append(None)
+            else:
+                axis = self._axes[place]
+                return f"where {axis} stands there depends on where it stood at Cycle Start."
+        if all(each is None for each in found):
+            return "nothing has moved before it; start the program from its first line."
+        return tuple(found)
+
+    @property
+    def _axes(self) -> tuple[str, ...]:
+        kinematics = self._setup.kinematics
+        return ("X", "Z", "C") if kinematics is None else kinematics.names
+
+    def _good(
+        self,
+        line: int,
+        here: _Stand,
+        at: tuple[float | None, ...],
+        visit: LineVisit,
+        broken: Interruption | None,
+    ) -> RestartPoint | str:
+        assert here.point is not None
+        point = here.point
+        if self._setup.kinematics is None:
+            free = (place for place, each in zip("xzc", at, strict=True) if each is None and place != "c")
+            if lost := next(free, ""):
+                return f"Line {line} is no place to go on: {lost.upper()} has not been positioned before it."
+            own_c = at[2] is not None and not self._setup.limits.spindle_is_c
+            turned = point._replace(at=_at(point)) if own_c else point
+            return found_on_lathe(line, turned, self.cut, visit, broken)
+        if here.left_out and not here.above(point):
+            first, last = here.left_out
+            which = f"line {first}" if first == last else f"lines {first} to {last}"
+            return f"Line {line} begins in metal that {which} would have had to cut."
+        clear = Retract(ToolPlace.CLEAR)
+        return RestartPoint(line, point, clear, None, visit, left_out=here.left_out or (0, 0), axes=at)
+
+    def _nearest(self, line: int, way: int, broken: Interruption | None) -> int:
+        """The nearest line that is good, of those to which the run comes and that wait for no other.
+
+        Each is looked for as it would be when it is asked for; where none of the first few is good, none is
+        named.
+        """
+        near = [each for each, why in self._run.waits.items() if not why and (each - line) * way > 0]
+        near.sort(key=lambda each: abs(each - line))
+        good = (each for each in near[:_TRIED] if isinstance(self._search(each, 0, broken), RestartPoint))
+        return next(good, 0)
+
+
+@dataclass(slots=True)
+class _Stand:
+    """Where a pass has come to; ``cutting``: by feed; ``left_out`` the lines of cuts behind what was done."""
+
+    point: Checkpoint | None = None
+    waits: str = ""
+    failed: bool = False
+    cutting: bool = False
+    length: float = 0.0  # of the tool, mm
+    top: float = -inf  # machine Z of the tip where the highest cut of those begins, mm
+    turned: bool = False  # rotary axes turn in one of them: heights tell nothing
+    left_out: tuple[int, int] | None = None
+
+    def see(self, block: Block, done: int) -> None:
+        """The next block of the pass."""
+        if block.swivel is not None:
+            self.length = block.swivel.system.tool_length
+        if not block.moves:
+            return
+        self.cutting = not block.rapid
+        if self.cutting and block.n > done:
+            first = self.left_out[0] if self.left_out is not None else block.line
+            self.left_out = first, block.line
+            if block.travel is not None:
+                self.turned = self.turned or block.swivels or block.travel.way is not None
+                tip = block.travel.start[2] - self.length
+                self.top = max(self.top, tip)
+
+    def above(self, point: Checkpoint) -> bool:
+        """Whether the place was reached by rapid and is no lower than where what is left out would begin."""
+        return not (self.cutting or self.turned) and point.at[2] - self.length >= self.top - _SAME
+
+
+def _at(point: Checkpoint) -> tuple[float, ...]:
+    """Machine positions of all axes."""
+    return point.at or (*point.machine, point.c + point.modal.offset_c)

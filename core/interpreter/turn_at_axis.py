@@ -1,0 +1,19 @@
+"""Standing on the axis of a virtual mill: C turns until the way leads out along X, in every language."""
+
+from __future__ import annotations
+
+from math import degrees
+
+from core.interpreter.diagnostic_log import Log
+
+_SAME = 1e-9  # degrees that are no turn
+_TOLD = 1.0  # degrees that C turns there without a word about it
+
+
+def turns_at_axis(log: Log, line: int, turn: float) -> bool:
+    """Whether C turns there, by ``turn`` radians; a large turn is told, as the tool stands meanwhile."""
+    angle = abs(degrees(turn))
+    if angle > _TOLD:
+        text = f"The way leads through the axis: C turns by {angle:.0f} degrees there."
+        log.warn(line, 1, "plane-centre", text, "The tool stands meanwhile; lead it past the axis.")
+    return angle > _SAME

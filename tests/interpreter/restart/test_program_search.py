@@ -1,0 +1,322 @@
+"""Block search in Klartext and SINUMERIK: what follows a restart is what would have followed in the run."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from app.compose.machine_files import named_machine
+from app.compose.machine_setup import setup_for
+from core.interpreter.actions import ProgramStop, SpindleRun, ToolChange
+from core.interpreter.checkpoint import AxesLeg, Begin, FunctionStep
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset
+from core.interpreter.modal_state import Modal
+from core.interpreter.restart.mill_approach import begin_on_mill
+from core.interpreter.restart.program_search import ProgramSearch
+from core.interpreter.restart.restart_approach import Choices, MachineNow, begin_at
+from core.interpreter.restart.restart_lines import Interruption, NoRestart, RestartPoint
+from core.language.source import Source
+from core.tool_edges import edge_key
+
+PLATE = """\
+0 BEGIN PGM PLATE MM
+1 TOOL CALL 5 Z S3000 F400
+2 L X+0 Y+0 Z+50 R0 FMAX M3
+3 Q1 = 0
+4 LBL 1
+5 Q1 = Q1 + 10
+6 L X+Q1 Y+5 FMAX
+7 L Z+2 FMAX M8
+8 L Z-3 F200
+9 L Y+20 F400
+10 L Z+50 FMAX M9
+11 CALL LBL 1 REP2
+12 TOOL CALL 6 Z S1500
+13 L X+40 Y+40 Z+50 R0 FMAX M3
+14 CYCL DEF 200 Q200=+2 Q201=-10 Q206=+150 Q202=+5 Q210=+0 Q203=+0 Q204=+50 Q211=+0
+15 CYCL CALL
+16 PLANE AXIAL A+20 C+0 TURN MB MAX FMAX
+17 L X+10 Y+10 Z+30 FMAX
+18 L Z+1 F300
+19 L X+20 RL F200
+20 L Y+30
+21 L X+10 R0
+22 L Z+60 FMAX
+23 PLANE RESET TURN MB MAX FMAX
+24 END PGM PLATE MM
+"""
+TURNED = """\
+G18 G71 G90 G54 DIAMON
+G94 S800 M3
+G0 X60 Z5
+R1=50
+WHILE R1>40
+X=R1
+G1 Z-20 F100
+G0 X70
+Z5
+R1=R1-4
+ENDWHILE
+G0 X100 Z50
+M30
+"""
+TOOLS = {5: ToolOffset(z=80.0, nose_radius=6.0), 6: ToolOffset(z=95.0, nose_radius=4.0)}
+
+
+def mill(program: str = PLATE) -> tuple[ReadProgram, Setup]:
+    return ReadProgram(Source("plate.h", program)), setup_for(
+        named_machine("ac-table-mill"), tools=TOOLS, secondary={}
+    )
+
+
+def lathe(program: str = TURNED) -> tuple[ReadProgram, Setup]:
+    machine = named_machine("sinumerik-modulo")
+    zero = {54: ZeroOffset(z=-300.0)}
+    return ReadProgram(Source("shaft.mpf", program)), setup_for(machine, tools={}, secondary={}, zero=zero)
+
+
+def searched(
+    of: tuple[ReadProgram, Setup], line: int, visit: int = 0, broken: Interruption | None = None
+) -> RestartPoint | NoRestart:
+    reading, setup = of
+    return ProgramSearch(reading, setup, lambda _count: None).find(line, visit, broken)
+
+
+def refused(of: tuple[ReadProgram, Setup], line: int, broken: Interruption | None = None) -> NoRestart:
+    found = searched(of, line, broken=broken)
+    assert isinstance(found, NoRestart)
+    return found
+
+
+def good(of: tuple[ReadProgram, Setup], line: int, visit: int = 0) -> RestartPoint:
+    found = searched(of, line, visit)
+    assert isinstance(found, RestartPoint), found
+    return found
+
+
+def told(block: Block) -> tuple[object, ...]:
+    at = tuple(round(each, 9) for each in block.machine_end)
+    return (
+        block.n,
+        block.line,
+        block.kind,
+        at,
+        round(block.feed, 9),
+        block.rpm,
+        block.action,
+        block.modal.tool,
+    )
+
+
+def whole(of: tuple[ReadProgram, Setup]) -> list[Block]:
+    return list(of[0].begin(of[1]).blocks(to_first_error=True))
+
+
+def restarted(of: tuple[ReadProgram, Setup], begin: Begin, start: tuple[float, ...]) -> list[Block]:
+    run = of[0].begin(replace(of[1], start=start, begin=begin))
+    blocks = list(run.blocks(to_first_error=True))
+    assert not run.failed, run.diagnostics
+    return blocks
+
+
+STANDS = (-50.0, 30.0, -420.0, 0.0, 0.0)
+
+
+def mill_begin(of: tuple[ReadProgram, Setup], found: RestartPoint, now: MachineNow | None = None) -> Begin:
+    assert of[1].kinematics is not None
+    return begin_on_mill(found, now or MachineNow(STANDS, Modal()), Choices(), of[1].kinematics)
+
+
+# --- what follows ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("line", "visit"),
+    [
+        (4, 0),
+        (7, 1),
+        (7, 2),
+        (7, 3),
+        (9, 2),
+        (10, 3),
+        (13, 0),
+        (14, 0),
+        (16, 0),
+        (17, 0),
+        (18, 0),
+        (19, 0),
+        (23, 0),
+    ],
+)
+def test_behind_the_way_a_mill_does_what_the_run_would_have_done(line: int, visit: int) -> None:
+    of = mill()
+    found = good(of, line, visit)
+    begin = mill_begin(of, found)
+    blocks, made = restarted(of, begin, STANDS), found.checkpoint.blocks
+    assert blocks[len(begin.approach) - 1].n == made
+    rest = [told(each) for each in blocks[len(begin.approach) :]]
+    assert rest == [told(each) for each in whole(of) if each.n > made]
+    assert rest
+
+
+@pytest.mark.parametrize(("line", "visit"), [(4, 0), (6, 1), (6, 3), (9, 2), (12, 0)])
+def test_behind_the_way_a_lathe_does_what_the_run_would_have_done(line: int, visit: int) -> None:
+    of = lathe()
+    found = good(of, line, visit)
+    now = MachineNow((150.0, 100.0, 0.0), Modal())
+    begin = begin_at(found, now, Choices())
+    blocks, made = restarted(of, begin, now.at), found.checkpoint.blocks
+    rest = [told(each) for each in blocks[len(begin.approach) :]]
+    assert rest == [told(each) for each in whole(of) if each.n > made]
+
+
+def test_the_passes_of_a_loop_are_counted() -> None:
+    assert good(mill(), 7, 2).visit == (2, 3, ())
+    assert good(lathe(), 6, 2).visit == (2, 3, ())
+
+
+def test_the_pass_that_was_interrupted_is_the_one_that_is_meant() -> None:
+    second = [each for each in whole(mill()) if each.line == 10][1]
+    broken = Interruption(second.n, 5, STANDS, second.n)
+    found = searched(mill(), 9, broken=broken)
+    assert isinstance(found, RestartPoint)
+    assert found.visit.number == 2
+
+
+# --- the way --------------------------------------------------------------------------------------------
+
+
+def test_a_mill_goes_out_along_the_tool_turns_over_and_in_last() -> None:
+    of = mill()
+    turned = MachineNow((-50.0, 30.0, -420.0, 15.0, 200.0), Modal())
+    begin = mill_begin(of, good(of, 19), turned)
+    legs = [step for step in begin.approach if isinstance(step, AxesLeg)]
+    assert [leg.text for leg in legs] == ["Z", "Z", "A C", "X Y", "Z", "Z"]
+    assert dict(legs[1].goal)["Z"] == pytest.approx(-0.01)  # the top of its travel
+    assert dict(legs[2].goal) == pytest.approx({"A": 20.0, "C": 0.0})
+    assert legs[-1].feed is not None
+    assert all(leg.feed is None for leg in legs[1:-1])
+
+
+def test_another_tool_is_asked_for_at_the_top_and_the_spindle_turns_behind_it() -> None:
+    of = mill()
+    begin = mill_begin(of, good(of, 15), MachineNow(STANDS, Modal(tool=5, spindle=1, rpm=3000.0)))
+    actions = [step.action for step in begin.approach if isinstance(step, FunctionStep)]
+    assert actions[1:] == [ToolChange(6), ProgramStop(optional=False, message="TOOL 6"), SpindleRun(1500.0)]
+
+
+def test_an_axis_that_never_moved_stays_where_it_stands() -> None:
+    found = good(mill(), 10, 1)
+    assert found.axes[3:] == (None, None)
+    goals = [dict(step.goal) for step in mill_begin(mill(), found).approach if isinstance(step, AxesLeg)]
+    assert not any("A" in goal or "C" in goal for goal in goals)
+
+
+# --- refusals -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("line", "why"),
+    [
+        (0, "There is no line 0"),
+        (99, "There is no line 99"),
+        (3, "nothing has moved"),
+        (21, "radius compensation is on"),
+    ],
+)
+def test_lines_of_a_mill_that_are_not_good(line: int, why: str) -> None:
+    of = mill()
+    if line == 3:
+        of = mill("0 BEGIN PGM A MM\n1 TOOL CALL 5 Z S99\n2 Q1 = 3\n3 L X+Q1 Y+0 Z+9 FMAX\n4 END PGM A MM\n")
+    assert why in refused(of, line).why
+
+
+def test_a_line_that_needs_where_the_slides_stood_is_refused() -> None:
+    text = (
+        "0 BEGIN PGM A MM\n1 TOOL CALL 5 Z S99\n2 L IX+5 FMAX\n3 L Y+3 FMAX\n4 L Z+9 FMAX\n5 END PGM A MM\n"
+    )
+    assert "where X stands there depends on where it stood" in refused(mill(text), 5).why
+
+
+def test_a_line_in_metal_that_was_never_cut_is_refused_and_one_above_it_warned_of() -> None:
+    of = mill()
+    first = next(each for each in whole(of) if each.line == 9)  # the plunge of the first pass
+    broken = Interruption(first.n, 5, STANDS, first.n)
+    reading, setup = of
+    search = ProgramSearch(reading, setup, lambda _count: None)
+    found = search.find(10, 2, broken)
+    assert isinstance(found, NoRestart)
+    assert "begins in metal that" in found.why
+    above = search.find(7, 2, broken)
+    assert isinstance(above, RestartPoint)
+    assert above.left_out == (10, 10)
+
+
+def test_comments_and_lines_behind_the_end_are_told_apart() -> None:
+    text = PLATE.replace("3 Q1 = 0\n", "; a remark\n3 Q1 = 0\n")
+    assert "a comment" in refused(mill(text), 4).why
+    assert "The program ends on line 13, before line 14." in refused(lathe(TURNED + "G0 X1\n"), 14).why
+
+
+def test_a_refusal_names_the_nearest_good_lines() -> None:
+    found = refused(mill(), 21)
+    assert (found.before, found.after) == (20, 23)
+
+
+def test_a_line_that_is_named_in_the_place_of_another_is_good() -> None:
+    """Outwards from the middle: the cuts of both lines lie in the work, with no way out of it."""
+    of = lathe("G54 G90 G94 G71 DIAMON\nT1 D1\nG0 X0 Z1\nG1 Z-1 F600\nX6 F60\nZ1 F600\nM30\n")
+    for line in (4, 5):
+        found = refused(of, line)
+        for each in (found.before, found.after):
+            assert not each or good(of, each)
+
+
+def test_work_that_nobody_wants_is_given_up() -> None:
+    class GivenUpError(Exception):
+        pass
+
+    def watch(_count: int) -> None:
+        raise GivenUpError
+
+    long = "G90 G54 G0 X10 Z10\n" + "G0 X20\nG0 X21\n" * 2000 + "M30\n"
+    with pytest.raises(GivenUpError):
+        ProgramSearch(*lathe(long), watch).find(3)
+
+
+CONTOUR = """\
+G18 G90 G54 DIAMON G94
+T1 D2
+S800 M3
+G0 X60 Z5
+G42 G1 X20 Z0 F100
+Z-20
+X40
+G40 G0 X60 Z5
+X62
+M30
+"""
+
+
+def edged(program: str = CONTOUR) -> tuple[ReadProgram, Setup]:
+    reading, around = lathe(program)
+    tools = {1: ToolOffset(30.0, 40.0, 0.8, 3), edge_key(1, 2): ToolOffset(31.0, 38.0, 0.4, 3)}
+    return reading, replace(around, tools=tools)
+
+
+@pytest.mark.parametrize("line", [6, 7, 8])
+def test_no_search_ends_on_a_contour_of_g42(line: int) -> None:
+    assert "contour of G41 or G42" in refused(edged(), line).why
+
+
+@pytest.mark.parametrize("line", [5, 9])
+def test_the_edge_and_its_nose_go_over_to_the_pass_behind(line: int) -> None:
+    of = edged()
+    found = good(of, line)
+    begin = begin_at(found, MachineNow((50.0, 60.0, 0.0), found.checkpoint.modal), Choices())
+    behind = [told(block) for block in restarted(of, begin, (50.0, 60.0, 0.0))]
+    run = [told(block) for block in whole(of) if block.line >= line]
+    assert [each[1:] for each in behind[-len(run) :]] == [each[1:] for each in run]

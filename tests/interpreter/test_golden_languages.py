@@ -1,0 +1,114 @@
+"""Whole programs of Klartext and SINUMERIK against tables worked out by hand.
+
+``tests/programs/klartext/NAME.h`` and ``tests/programs/sinumerik/NAME.mpf``, each with ``NAME.expected``: one
+row for each elementary block, ``line what …``, in mm, degrees and mm/min, in the program's own system::
+
+    5 feed 15 0 -5 F 300
+    6 arc 20 5 -5 way 7.853982 F 300
+    5 arc 15 -15 centre 15 -10 F 100
+
+Klartext tells X Y Z of the working plane, and the length of an arc; a corner of RND and CHF is told by the
+element behind it. SINUMERIK tells X (a radius) Z and the centre of an arc. With ``# axes`` rotary axes stand
+behind; a PLANE block tells these alone. Findings as in ``test_golden.py``.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from app.compose.machine_files import shipped_machine
+from app.compose.machine_setup import setup_for
+from core.interpreter import actions
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.job_setup import ToolOffset
+from core.language.diagnostics import Severity
+from core.language.source import Dialect, Source
+
+PROGRAMS = Path(__file__).parents[1] / "programs"
+FILES = sorted([*PROGRAMS.glob("klartext/*.h"), *PROGRAMS.glob("sinumerik/*.mpf")])
+MACHINE = {Dialect.KLARTEXT: "ac-table-mill", Dialect.SINUMERIK: "sinumerik-modulo"}
+NEAR = 6e-7
+Row = list[str | float]
+
+
+def row(block: Block, *, axes: bool) -> Row:
+    """A block as its row of the table."""
+    if block.action is not None:
+        return [block.line, *_action(block.action)]
+    return [block.line, *(_on_lathe(block) if block.swivel is None else _on_mill(block, axes=axes))]
+
+
+def _action(action: actions.Action) -> Row:
+    match action:
+        case actions.ToolChange(tool):
+            return ["tool", tool]
+        case actions.SpindleRun(rpm, None):
+            return ["spindle", rpm]
+        case actions.SpindleStop():
+            return ["spindle-off"]
+        case actions.Dwell(seconds):
+            return ["dwell", seconds]
+        case actions.ProgramEnd():
+            return ["end"]
+    raise AssertionError(f"no word for {action}")
+
+
+def _feed(block: Block) -> Row:
+    return [] if block.rapid else ["F", 60.0 * block.feed]
+
+
+def _on_lathe(block: Block) -> Row:
+    centre: Row = ["centre", block.cx, block.cz] if block.kind is Kind.ARC else []
+    return [str(block.kind), block.x, block.z, *centre, *_feed(block)]
+
+
+def _on_mill(block: Block, *, axes: bool) -> Row:
+    assert block.swivel is not None
+    assert block.travel is not None
+    stands = zip("ABC", block.swivel.rotary, strict=True)
+    rotary: Row = [word for name, at in stands if at is not None for word in (name, at)]
+    if block.kind is Kind.PLANE:
+        return ["plane", *rotary]
+    arc = block.kind is Kind.PLANE_ARC
+    way: Row = ["way", block.travel.length] if arc else []
+    place: Row = [*block.swivel.end]
+    return ["arc" if arc else str(block.kind), *place, *way, *_feed(block), *(rotary if axes else [])]
+
+
+def same(found: Row, expected: list[str]) -> bool:
+    """Whether a row says what the table says."""
+    if len(found) != len(expected):
+        return False
+    return all(
+        have == want if isinstance(have, str) else abs(have - float(want)) < NEAR
+        for have, want in zip(found, expected, strict=True)
+    )
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+def test_a_program_does_what_its_table_says(path: Path) -> None:
+    table = path.with_suffix(".expected").read_text("utf-8").splitlines()
+    axes = "# axes" in table
+    findings = [text for text in table if text.split()[0] in set(Severity)]
+    blocks = [text.split() for text in table if text.split()[0].isdigit()]
+    assert len(findings) + len(blocks) + axes == len(table), "a row that says nothing"
+    source = Source(path.name, path.read_text("utf-8"))
+    machine = shipped_machine(MACHINE[source.dialect])
+    run = ReadProgram(source).begin(setup_for(machine, tools={1: ToolOffset()}, secondary={}))
+    found = [row(block, axes=axes) for block in run.blocks()]
+    told = [f"{d.severity} {d.line} {d.column} {d.code}" for d in run.diagnostics]
+    if any(text.startswith("error") for text in findings):
+        assert [text for text in told if text.startswith("error")] == findings
+        return
+    assert sorted(told) == sorted(findings)
+    for have, want in zip(found, blocks, strict=False):
+        assert same(have, want), f"{have}   but the table says   {' '.join(want)}"
+    assert len(found) == len(blocks)
+
+
+def test_each_language_has_programs_and_each_program_its_table() -> None:
+    assert {path.parent.name for path in FILES} == {"klartext", "sinumerik"}
+    assert sorted(path.stem for path in PROGRAMS.glob("*/*.expected")) == sorted(path.stem for path in FILES)

@@ -1,0 +1,77 @@
+"""The code book: what stands at the cursor, what typing may become, and the page that is printed from it."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.interpreter.dialects import code_book
+from core.language.source import Dialect
+
+OMNITURN, KLARTEXT, SINUMERIK = Dialect.OMNITURN, Dialect.KLARTEXT, Dialect.SINUMERIK
+
+
+@pytest.mark.parametrize(
+    ("dialect", "line", "column", "head"),
+    [
+        (KLARTEXT, "12 L X+10 Y+5 R0 FMAX M3", 5, "L"),
+        (KLARTEXT, "12 L X+10 Y+5 R0 FMAX M3", 17, "R0"),
+        (KLARTEXT, "12 L X+10 Y+5 R0 FMAX M3", 25, "M3"),
+        (KLARTEXT, "L X+10 M30", 10, "M30"),
+        (KLARTEXT, "cycl def 200 drilling ~", 3, "CYCL DEF 200"),
+        (KLARTEXT, "CYCL DEF 4.2 DEPTH -5", 12, "CYCL DEF 4"),
+        (KLARTEXT, "CYCL CALL POS X+3 Y+3 Z+0", 2, "CYCL CALL POS"),
+        (KLARTEXT, "  PLANE SPATIAL SPA+0 SPB+0 SPC+0 TURN", 1, "PLANE SPATIAL"),
+        (KLARTEXT, "Q5 = 3", 1, "Q"),
+        (SINUMERIK, "N10 G01 X20 Z-5 F.2", 6, "G1"),
+        (SINUMERIK, "N10 G1 X20 CR=5", 13, "CR"),
+        (SINUMERIK, "IF R1<3 GOTOB AGAIN", 12, "GOTOB"),
+        (OMNITURN, "G90G94F300", 5, "G94"),
+        (OMNITURN, "G4F2", 2, "G04"),
+    ],
+)
+def test_the_code_at_the_cursor(dialect: Dialect, line: str, column: int, head: str) -> None:
+    found = code_book(dialect).at(line, column)
+    assert found is not None
+    assert found.head == head
+
+
+@pytest.mark.parametrize(
+    ("dialect", "line", "column"),
+    [
+        (KLARTEXT, "L X+10 ; M3 and so on", 12),
+        (SINUMERIK, "; G1 is no code here", 5),
+        (OMNITURN, "(G01 IN WORDS)", 4),
+        (KLARTEXT, "", 1),
+        (SINUMERIK, "PART:", 2),
+    ],
+)
+def test_no_code_stands_there(dialect: Dialect, line: str, column: int) -> None:
+    assert code_book(dialect).at(line, column) is None
+
+
+@pytest.mark.parametrize(
+    ("dialect", "typed", "column", "heads"),
+    [
+        (KLARTEXT, "12 plane s", 4, ["PLANE SPATIAL"]),
+        (
+            KLARTEXT,
+            "CYCL DEF 20",
+            1,
+            [f"CYCL DEF {n}" for n in (200, 201, 202, 203, 205, 206, 207, 208, 209, 204, 20)],
+        ),
+        (KLARTEXT, "7 APPR PL", 3, ["APPR PLT", "APPR PLN", "APPR PLCT"]),
+        (OMNITURN, "G90G0", 4, ["G00", "G01", "G02", "G03", "G04"]),
+        (OMNITURN, "G90G4", 4, ["G04", "G40", "G41", "G42"]),
+        (SINUMERIK, "IF R1==2 GOTO", 10, ["GOTOF", "GOTOB", "GOTO", "GOTOS"]),
+    ],
+)
+def test_typing_is_completed_by_what_it_may_become(
+    dialect: Dialect, typed: str, column: int, heads: list[str]
+) -> None:
+    begin, found = code_book(dialect).completions(typed, len(typed) + 1)
+    assert (begin, [each.head for each in found]) == (column, heads)
+
+
+@pytest.mark.parametrize("typed", ["", "L X+10 ", "XYZ", "; M1"])
+def test_nothing_completes_a_blank_a_comment_or_what_begins_no_code(typed: str) -> None:
+    assert code_book(KLARTEXT).completions(typed, len(typed) + 1)[1] == ()
