@@ -112,6 +112,7 @@ class AutomaticPage(Page):
             return
         self._loaded = loaded
         lines: Sequence[str] = loaded.source.lines if loaded.source else _NO_LINES
+        self.listing.trouble = loaded.trouble
         self.listing.show_source(lines, {d.line: d.message for d in loaded.errors if d.line})
         scene = loaded.picture.scene if loaded.picture is not None else None
         self.space.show_scene(scene)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
 from typing import Any, NoReturn
 
 from app.desk.command_errors import EXIT_USAGE, CommandError
@@ -47,6 +48,32 @@ class Parser(argparse.ArgumentParser):
         self.register("action", None, _Once)
         self.register("action", "store", _Once)
 
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """A command, an action or a choice that is none is told with the nearest that is."""
+        if action.choices is not None and value not in action.choices:
+            near = get_close_matches(str(value), map(str, action.choices), n=1)
+            if near:
+                raise argparse.ArgumentError(action, f"invalid choice: {value!r}; did you mean {near[0]}?")
+        super()._check_value(action, value)
+
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As argparse does it; an option that nobody knows is told with the nearest that is one."""
+        found, rest = self.parse_known_args(args, namespace)
+        if rest:
+            near = get_close_matches(rest[0].partition("=")[0], self._all_options(), n=1)
+            meant = f"; did you mean {near[0]}?" if near else ""
+            self.error(f"unrecognized arguments: {' '.join(rest)}{meant}")
+        return found
+
+    def _all_options(self) -> list[str]:
+        """Those of this parser and of every command and action below it."""
+        found = [option for each in self._actions for option in each.option_strings]
+        for each in self._actions:
+            if isinstance(each, argparse._SubParsersAction):
+                for below in each.choices.values():
+                    found += below._all_options() if isinstance(below, Parser) else []
+        return found
+
     def error(self, message: str) -> NoReturn:
         """Ends with status 2."""
         self.exit(EXIT_USAGE, f"turndesk: {message}; see '{self.prog} --help'\n")
@@ -55,6 +82,12 @@ class Parser(argparse.ArgumentParser):
 def add_screen_options(parser: argparse.ArgumentParser) -> None:
     """Those of the screen, which may also stand before a command."""
     parser.add_argument("--version", action="store_true", help="print the version")
+    parser.add_argument(
+        "--demo", action="store_true", help="the screen with a store of its own: sample offsets to change"
+    )
+    parser.add_argument(
+        "--kiosk", action="store_true", help="the screen fills the panel, and nobody closes its window"
+    )
     texts = {
         "machine": "machine file (default: the shipped simulated lathe)",
         "program": "program that the screen loads at the start",
@@ -68,8 +101,13 @@ def add_screen_options(parser: argparse.ArgumentParser) -> None:
 def settled(args: argparse.Namespace) -> argparse.Namespace:
     """The arguments with the options before a command where they belong. Raises CommandError."""
     command = args.command
-    if args.version and (command or any(getattr(args, f"before_{name}") for name in BEFORE)):
+    if args.version and (
+        command or args.demo or args.kiosk or any(getattr(args, f"before_{name}") for name in BEFORE)
+    ):
         raise CommandError("--version stands alone")
+    for name in ("demo", "kiosk"):
+        if command and getattr(args, name):
+            raise CommandError(f"--{name} opens the screen; leave it out before {command}")
     for name in BEFORE:
         before = getattr(args, f"before_{name}")
         if not command:

@@ -37,7 +37,7 @@ def run(args: argparse.Namespace) -> int:
     figures = importlib.import_module(f"app.cli.{source.dialect}_figures")
     if not args.json:
         sys.stdout.write(figures.HEAD)
-    with Progress(f"expanding {path.name}") as progress:
+    with Progress(f"expanding {path.name}", len(source.lines)) as progress:
         for block, t0, t1 in timed_blocks(timeline):
             if args.json:
                 text = json.dumps(figures.block_json(block, source.lines[block.line - 1], t0, t1)) + "\n"

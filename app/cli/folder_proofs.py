@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli.fitting_jobs import FittingJobs, on_machine
 from app.cli.part_options import with_kept
 from app.cli.program_files import ProgramFiles, program_files
 from app.cli.program_options import read_source
@@ -30,12 +31,12 @@ if TYPE_CHECKING:
     from core.proving.part_proof import PartSetting
 
 
-def prove_many(args: argparse.Namespace, job: ProofJob) -> int:
+def prove_many(args: argparse.Namespace, jobs: FittingJobs) -> int:
     """Prove all programs; 1 when any has errors, 2 when one cannot be read."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     files = program_files(args.files)
     with report_file(args) as report:
-        run = _Run(args, job, files, _workers(args), report)
+        run = _Run(args, jobs, files, _workers(args), report)
         run.prove()
     return run.outcome()
 
@@ -56,23 +57,25 @@ class _Unit:
     source: Source
     job: ProofJob
     key: str
+    cache: ProofCache | None
 
 
 class _Run:
     """One call: what is proved, and what has been told of it."""
 
     def __init__(
-        self, args: argparse.Namespace, job: ProofJob, files: ProgramFiles, workers: WorkerSource,
+        self, args: argparse.Namespace, jobs: FittingJobs, files: ProgramFiles, workers: WorkerSource,
         report: ReportFile | None,
     ) -> None:  # fmt: skip
         from app.desk.data_folder import data_folder
 
-        self._args, self._job, self._files, self._workers = args, job, files, workers
+        self._args, self._jobs, self._files, self._workers = args, jobs, files, workers
         self._report = report
         names = (path.name for path in files.paths)
         self._kept_parts = kept_with_all(names)
         self._version = code_version() if args.scheduler is not None else ""  # our own workers have ours
-        self._cache = None if args.no_cache else ProofCache(data_folder() / "proofs", job)
+        self._folder = data_folder() / "proofs"
+        self._caches: dict[str, ProofCache] = {}  # by machine
         self._proofs: dict[int, Proof] = {}
         self._told = 0
         self._progress = Progress("proving", len(files.paths))
@@ -91,8 +94,8 @@ class _Run:
             ) from error
         finally:
             results.close()
-            if self._cache is not None:
-                self._cache.trim()
+            for cache in self._caches.values():
+                cache.trim()
 
     def outcome(self) -> int:
         """The table or what is left to say, and the exit status."""
@@ -112,30 +115,40 @@ class _Run:
         for index, path in enumerate(self._files.paths):
             try:
                 source = read_source(path, self._args)
-                job = self._job_of(source)
+                machine = self._jobs.machine_of(source)
+                common = self._jobs.of(machine)
+                job = self._job_of(source, common)
             except CommandError as error:
                 self._add(index, Proof({}, fault=str(error)))
                 continue
-            own = _own(job.setting) if job is not self._job else None
-            key = self._cache.key(source, own) if self._cache is not None else ""
-            found = self._cache.find(key) if self._cache is not None else None
+            cache, own = self._cache_of(machine, common), _own(job.setting) if job is not common else None
+            key = cache.key(source, own) if cache is not None else ""
+            found = cache.find(key) if cache is not None else None
             if found is not None:
                 self._add(index, found)
             else:
-                yield _Unit(index, source, job, key)
+                yield _Unit(index, source, job, key, cache)
 
-    def _job_of(self, source: Source) -> ProofJob:
+    def _cache_of(self, machine: str, job: ProofJob) -> ProofCache | None:
+        """What is kept of proofs on this machine; a machine that was not named is told once."""
+        if machine not in self._caches:
+            if machine:
+                sys.stderr.write(on_machine("what is Klartext", machine))
+            self._caches[machine] = ProofCache(self._folder, job)
+        return None if self._args.no_cache else self._caches[machine]
+
+    def _job_of(self, source: Source, common: ProofJob) -> ProofJob:
         """The job of all, or with what the store keeps of the part of this program."""
         kept = self._kept_parts.get(source.name)
         if kept is None:
-            return self._job
-        return replace(self._job, setting=with_kept(self._job.setting, source.name, kept, self._args))
+            return common
+        return replace(common, setting=with_kept(common.setting, source.name, kept, self._args))
 
     def _kept(self, unit: _Unit, made: Proof | BaseException) -> Proof:
         if isinstance(made, BaseException):
             return Proof({}, fault=f"{self._files.paths[unit.index]}: {self._why(made)}")
-        if self._cache is not None:
-            self._cache.keep(unit.key, made)
+        if unit.cache is not None:
+            unit.cache.keep(unit.key, made)
         return made
 
     def _why(self, error: BaseException) -> str:

@@ -27,7 +27,11 @@ COMMANDS = (
     "serial",
     "alarms",
     "parts",
+    "jobs",
+    "shift",
     "scope",
+    "setup",
+    "profile",
 )
 
 NO_DISPLAY = """\
@@ -106,9 +110,15 @@ def _screen(args: argparse.Namespace) -> int:
 
     if why := trouble():
         raise CommandError(f"the screen cannot be opened: {why}. {WITHOUT}")
+    program = args.program
+    if args.demo:
+        from app.compose.demo_store import demo_program, open_demo
+
+        open_demo(args.machine)
+        program = program or demo_program()
     from app.screen.run_screen import run_screen
 
-    return run_screen(machine=args.machine, program=args.program, offsets=args.offsets)
+    return run_screen(machine=args.machine, program=program, offsets=args.offsets, kiosk=args.kiosk)
 
 
 def console() -> int:

@@ -13,6 +13,7 @@ from app.cli.store_command import opened_store
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.command_errors import EXIT_OK, CommandError
 from app.desk.toml_file import unknown
+from app.offsets.offset_values import stated_fields
 from app.offsets.offsets_file import ALIASES, TOOL_KEYS, out_of_range, shown
 from core.store.offset_fields import MM_PER_INCH, Field, Sort
 from core.store.store_rows import (
@@ -21,6 +22,8 @@ from core.store.store_rows import (
     ZERO_CODES,
     Change,
     Kind,
+    MillRow,
+    PresetRow,
     Row,
     ShapeRow,
     ToolRow,
@@ -29,15 +32,34 @@ from core.store.store_rows import (
     inches,
     with_fields,
 )
+from core.tool_edges import edge_key, edge_name
 
 if TYPE_CHECKING:
     from core.store.store import Store
 
 
 _OFFSET = re.compile(r"([TDG])0*(\d{1,4})", re.IGNORECASE)
+_EDGE = re.compile(r"T0*(\d{1,2})\s*D([1-9])", re.IGNORECASE)
+_OF_MILL = re.compile(r"(TOOL|PRESET)0*(\d{1,4})", re.IGNORECASE)
 _KIND = {"T": Kind.TOOL, "D": Kind.SECONDARY, "G": Kind.ZERO}
-_LETTER = {**{kind: letter for letter, kind in _KIND.items()}, Kind.SHAPE: "T"}
+_MILL_KIND = {"TOOL": Kind.MILL_TOOL, "PRESET": Kind.PRESET}
+_LETTER = {
+    **{kind: letter for letter, kind in _KIND.items()},
+    Kind.SHAPE: "T",
+    Kind.MILL_TOOL: "TOOL",
+    Kind.PRESET: "PRESET",
+}
+_NAMES = "T1…T32 (T1D2 its second edge), D1…D32 or G54…G59; of a mill TOOL1…TOOL999 or PRESET1…PRESET99"
+_CLEARED = {"T": "tool offsets", "D": "secondary offsets", "G": "zero offsets"}
 NO_SHAPE = "none"  # kind=none takes the shape of a tool away
+_SUCH = {Kind.ZERO: "z=-120", Kind.MILL_TOOL: "L=80.5", Kind.PRESET: "x=100"}
+_ALIASES = {
+    Kind.TOOL: ALIASES,
+    **{
+        kind: {field.word.lower(): name for name, field in FIELDS[kind].items()}
+        for kind in _MILL_KIND.values()
+    },
+}
 _FLAGS = {"1": True, "yes": True, "true": True, "0": False, "no": False, "false": False}
 
 
@@ -52,7 +74,7 @@ def _show(args: argparse.Namespace) -> int:
         }
         sys.stdout.write(json.dumps(told) + "\n")
         return EXIT_OK
-    lines = [_line(f"{_LETTER[kind]}{n}", row) for kind, table in rows.items() for n, row in table.items()]
+    lines = [_line(_name(kind, n), row) for kind, table in rows.items() for n, row in table.items()]
     sys.stdout.write("".join(f"{line}\n" for line in lines) or "no offsets are set\n")
     return EXIT_OK
 
@@ -70,6 +92,8 @@ def _line(name: str, row: Row) -> str:
         return f"{name:<3} {_shape(row)}"
     if isinstance(row, ZeroRow):
         return f"{name} X {row.x:+.3f}  Z {row.z:+.3f} mm  C {row.c:+.3f}°"
+    if isinstance(row, MillRow | PresetRow):
+        return f"{name:<4} {stated_fields(row)}  (mill, mm)"
     r = row.nose_radius if isinstance(row, ToolRow) else row.r
     x, z, r = inches(row.x), inches(row.z), inches(r)
     line = f"{name:<3} X {x:+.5f}  Z {z:+.5f}  R {r:.5f}"
@@ -115,7 +139,7 @@ def _set(args: argparse.Namespace) -> int:
             store.remove_shape(number, **reason).result()
         elif shape:
             rows.append(store.set_offset(Kind.SHAPE, number, values=shape, **reason).result())
-    name = f"{_LETTER[kind]}{number}"
+    name = _name(kind, number)
     sys.stdout.write("".join(f"{_line(name, row)}\n" for row in rows) or f"{name} has no shape\n")
     return EXIT_OK
 
@@ -127,24 +151,38 @@ def _check_shape(store: Store, number: int, shape: dict[str, Value], offset: dic
     row = with_fields(store.shapes().get(number, ShapeRow()), shape)
     if not row.kind:
         kinds = FIELDS[Kind.SHAPE]["kind"].range
-        raise CommandError(f"T{number} has no shape yet; give its kind too: kind= one of {kinds}")
+        raise CommandError(f"{edge_name(number)} has no shape yet; give its kind too: kind= one of {kinds}")
     tools = store.tools()
     if offset and number not in tools and not {"x", "z"} <= offset.keys():
-        text = f"T{number} was never set, and {' and '.join(offset)} would stand beside an offset of 0"
+        text = (
+            f"{edge_name(number)} was never set, and {' and '.join(offset)} would stand beside an offset of 0"
+        )
         raise CommandError(f"{text}; give x and z too, or touch it off first")
     tool = with_fields(tools.get(number, ToolRow()), offset)
     if mistakes := row_mistakes(row, tool):
-        raise CommandError(f"T{number}: " + "; ".join(f"{wrong.field}: {wrong.text}" for wrong in mistakes))
+        raise CommandError(
+            f"{edge_name(number)}: " + "; ".join(f"{wrong.field}: {wrong.text}" for wrong in mistakes)
+        )
+
+
+def _name(kind: Kind, number: int) -> str:
+    return edge_name(number) if _LETTER[kind] == "T" else f"{_LETTER[kind]}{number}"
 
 
 def _named(text: str) -> tuple[Kind, int]:
+    of_mill = _OF_MILL.fullmatch(text)
+    if of_mill:
+        return _MILL_KIND[of_mill[1].upper()], int(of_mill[2])  # the store tells which there are
+    edge = _EDGE.fullmatch(text)
+    if edge and int(edge[1]) in OFFSETS:
+        return Kind.TOOL, edge_key(int(edge[1]), int(edge[2]))
     match = _OFFSET.fullmatch(text)
     kind = _KIND[match[1].upper()] if match else Kind.TOOL
     if match and int(match[2]) in (ZERO_CODES if kind is Kind.ZERO else OFFSETS):
         return kind, int(match[2])
     if match and kind is Kind.ZERO:
         raise CommandError(f"{text} is no settable offset; name G54…G59")
-    raise CommandError(f"{text} is no offset; name T1…T32, D1…D32 or G54…G59")
+    raise CommandError(f"{text} is no offset; name {_NAMES}")
 
 
 def _values(kind: Kind, entries: list[str]) -> dict[str, Value]:
@@ -154,10 +192,11 @@ def _values(kind: Kind, entries: list[str]) -> dict[str, Value]:
         key, equals, text = entry.partition("=")
         key = key.strip().lower()
         if not equals:
-            such = "z=-120" if kind is Kind.ZERO else "x=1.25"
+            such = _SUCH.get(kind, "x=1.25")
             raise CommandError(f"{entry} sets nothing; write KEY=VALUE, such as {such}")
         fields = TOOL_KEYS if kind is Kind.TOOL else FIELDS[kind]
-        field = fields.get(ALIASES.get(key, key) if kind is Kind.TOOL else key)
+        aliases = _ALIASES.get(kind, {})
+        field = fields.get(aliases.get(key, key))
         if field is None:
             raise CommandError(unknown(key, fields))
         if field.name in values:
@@ -170,8 +209,8 @@ def _entered(field: Field, text: str) -> Value:
     value = _value(field, text)
     if field.choices:
         return _chosen(field, str(value).lower())
-    if field.sort in {Sort.METRIC, Sort.ANGLE}:
-        return value  # of a zero offset: the store tells its range
+    if field.sort in {Sort.METRIC, Sort.ANGLE, Sort.MINUTES}:
+        return value  # of a zero offset, or of a mill: the store tells its range
     if mistake := out_of_range(field, value):
         raise CommandError(f"{field.name} = {shown(_typed(field, value))} {mistake}")
     return value
@@ -208,9 +247,22 @@ def _value(field: Field, text: str) -> Value:
 
 
 def _clear(args: argparse.Namespace) -> int:
+    """One offset, or a whole table; as one step, which can be taken back."""
+    letter = args.offset.upper()
     with opened_store() as store:
-        count = store.clear_offsets(Kind.SECONDARY, args.why, who="command line").result()
-    sys.stdout.write(f"secondary offsets cleared: {count}; 'turndesk offsets undo' brings them back\n")
+        if letter in {**_KIND, **_MILL_KIND}:
+            count = store.clear_offsets(
+                {**_KIND, **_MILL_KIND}[letter], args.why, who="command line"
+            ).result()
+        else:
+            kind, number = _named(args.offset)
+            count = store.remove_offset(kind, number, args.why, who="command line").result()
+            letter = _name(kind, number)
+    if not count:
+        sys.stdout.write(f"{letter} was not set: nothing to clear\n")
+    else:
+        told = _CLEARED.get(letter, letter)
+        sys.stdout.write(f"{told} cleared: {int(count)}; 'turndesk offsets undo' brings them back\n")
     return EXIT_OK
 
 
@@ -218,7 +270,11 @@ def _history(args: argparse.Namespace) -> int:
     if args.limit < 1:
         raise CommandError(f"--limit {args.limit} shows nothing; give 1 or more")
     with opened_store(read_only=True) as store:
-        changes = store.history(Kind(args.table) if args.table else None, limit=args.limit)
+        changes = (
+            store.history(Kind(args.table), limit=args.limit)
+            if args.table
+            else store.history_of_all(limit=args.limit)
+        )
     if args.json:
         sys.stdout.write(json.dumps([_change(change) for change in changes]) + "\n")
     else:
@@ -239,14 +295,19 @@ def _change(change: Change) -> dict[str, object]:
 def _told(change: Change) -> str:
     """One change for a person to read."""
     sides = ["not set" if row is None else _line("", row).strip() for row in (change.old, change.new)]
-    name = f"{_LETTER[change.kind]}{change.number}"
+    name = _name(change.kind, change.number)
     return f"{change.at}  {name:<3} {' → '.join(sides)}  {change.why} ({change.who})"
 
 
 def _undo(args: argparse.Namespace) -> int:
     with opened_store() as store:
-        kind = Kind(args.table) if args.table else None
-        changes = store.undo_offset(args.why, kind=kind, who="command line").result()
+        who = "command line"
+        undone = (
+            store.undo_offset(args.why, kind=Kind(args.table), who=who)
+            if args.table
+            else store.undo_last(args.why, who=who)
+        )
+        changes = undone.result()
     sys.stdout.write("".join(f"{_told(change)}\n" for change in changes))
     return EXIT_OK
 

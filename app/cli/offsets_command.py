@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
     parser = subparsers.add_parser(
-        "offsets", help="show and change tool and secondary offsets and tool shapes"
+        "offsets", help="show and change offsets, tool shapes, tools and presets of a mill"
     )
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     show = actions.add_parser("show", help="all offsets that are set")
@@ -24,7 +24,7 @@ def add_parser(subparsers: SubParsers) -> None:
         help="set T3 x=1.25 wear_x=-.0005 quadrant=3, T3 kind=turning insert=CNMG432, "
         "or D4 x=-.0005 (a radius, as stored)",
     )
-    change.add_argument("offset", metavar="T3|D4|G54")
+    change.add_argument("offset", metavar="T3|D4|G54|TOOL20|PRESET3")
     change.add_argument(
         "values",
         metavar="KEY=VALUE",
@@ -33,10 +33,11 @@ def add_parser(subparsers: SubParsers) -> None:
         "T: x z nose_radius wear_x wear_z quadrant remark master, and its shape: "
         "kind hand insert holder width diameter point stick_out length pitch flutes entry rear profile "
         "(kind=none: no shape); D: x z r; "
-        "G54 to G59 in mm and degrees: x z c",
+        "G54 to G59 in mm and degrees: x z c; of a mill, mm, degrees and minutes, TOOL: "
+        "name L R R2 DL DR DR2 cut t-angle time2 stop, PRESET: x y z a b c rot doc",
     )
-    clear = actions.add_parser("clear", help="clear D: all secondary offsets")
-    clear.add_argument("table", metavar="D", choices=("D",), type=str.upper)
+    clear = actions.add_parser("clear", help="clear T3, D4 or G54: that one; T, D or G: all of them")
+    clear.add_argument("offset", metavar="T|T3|D|D4|G|G54")
     history = actions.add_parser("history", help="every change, newest first")
     history.add_argument("--limit", type=int, default=100, metavar="N", help="default: 100")
     _add_table(history)
@@ -53,7 +54,7 @@ def _add_table(parser: argparse.ArgumentParser) -> None:
         "table",
         nargs="?",
         choices=[kind.value for kind in Kind],
-        help="only of these; without it tool and secondary offsets together",
+        help="only of these; without it all tables together",
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
 
     SubParsers = argparse._SubParsersAction[argparse.ArgumentParser]
+
+STDIN = "stdin"  # how a program that comes from there is called
 
 
 def add_program_options(parser: argparse.ArgumentParser) -> None:
@@ -50,17 +53,14 @@ class Circumstances:
 
 def circumstances(args: argparse.Namespace) -> Circumstances:
     """Read machine, offsets and inputs that the options name; raises CommandError with one sentence."""
-    from app.compose.machine_setup import read_machine, setup_for
-    from app.compose.stored_offsets import chosen_offsets
+    from app.compose.machine_setup import read_machine
+    from app.compose.stored_offsets import chosen_offsets, setup_with
 
     machine = read_machine(args.machine)
-    tools, secondary, zero = chosen_offsets(args.offsets)()
     inputs = input_states(args.inputs, machine.inputs)
-    setup = setup_for(
+    setup = setup_with(
         machine,
-        tools=tools,
-        secondary=secondary,
-        zero=zero,
+        chosen_offsets(args.offsets)(),
         inputs=inputs,
         block_delete=args.block_delete,
         strict=args.strict,
@@ -78,15 +78,19 @@ def input_states(path: str | None, known: Collection[str] = ()) -> dict[str, boo
 
 
 def read_source(path: Path, args: argparse.Namespace) -> Source:
-    """The program text; raises CommandError when the file cannot be read."""
-    from core.language.source import SourceError, load_source
+    """The program text; ``-`` is what comes in at stdin. Raises CommandError when it cannot be read."""
+    from core.language.source import SourceError, load_source, source_of
 
     dialect = Dialect(args.dialect) if args.dialect else dialect_of(path.name)
     for option, what in (("strict", "they have no tolerated lines"), ("inputs", "they ask no inputs")):
         if getattr(args, option) and dialect is not Dialect.OMNITURN:
             raise CommandError(f"{path}: --{option} is for OmniTurn programs alone; in {dialect} {what}")
     try:
-        source = load_source(path, dialect)
+        source = (
+            source_of(STDIN, sys.stdin.buffer.read(), dialect)
+            if path == Path("-")
+            else load_source(path, dialect)
+        )
     except SourceError as error:
         # The screen calls a program by its name; a script that proves many needs the folder too.
         raise CommandError(str(error).replace(path.name, str(path), 1)) from error

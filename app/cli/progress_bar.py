@@ -12,7 +12,10 @@ WIDTH = 30
 
 
 class Progress:
-    """Counts towards ``total`` (0: unknown) and draws itself on stderr once the work takes long."""
+    """Counts towards ``total`` (0: unknown) and draws itself on stderr once the work takes long.
+
+    What goes beyond its total, such as blocks beyond the lines of a program with loops, is counted alone.
+    """
 
     def __init__(self, what: str, total: float = 0.0) -> None:
         self.what = what
@@ -42,8 +45,9 @@ class Progress:
 
     def text(self, done: float) -> str:
         """The bar as it stands after ``done``."""
-        if self.total <= 0:
+        if not 0 < done <= self.total:
             return f"{self.what}: {done:,.0f}"
-        share = min(1.0, done / self.total)
+        share = done / self.total
         filled = round(share * WIDTH)
-        return f"{self.what} [{'█' * filled}{'·' * (WIDTH - filled)}] {share:4.0%}"
+        bar = f"{'█' * filled}{'·' * (WIDTH - filled)}"
+        return f"{self.what} [{bar}] {share:4.0%} of {self.total:,.0f}"

@@ -19,10 +19,12 @@ from app.cli.program_options import (
 )
 from app.cli.progress_bar import Progress
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
+from core.tool_edges import edge_name
 
 MOST_JOBS = 256
 
 if TYPE_CHECKING:
+    from app.cli.fitting_jobs import FittingJobs
     from app.cli.program_options import SubParsers
     from app.cli.proof_job import OtherOffsets, ProofJob
     from app.cli.proof_work import Findings
@@ -73,21 +75,26 @@ def _count(word: str) -> int:
 def run(args: argparse.Namespace) -> int:
     """Prove each file; 1 when any has errors, 2 when one cannot be read."""
     many = _for_workers(args)
-    job = _job(args)
+    from app.cli.fitting_jobs import FittingJobs
+
+    jobs = FittingJobs(args, _job)
+    jobs.of("")  # what is wrong with the options is told before anything is proved
     if many:
         from app.cli.folder_proofs import prove_many
 
-        return prove_many(args, job)
+        return prove_many(args, jobs)
     from app.cli.report_file import report_file
 
     with report_file(args) as report:
-        return max(_status(Path(name), job, args, report) for name in args.files)
+        return max(_status(Path(name), jobs, args, report) for name in args.files)
 
 
 def _for_workers(args: argparse.Namespace) -> bool:
     """Whether workers are to prove and a table is to tell: for a folder, or because an option says so."""
     given = args.jobs is not None or args.scheduler is not None
     many = given or any(Path(name).is_dir() for name in args.files)
+    if "-" in args.files and (many or len(args.files) > 1):
+        raise CommandError("- (stdin) is one program, proved here: name it alone, without folders and --jobs")
     if args.no_cache and not many:
         raise CommandError("--no-cache is for folders and --jobs; one program is always proved anew")
     if args.keep_stock and many:
@@ -119,17 +126,22 @@ def _other(args: argparse.Namespace, setup: Setup) -> OtherOffsets | None:
     from app.cli.proof_job import OtherOffsets
     from app.compose.stored_offsets import read_offsets
 
-    tools, secondary, zero = read_offsets(Path(args.compare))
+    tools, secondary, zero, _ = read_offsets(Path(args.compare))
     return OtherOffsets(args.compare, replace(setup, tools=tools, secondary=secondary, zero=zero))
 
 
-def _status(path: Path, job: ProofJob, args: argparse.Namespace, report: ReportFile | None) -> int:
+def _status(path: Path, jobs: FittingJobs, args: argparse.Namespace, report: ReportFile | None) -> int:
     """Prove one file; one that cannot be read does not keep the others from their proof."""
+    from app.cli.fitting_jobs import on_machine
     from app.cli.part_options import with_kept_stock
     from app.cli.proof_work import Proof
 
     try:
         source = read_source(path, args)
+        name = jobs.machine_of(source)
+        if name:
+            sys.stderr.write(on_machine(path.name, name))
+        job = jobs.of(name)
         job = replace(job, setting=with_kept_stock(job.setting, source.name, args))
     except CommandError as error:
         sys.stderr.write(f"turndesk: {error}\n")
@@ -146,7 +158,7 @@ def _prove(path: Path, source: Source, job: ProofJob, args: argparse.Namespace) 
     from app.cli.proof_json import report_json, stops_of
     from app.cli.proof_work import findings
 
-    with Progress(f"proving {path.name}") as progress:
+    with Progress(f"proving {path.name}", len(source.lines)) as progress:
         found = findings(job, source, progress.reach)
     report, part, _, compare = found
     if args.json:
@@ -203,7 +215,7 @@ def _sheet(path: Path, report: Report, part: PartReport | None) -> str:
     findings = "".join(f"{d.in_one_line(str(path))}\n" for d in report.diagnostics)
     times, reach = report.times, report.reach
     slow, fast = (per_minute(speed) * scale for speed in reach.feed)
-    tools = " ".join(f"T{n}" for n in report.tools) or "no tool"
+    tools = " ".join(edge_name(n) for n in report.tools) or "no tool"
     count = len(report.errors)
     verdict = f"{count} error{'s' * (count > 1)}: will not run" if count else "proved"
     return findings + (

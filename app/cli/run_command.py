@@ -19,6 +19,7 @@ from app.cli.program_options import (
 )
 from app.cli.progress_bar import Progress
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
+from core.tool_edges import edge_name
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -61,8 +62,12 @@ def run(args: argparse.Namespace) -> int:
     if report.errors:
         return _refused(args, f"{path} has {len(report.errors)} errors and will not run", report)
     if report.missing_tools:
-        names = ", ".join(f"T{n}" for n in report.missing_tools)
+        names = ", ".join(edge_name(key) for key in report.missing_tools)
         why = f"{path}: no offset was ever set for {names}; set it with: turndesk offsets set, or --offsets"
+        return _refused(args, why, report)
+    unanswered = [need for need in report.needs if need.builders_m]
+    if unanswered:
+        why = f"{path} line {unanswered[0].line}: nothing on this machine answers {unanswered[0].words}"
         return _refused(args, why, report)
     return _run(args, around, job, report)
 
@@ -80,7 +85,8 @@ def _proved(args: argparse.Namespace, around: Circumstances, job: Job) -> Report
 
 def _run(args: argparse.Namespace, around: Circumstances, job: Job, report: Report) -> int:
     from app.cli.machine_command import demand_accepted
-    from app.compose.headless_run import EventLog, headless
+    from app.compose.headless_run import headless
+    from app.compose.run_log import EventLog
     from app.compose.workshop import proof_of
 
     demand_accepted(around.machine)

@@ -26,7 +26,7 @@ def add_parser(subparsers: SubParsers) -> None:
         ("backup", "FILE", "copy the whole store to FILE, also while it is in use"),
         ("restore", "FILE", "put a backup in the store's place; the replaced store is kept beside it"),
         ("export", "DIR", "write programs, offsets.toml, and events, runs and measured parts as CSV"),
-        ("import", "DIR", "take the programs and offsets of an exported folder"),
+        ("import", "DIR", "take programs, offsets, tools and presets of an exported folder"),
     ):
         actions.add_parser(name, help=text).add_argument("path", metavar=what)
     verify = actions.add_parser("verify", help="look at every page, reference and program text")
@@ -95,6 +95,7 @@ def _export(args: argparse.Namespace) -> int:
 def _import(args: argparse.Namespace) -> int:
     from app.offsets.offsets_file import read_rows, read_shape_rows
     from core.store import store_export
+    from core.store.store_rows import Kind
 
     folder = Path(args.path)
     offsets_file = folder / store_export.OFFSETS
@@ -102,8 +103,11 @@ def _import(args: argparse.Namespace) -> int:
     shapes = read_shape_rows(offsets_file) if offsets_file.exists() else {}
     with opened_store() as store:
         programs = store_export.program_files(folder)
-        store.import_all(programs, tools, secondary, f"import of {folder.name}", zero, shapes).result()
+        mill, why = store_export.mill_rows(folder), f"import of {folder.name}"
+        store.import_all(programs, tools, secondary, why, zero, shapes, mill).result()
     counts = f"{len(programs)}, tool offsets: {len(tools)}, secondary offsets: {len(secondary)}"
+    if any(mill.values()):
+        counts += f", tools of a mill: {len(mill[Kind.MILL_TOOL])}, presets: {len(mill[Kind.PRESET])}"
     sys.stdout.write(f"taken from {folder}: programs: {counts}\n")
     return EXIT_OK
 

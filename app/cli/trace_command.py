@@ -13,7 +13,7 @@ from app.cli.expand_command import report_diagnostics
 from app.cli.program_options import add_program_options, circumstances, read_source
 from app.cli.progress_bar import Progress
 from app.desk.command_errors import CommandError
-from core.language.source import Dialect
+from core.language.source import Dialect, Source
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -56,9 +56,9 @@ def run(args: argparse.Namespace) -> int:
     timeline = Timeline.of(source, around.setup, around.machine)
     table = _Table(around.machine, inch=source.dialect is Dialect.OMNITURN)
     if args.out is None:
-        _write(timeline, table, args.dt, sys.stdout.write, path)
+        _write(timeline, table, args.dt, sys.stdout.write, source)
     else:
-        _write_file(timeline, table, args, path)
+        _write_file(timeline, table, args, source)
     if args.json:
         _write_json(timeline, args, path)
     return report_diagnostics(path, timeline)
@@ -99,13 +99,13 @@ class _Table:
         return f"{t:.6f},{axes},{turned:.4f},{line}\n"
 
 
-def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, path: Path) -> None:
+def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, source: Source) -> None:
     """Whole or not at all: a program with errors leaves no setpoints behind, nor does a full disk."""
     out = Path(args.out)
     partial = out.with_name(out.name + ".part")
     try:
         with partial.open("w", encoding="ascii", newline="") as file:
-            _write(timeline, table, args.dt, file.write, path)
+            _write(timeline, table, args.dt, file.write, source)
         if timeline.errors:
             partial.unlink()
         else:
@@ -114,12 +114,17 @@ def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, pat
         raise CommandError(f"{out}: cannot be written: {error.strerror}") from error
 
 
-def _write(timeline: Timeline, table: _Table, dt: float, write: Callable[[str], object], path: Path) -> None:
+def _write(
+    timeline: Timeline, table: _Table, dt: float, write: Callable[[str], object], source: Source
+) -> None:
+    """Its progress is in lines: how long a program takes is known when it has been gone through."""
     from core.proving.setpoint_trace import setpoints
 
     write(table.header)
-    with Progress(f"tracing {path.name}") as progress:
+    furthest = 0
+    with Progress(f"tracing {source.name}", len(source.lines)) as progress:
         for chunk in setpoints(timeline, dt):
             write("".join(table.row(*row) for row in chunk))
             if chunk:
-                progress.reach(chunk[-1][0])
+                furthest = max(furthest, chunk[-1][3])  # a loop goes back
+                progress.reach(furthest)

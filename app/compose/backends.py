@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 
 from app.compose.backend_entry import Connected, backend_of, has_station, played
@@ -15,6 +16,8 @@ from drivers.feeder.feeder_client import FeederHands, Line, feeder_ports
 from drivers.feeder.feeder_links import LoopLink
 from drivers.feeder.feeder_server import Feeder
 
+FEEDER = os.name == "posix"  # elsewhere a simulated machine lives in the control's own process
+
 
 def connect(machine: Machine, clock: Clock) -> Connected:
     """Everything the executor needs. Raises DriverError for what does not answer."""
@@ -23,7 +26,8 @@ def connect(machine: Machine, clock: Clock) -> Connected:
 
 def _connected(machine: Machine, clock: Clock) -> Connected:
     backend = backend_of(machine)
-    if backend.connect is not None and not (backend.driven is not None and machine.hardware.feeder):
+    apart = backend.driven is not None and machine.hardware.feeder and FEEDER
+    if backend.connect is not None and not apart:
         return backend.connect(machine, clock)
     line, close = _line(machine, clock)
     try:

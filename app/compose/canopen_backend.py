@@ -171,7 +171,16 @@ def can_driven(machine: Machine, clock: Clock) -> Driven:
         panel = PanelStation(clock, ports.io.inputs, wired)
         hands, ports = hands or panel, replace(ports, station=panel)
     if peers is None:
-        return Driven(ports, owned.tick, owned.close, hands, owned.wake, owned.notes)
+        return Driven(
+            ports,
+            owned.tick,
+            owned.close,
+            hands,
+            wake=owned.wake,
+            notes=owned.notes,
+            idle=owned.idle,
+            asked=lambda: owned.asked,
+        )
 
     def tick() -> None:
         peers.pump()

@@ -6,22 +6,25 @@ from collections.abc import Callable
 from pathlib import Path
 
 from app.compose.program_transfer import PLAIN, SerialLines, proving
-from app.desk.data_folder import data_folder
+from app.desk.data_folder import BACKUPS, data_folder
 from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.persistence import Persistence
 from app.desk.program_loading import LoadingSteps
 from app.desk.screen_settings import SettingsBook
+from app.jobs.jobs_function import JobsFunction
 from app.programs.folder_chooser import FolderChooser
 from app.programs.import_export import ImportExport
 from app.programs.preview import DrawThumbnail, Preview
 from app.programs.program_list import ProgramList
 from app.programs.run_history import RunHistory
 from app.quality.parts_function import MeasuredPartsFunction
+from app.quality.shift_function import ShiftReport
 from app.scope.scope_function import ScopeFunction
 from app.special.backup_and_restore import BackupAndRestore
 from app.special.drive_status import DriveStatus
 from app.special.inputs_outputs import InputsOutputs
+from app.special.lamps_and_sound import DeskSounds, LampsAndSound
 from app.special.logged_events import LoggedEvents
 from app.special.machine_file_acceptance import MachineFileAcceptance
 from app.special.part_count import PartCounter
@@ -31,14 +34,17 @@ from app.special.setup_sheet_function import SetupSheetFunction
 from app.special.special_functions import SpecialFunction, SpecialFunctions
 from app.special.spindle_limit import SpindleSpeedLimit
 from app.transfer.serial_transfer import SerialTransfer
+from core.machine.backup_table import BackupTable
 from core.machine.machine_model import Machine
 from core.machine.serial_table import DncModel
 
 MakeFunction = Callable[[Desk, Machine, Persistence, Latest], SpecialFunction]
 
 
-def _backup(desk: Desk, _machine: Machine, persistence: Persistence, worker: Latest) -> SpecialFunction:
-    backup = BackupAndRestore(desk, persistence, worker, data_folder() / "backups")
+def _backup(desk: Desk, machine: Machine, persistence: Persistence, worker: Latest) -> SpecialFunction:
+    table = machine.hardware.table(BackupTable)
+    daily = Path(table.folder) if table is not None and table.folder else None
+    backup = BackupAndRestore(desk, persistence, worker, data_folder() / BACKUPS, daily=daily)
 
     def restored() -> None:
         desk.settings.reload()
@@ -97,6 +103,12 @@ def furnish(
     functions.append(_setup_sheet(desk, machine, persistence, worker))
     functions.append(ScopeFunction(desk))
     functions.append(MeasuredPartsFunction(desk))
+    functions.append(JobsFunction(desk))
+    functions.append(ShiftReport(desk, machine.name, worker, data_folder() / "sheets"))
+    sounds = DeskSounds(desk, persistence)
+    desk.attach(sounds)
+    desk.hears = sounds.see
+    functions.append(LampsAndSound(desk, machine, sounds))
     desk.attach(SpecialFunctions(functions, worker))
     desk.attach(_files(desk, persistence, Preview(workshop, thumbnail), own))
 

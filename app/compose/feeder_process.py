@@ -1,4 +1,4 @@
-"""Starts the feeder, and is it: ``python -m app.compose.feeder_process FD ZERO``, machine on stdin."""
+"""Starts the feeder, and is it: ``python -m app.compose.feeder_process FD ZERO BELL``, machine on stdin."""
 
 from __future__ import annotations
 
@@ -13,13 +13,15 @@ from app.compose.backend_entry import backend_of
 from app.compose.inverter_backend import has_inverter, with_inverter
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError
+from drivers.canopen.canopen_table import CYCLIC, EVENED_OUT, CanopenTable
 from drivers.clocks import RealClock
 from drivers.feeder.feeder_client import Line, Link, cleared
 from drivers.feeder.feeder_links import SocketLink
-from drivers.feeder.feeder_loop import keep_memory, real_time, serve
-from drivers.feeder.feeder_messages import NOTHING, Inbox, Message, packed, text
+from drivers.feeder.feeder_loop import TRIAL, keep_memory, late_at_trial, real_time, serve
+from drivers.feeder.feeder_messages import NOTHING, Inbox, Message, fault_of, packed, with_code
 from drivers.feeder.feeder_server import Driven
 from drivers.reopening import Opening
+from drivers.wakeup import Bell
 
 
 def driven(machine: Machine, clock: Clock) -> Driven:
@@ -31,9 +33,11 @@ def driven(machine: Machine, clock: Clock) -> Driven:
     if not has_inverter(machine):
         return inner
     ports, close = with_inverter(machine, inner.ports, clock, inner.close)
-    return replace(inner, ports=ports, close=close)
+    # The inverter's thread wakes nobody: what it has heard is looked at as often as before.
+    return replace(inner, ports=ports, close=close, idle=lambda asleep: min(inner.idle(asleep), _INVERTER))
 
 
+_INVERTER = 0.05  # s between two looks at what an inverter has told, while the control sleeps
 _START = 20.0  # s for the first answer: the process has to start and to configure every drive
 _END = 10.0
 
@@ -43,13 +47,22 @@ class FeederProcess:
 
     def __init__(self, machine: Machine, clock: RealClock) -> None:
         self._machine, self._clock = machine, clock
-        self.line = Line(self._begin(), clock, self._again)
+        self._closed = False
+        self._bell = Bell()  # the same for whichever feeder there is
+        try:
+            link = self._begin()
+        except DriverError:
+            self._bell.close()
+            raise
+        self.line = Line(link, clock, self._again, self._bell)
 
     def _again(self) -> Opening[Link]:
         """Another process, once the one before has ended: two would be two masters on one bus."""
 
         def begun() -> Link:
-            self.close()
+            self._end()
+            if self._closed:
+                raise DriverError("the control ends", "feeder-gone")
             return cleared(self._begin())
 
         return Opening(begun)
@@ -65,23 +78,35 @@ class FeederProcess:
                 "app.compose.feeder_process",
                 str(theirs.fileno()),
                 repr(clock.zero),
+                str(self._bell.far.fileno()),
             ]
             # A session of its own: Ctrl-C is for the control, which then ends the feeder in good order.
             self.process = subprocess.Popen(
-                command, stdin=subprocess.PIPE, pass_fds=(theirs.fileno(),), start_new_session=True
+                command,
+                stdin=subprocess.PIPE,
+                pass_fds=(theirs.fileno(), self._bell.far.fileno()),
+                start_new_session=True,
             )
         assert self.process.stdin is not None
         with self.process.stdin as pipe:
             pipe.write(pickle.dumps(machine))
         self._link = SocketLink(ours)
         ready = self._first(ours)
-        if why := text(ready.head, "error"):
-            self.close()
-            raise DriverError(why, "feeder-gone")
+        if self._closed:  # while it started again
+            self._end()
+            raise DriverError("the control ends", "feeder-gone")
+        if why := fault_of(ready.head, "error", "feeder-gone"):
+            self._end()
+            raise DriverError(why)
         return self._link
 
     def close(self) -> None:
-        """The feeder stops what is left and ends."""
+        """The feeder stops what is left and ends; one that is being started again, too."""
+        self._closed = True
+        self._end()
+        self._bell.close()
+
+    def _end(self) -> None:
         self._link.close()
         try:
             self.process.wait(_END)
@@ -99,9 +124,30 @@ class FeederProcess:
                     return message
         except TimeoutError:
             return Message({"error": "the feeder's process does not come up"}, NOTHING)
+        except OSError as error:  # closed while it starts
+            return Message({"error": f"the feeder's process is not heard ({error.strerror})"}, NOTHING)
         return Message(
             {"error": "the feeder's process has ended at its start; see its message above"}, NOTHING
         )
+
+
+NO_PRIORITY = "without real-time priority"  # begins what drives lose that want each setpoint at its time
+
+
+def beat(machine: Machine) -> float:
+    """Seconds from setpoint to setpoint where the drives want each at its time; else 0."""
+    can = machine.hardware.table(CanopenTable)
+    return can.bus.sync if can is not None and can.mode in CYCLIC else 0.0
+
+
+def without_priority(period: float, late: float) -> str:
+    """What a feeder cannot promise whose trial has come so late, in words for the operator."""
+    kept = "was kept" if late <= EVENED_OUT * period else "was not kept"
+    return (
+        f"{NO_PRIORITY} a SYNC each {1000 * period:g} ms cannot be relied on: in a trial of"
+        f" {TRIAL:g} s it {kept}, at most {1000 * late:.1f} ms late; the path waits for late setpoints, and"
+        ' 10 ms are an alarm. Give the feeder that priority (docs/hardware.md), or take mode = "pvt"'
+    )
 
 
 def main(arguments: list[str]) -> int:
@@ -111,10 +157,12 @@ def main(arguments: list[str]) -> int:
     machine = pickle.load(sys.stdin.buffer)  # of our own parent, over a pipe that nobody else has
     warnings = real_time()
     locked = keep_memory()
+    if warnings and (period := beat(machine)):
+        warnings.append(without_priority(period, late_at_trial(period)))
     try:
         machine_driven = driven(machine, clock)
     except DriverError as error:
-        sock.sendall(packed(Message({"error": str(error)}, NOTHING)))
+        sock.sendall(packed(Message(with_code("error", error.fault, "feeder-gone"), NOTHING)))
         return 1
     if machine_driven.wake() is None:
         locked = keep_memory()
@@ -122,7 +170,8 @@ def main(arguments: list[str]) -> int:
         gc.freeze()
     warnings += locked
     sock.sendall(packed(Message({"ready": True}, NOTHING)))
-    serve(sock, machine_driven, warnings, machine.hardware.refresh)
+    bell = socket.socket(fileno=int(arguments[2]))
+    serve(sock, machine_driven, warnings, machine.hardware.refresh, bell)
     return 0
 
 

@@ -44,7 +44,10 @@ def hal_config(machine: Machine) -> HalConfig:
         ),
         machine_on=hal.machine_on,
         charge_pump=hal.charge_pump,
-        outputs={name: HalOutput(out.terminal, out.safe) for name, out in machine.outputs.items()},
+        outputs={
+            name: HalOutput(out.terminal, out.safe, name in machine.lamps)
+            for name, out in machine.outputs.items()
+        },
         inputs={name: HalInput(wired.terminal, wired.active_low) for name, wired in machine.inputs.items()},
         pots={
             name: HalPot(pot.terminal, pot.low, pot.high, pot.switch)
@@ -67,7 +70,13 @@ def _axis(axis: Axis, machine: Machine, hal: HalTable) -> HalAxis:
         home_method=home.method,
         home_latch=home.latch,
         home_offset=home.offset,
+        is_spindle=_is_spindle(axis, machine, hal),
     )
+
+
+def _is_spindle(axis: Axis, machine: Machine, hal: HalTable) -> bool:
+    spindle_is_c = machine.spindle_is_c and machine.hardware.spindle_driver == "hal"
+    return axis.name == "C" and spindle_is_c and axis.name in hal.axes
 
 
 def hal_driven(machine: Machine, clock: Clock) -> Driven:

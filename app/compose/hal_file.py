@@ -88,6 +88,7 @@ def hal_file(machine: Machine) -> HalFile:
         rpm_max=machine.spindle.rpm_max,
         rpm_accel=machine.spindle.accel,
         encoder_lines=machine.spindle.encoder_ppr,
+        spindle_is_c=machine.spindle_is_c and machine.hardware.spindle_driver == "hal",
         names={path: name for path, name in _names(machine, hal) if name},
     )
     file = _BOARDS[board.kind](lathe)

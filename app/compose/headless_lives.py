@@ -11,13 +11,20 @@ from core.executor.commands import BarNextPart, Command
 from core.executor.job import Proof
 from core.executor.snapshot import Snapshot
 from core.store.store_errors import StoreError
+from core.store.store_rows import Kind
 
 
 class HeadlessLives:
     """``see`` is called at every step of a run. Without a store nothing is counted, and that is said."""
 
-    def __init__(self, journal: Journal, post: Callable[[Command], None], say: Callable[[str], None]) -> None:
-        self._book = journal.parts_book()
+    def __init__(
+        self,
+        journal: Journal,
+        post: Callable[[Command], None],
+        say: Callable[[str], None],
+        tools: Kind = Kind.TOOL,
+    ) -> None:
+        self._book = journal.parts_book(tools)
         self._watch = ToolLifeWatch(self._book)
         self._post, self._say = post, say
         self._barred = ""
@@ -29,7 +36,7 @@ class HeadlessLives:
     def _read(self, book: PartsBook) -> None:
         if book.store is None:
             raise StoreError(book.locked)
-        book.now = parts_data(book.store, "")
+        book.now = parts_data(book.store, "", tools=book.tools)
         book.loads = 1
 
     def see(self, snapshot: Snapshot, proof: Proof) -> None:

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
-from datetime import UTC, datetime
-from pathlib import Path
-from typing import TextIO
 
 from app.compose.backend_entry import Connected, played
 from app.compose.backends import connect, real_time
 from app.compose.headless_lives import HeadlessLives
 from app.compose.journal import Journal
+from app.compose.run_log import EventLog
 from app.compose.shop_floor import open_shop_floor, told_to_agents
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import RECORDS, data_folder
 from app.desk.run_without_screen import HeadlessRun
+from app.quality.parts_book import tools_of
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.interruption_watch import Note
@@ -27,38 +25,9 @@ from core.machine.machine_model import Machine
 from core.ports import DriverError
 from core.records.record_ring import LASTS
 from core.records.ring_file import RUN
+from core.tool_edges import edge_name
 from drivers.clocks import RealClock, StepClock
 from drivers.simulated.simulated_table import SimulatedTable
-
-
-class EventLog:
-    """The events of one run, a JSON object a line."""
-
-    def __init__(self, path: Path, file: TextIO) -> None:
-        self.path = path
-        self._file = file
-
-    @classmethod
-    @contextmanager
-    def new(cls, program: str) -> Iterator[EventLog]:
-        """A log in the product's folder, named after the time and the program."""
-        folder = data_folder() / "logs"
-        stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%f")
-        path = folder / f"{stamp}-{Path(program).stem}.jsonl"
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            file = path.open("x", encoding="utf-8")
-        except OSError as error:
-            raise CommandError(f"{path}: the event log cannot be written: {error.strerror}") from error
-        with file:
-            yield cls(path, file)
-
-    def add(self, event: Event) -> None:
-        """One more line."""
-        line = {"t": round(event.t, 4), "kind": event.kind, "text": event.text, "line": event.line}
-        if event.record:
-            line["record"] = event.record
-        self._file.write(json.dumps(line) + "\n")
 
 
 @contextmanager
@@ -102,7 +71,8 @@ def headless(
                 journal.hear(noted)
 
         executor = Executor(machine, connected.ports, hear, note=note, tell=recorder.tell)
-        lives = HeadlessLives(journal, executor.post, say) if journal is not None else None
+        tools = tools_of(machine.kind)
+        lives = HeadlessLives(journal, executor.post, say, tools) if journal is not None else None
         recorder.start()
         close_floor = _shop_floor(machine, executor, say, paced=paced)
         try:
@@ -169,8 +139,9 @@ def _remembered(
 def _demand_anew(left: InterruptedJob, *, anew: bool) -> None:
     if not anew:
         raise CommandError(
-            f"a job was interrupted, {left.words}; T{left.tool} may stand in the part. Go on there with the"
-            " screen (SEARCHTO), or clear the tool and give --anew to begin at the first line"
+            f"a job was interrupted, {left.words}; {edge_name(left.tool)} may stand in the part."
+            " Go on there with the screen (SEARCHTO), or clear the tool and give --anew to begin at the first"
+            " line"
         )
 
 

@@ -19,7 +19,7 @@ from core.language.source import Source
 from core.store import backup
 from core.store.store import Store
 from core.store.store_errors import StoreError
-from core.store.store_rows import EventRow, RunRow, VersionRow
+from core.store.store_rows import EventRow, Kind, RunRow, ToolRow, VersionRow
 from core.store.store_writer import Backlog
 
 HELD = 10_000  # events that are kept back while there is no store
@@ -46,8 +46,10 @@ class Journal(Persistence):
         self._noted: InterruptedJob | None = None  # what a power cut would leave interrupted
         self._closing = threading.Event()
         self.left: InterruptedJob | None = None  # what the last one has left
+        self.damage: tuple[str, ...] = ()  # what was not as it was saved, in sentences
         try:
             self._store = Store.open(folder)
+            self.damage = (*self._store.repaired, *self._store.damaged())
             note_cut_off_runs(self._store)
             self.left = self._noted = of_plain(self._store.setting(UNDER_WAY))
         except StoreError as error:
@@ -91,11 +93,11 @@ class Journal(Persistence):
         self._books.append(book)
         return book
 
-    def parts_book(self) -> PartsBook:
-        """Measured parts and tool lives of the store."""
+    def parts_book(self, tools: Kind = Kind.TOOL) -> PartsBook:
+        """Measured parts and tool lives of the store; ``tools``: the table of this machine."""
         if self._store is None:
-            return PartsBook(locked=f"MEASURED PARTS CANNOT BE KEPT: {self.trouble}")
-        book = PartsBook(self._store)
+            return PartsBook(locked=f"MEASURED PARTS CANNOT BE KEPT: {self.trouble}", tools=tools)
+        book = PartsBook(self._store, tools=tools)
         self._books.append(book)
         return book
 
@@ -168,6 +170,12 @@ class Journal(Persistence):
     def runs(self) -> tuple[RunRow, ...]:
         """What each program has done."""
         return self._opened().runs()
+
+    def tools_of_last_run(self, program: str) -> tuple[str, dict[int, ToolRow]]:
+        """When it was started last (UTC), and its tools as they were then; on a worker. Raises StoreError."""
+        store = self._opened()
+        started = next((row.started for row in store.runs() if row.program == program), None)
+        return (started, store.tools_at(started)) if started is not None else ("", {})
 
     def run_started(self, program: str) -> None:
         """Post that a run begins."""

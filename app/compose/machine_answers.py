@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -9,8 +10,10 @@ from typing import NamedTuple
 from app.compose.backend_entry import backend_of, played
 from app.compose.backends import connect, real_time
 from app.compose.inverter_backend import has_inverter
+from app.compose.page_server import listening_at
 from app.compose.shop_floor import try_shop_floor
 from core.machine.machine_model import Axis, Machine
+from core.machine.shop_network_tables import AnnounceTable, StatusPageTable, broker_of
 from core.ports import Clock, DriverError, MachinePorts, StationState
 from core.table_schema import Unit, shown
 from drivers.canopen.canopen_table import CanopenTable
@@ -32,6 +35,7 @@ FAILED = (
 _SETTLED = 0.3  # s in which pots and inputs have been heard that are told only now and then
 _LONGEST = 3.0  # s for inputs that are read in turns
 _LOOK = 0.02  # s
+_BROKER_PATIENCE = 2.0  # s
 
 
 class Row(NamedTuple):
@@ -72,6 +76,7 @@ def check_ports(machine: Machine) -> Answers:
         answers.rows.append(Row(_blamed(machine), "", "no answer", str(error)))
         answers.trouble.append(str(error))
     _ask_shop_floor(machine, answers)
+    _ask_office(machine, answers)
     return answers
 
 
@@ -88,6 +93,29 @@ def _ask_shop_floor(machine: Machine, answers: Answers) -> None:
         answers.trouble.append(str(error))
     else:
         answers.rows.append(Row("mtconnect", at, "ok", f"device {model.device}"))
+
+
+def _ask_office(machine: Machine, answers: Answers) -> None:
+    """Whether browsers would find the status page, and whether the broker is there."""
+    page, told = machine.hardware.table(StatusPageTable), machine.hardware.table(AnnounceTable)
+    if page is not None and page.enabled:
+        try:
+            listening_at(page.bind, page.port).close()
+        except DriverError as error:
+            answers.rows.append(Row("status_page", f"{page.bind}:{page.port}", "fault", str(error)))
+            answers.trouble.append(str(error))
+        else:
+            who = "with its token" if page.token else "this computer alone"
+            answers.rows.append(Row("status_page", f"{page.bind}:{page.port}", "ok", who))
+    if told is not None and told.mqtt:
+        try:
+            socket.create_connection(broker_of(told.mqtt), _BROKER_PATIENCE).close()
+        except OSError as error:
+            why = f"[announce] {told.mqtt}: {error.strerror or error}; look at the broker's address and port"
+            answers.rows.append(Row("announce", told.mqtt, "no answer", why))
+            answers.trouble.append(why)
+        else:
+            answers.rows.append(Row("announce", told.mqtt, "ok", told.topic))
 
 
 def _ask_nodes(machine: Machine, clock: Clock, answers: Answers) -> None:

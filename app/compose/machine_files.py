@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from pathlib import Path
 
 import resources
-from core.machine import gauge_table, machine_file, serial_table, setter_table
+from core.machine import (
+    backup_table,
+    gauge_table,
+    machine_file,
+    serial_table,
+    setter_table,
+    shop_network_tables,
+)
 from core.machine.machine_model import Machine
 from core.table_schema import Driver, Finding, MachineFileError, written
 from drivers.canopen import canopen_table
@@ -32,11 +40,14 @@ _ENTRIES = (
     (setter_table.DRIVER, ""),
     (pendant_table.DRIVER, ""),
     (mtconnect_table.DRIVER, ""),
+    (shop_network_tables.DRIVER, ""),
+    (backup_table.DRIVER, ""),
 )
 DRIVERS: tuple[Driver, ...] = tuple(driver for driver, _ in _ENTRIES)
 BACKENDS = {driver.backend: module for driver, module in _ENTRIES if module}
 
 
+@lru_cache(maxsize=8)  # by the text itself: a folder of proofs and its workers ask for the same one
 def parse_machine(text: str, source: str) -> Machine:
     """The machine that the TOML ``text`` describes; ``source`` names it. Raises MachineFileError."""
     machine = machine_file.parse_machine(text, source, DRIVERS)

@@ -39,13 +39,19 @@ def control_limits(machine: Machine) -> ControlLimits:
         start_with_collet_open=machine.interlocks.spindle_with_collet_open,
         m_outputs=machine.m_codes,
         m_disabled=machine.m_disabled,
+        m_ignored=machine.m_ignored,
         c_enabled=machine.c_enabled,
         c_feedback=machine.c_feedback,
         c_max_rpm=c_axis.vmax / 6.0,  # 1 rpm is 6 degrees a second
         c_accel=c_axis.amax,
         c_step=c_axis.count,
         c_modulo=machine.c_modulo,
+        spindle_is_c=machine.spindle_is_c,
+        live_output=min((name for name in machine.outputs if name.startswith("live")), default=""),
+        control=machine.control,
+        third_axis=machine.third_axis,
         spindle_controlled=machine.spindle.controlled,
+        fixed_points={axis.name: axis.fixed_points for axis in machine.axes[:2]},
         speeds=(machine.axes[0].vmax, machine.axes[1].vmax, c_axis.vmax),
     )
 

@@ -52,6 +52,6 @@ def give_scope(desk: Desk, live: LiveSamples | None = None) -> None:
     desk.attach(scope)
     desk.open_record = scope.open_alarm
     slides = {axis.name: axis for axis in desk.lathe.axes} if desk.lathe is not None else {}
-    desk.attach(Analyses(scope, slides))
+    desk.attach(Analyses(scope, slides, desk.lathe.spindle if desk.lathe is not None else None))
     if desk.lathe is not None:
         desk.attach(DriveTests(desk, scope, desk.lathe))

@@ -14,10 +14,15 @@ from app.compose.backends import connect
 from app.compose.desk_functions import furnish
 from app.compose.desk_quality import give_quality
 from app.compose.error_log import Log
+from app.compose.feeder_process import NO_PRIORITY
 from app.compose.inverter_backend import has_inverter
+from app.compose.jobs_desk import give_jobs
 from app.compose.journal import Journal
+from app.compose.kinematics_chain import kinematics_of
 from app.compose.machine_setup import read_machine
+from app.compose.office import open_office
 from app.compose.scope_desk import give_scope
+from app.compose.shapes_desk import give_shapes
 from app.compose.shop_floor import keep_status, open_shop_floor
 from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_offsets
 from app.compose.workshop import (
@@ -32,15 +37,18 @@ from app.compose.workshop import (
 )
 from app.desk.alarm_log import KEPT, KINDS
 from app.desk.command_errors import CommandError
-from app.desk.data_folder import RECORDS, data_folder
+from app.desk.daily_backup import DailyBackup
+from app.desk.data_folder import BACKUPS, RECORDS, data_folder
 from app.desk.desk import Desk
 from app.desk.kept_part import kept_part
 from app.desk.persistence import Persistence
 from app.desk.program_folder import ProgramFile, ProgramFolders
 from app.desk.program_loading import LoadingSteps, ProgramLoader
+from app.desk.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.editor.editor import Editor
 from app.editor.versions import NoArchive
+from app.offsets.mill_touch import MillTouch
 from app.offsets.offset_effect import Effect
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
@@ -48,8 +56,10 @@ from core.executor.recorder import Recorder, recorded_of
 from core.executor.snapshot import Event, Snapshot
 from core.executor.watchdog import ExecutorThread, Watchdog
 from core.interpreter.modal_state import Modal
+from core.machine.backup_table import BackupTable
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError
+from core.store.backup import problems as backup_problems
 from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow
 from drivers.clocks import RealClock, StepClock
@@ -57,10 +67,13 @@ from drivers.clocks import RealClock, StepClock
 # Threads beside the executor, and what an operator misses when they end.
 SUPERVISED = {
     "store-writer": "WHAT KEEPS OFFSETS AND COUNTS",
+    "daily-backup": "THE DAILY BACKUP",
     "status": "STATUS.JSON",
     "mtconnect": "MTCONNECT",
     "program-file": "WHAT WATCHES THE PROGRAM'S FILE",
     "pendant": "WHAT READS THE PENDANT",
+    "status-page": "THE STATUS PAGE",
+    "announcer": "MQTT AND THE WEB HOOK",
     "inverter": "WHAT TALKS TO THE INVERTER",
     "recorder": "THE RECORD OF THE SCOPE",
 }
@@ -96,6 +109,7 @@ def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] =
         log.close()
 
     desk.shut = shut
+    executor.stirs = lambda: desk.stirs()  # noqa: PLW0108  the window gives it later
     desk.differs = lambda: file.differs
     desk.not_kept, desk.waiting = (lambda: journal.trouble or log.trouble), (lambda: journal.held)
     gc.freeze()  # modules and the like: collections need not look at them again
@@ -132,12 +146,32 @@ def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> Callable[[]
     open_ones = [open_shop_floor(desk.lathe, snapshot, tell)]
     if not journal.trouble:
         open_ones.append(keep_status(desk.lathe, snapshot, data_folder()))
+        open_ones.append(_daily_backup(desk, desk.lathe, journal))
+    open_ones.append(open_office(desk, desk.lathe, journal, tell))
 
     def close() -> None:
         for each in open_ones:
             each()
 
     return close
+
+
+def _daily_backup(desk: Desk, machine: Machine, journal: Journal) -> Callable[[], None]:
+    """Begin to look once in a while whether one is due; what is in the way is said and logged."""
+
+    def tell(why: str) -> None:
+        text = tr("NO DAILY BACKUP: {why}").format(why=why)
+        desk.say(text)
+        journal.hear(Event(desk.snapshot().t, "warning", text))
+
+    def still() -> bool:
+        return desk.snapshot().state not in UNDER_WAY
+
+    table = machine.hardware.table(BackupTable) or BackupTable()
+    folder = Path(table.folder) if table.folder else data_folder() / BACKUPS
+    daily = DailyBackup(folder, table.keep, journal.backup, backup_problems, still, tell)
+    daily.start()
+    return daily.close
 
 
 def desk_and_executor(
@@ -171,8 +205,13 @@ def desk_and_executor(
     desk.shut = connected.close
     for warning in (*connected.ports.warnings, *(f"machine file: {each}" for each in desk.changes.changes)):
         events.say("warning", warning)
+    for damage in journal.damage if journal is not None else ():
+        events.say("warning", damage)
+        desk.say(tr("LOOK: {what}").format(what=damage))
     if recorder.trouble:
         events.say("warning", recorder.trouble)
+    if any(each.startswith(NO_PRIORITY) for each in connected.ports.warnings):
+        desk.say(tr("NO REAL-TIME PRIORITY: A SYNC THAT IS 10 MS LATE STOPS THE SLIDES"))
     if desk.changes.barred:
         desk.say(desk.changes.barred)
     return desk, executor
@@ -226,6 +265,8 @@ def _desk(
         two_hand=machine.interlocks.two_hand_start,
         with_c=machine.c_enabled,
         lathe=machine,
+        set_input=connected.set_input,
+        one_hand=played(machine) and not has_inverter(machine),
         machine=f"{machine.name} · {_drives(machine)}",
         changes=changed,
         book=book_of(offsets, journal),
@@ -236,9 +277,14 @@ def _desk(
     small = thumbnails(machine, shapes_at_hand, kept)
     furnish(desk, machine, keep, workshop(machine, offsets, left=left), thumbnail=small)
     give_mdi(desk, machine, offsets, keep)
+    if machine.kind == "mill":
+        desk.attach(MillTouch(desk, kinematics_of(machine)))
     give_part(desk, machine, keep)
+    give_shapes(desk, machine, shapes_at_hand)
     give_searchto(desk, machine)
     give_quality(desk, machine, journal)
+    alone = workshop(machine, offsets, left=left, pictures=False)
+    give_jobs(desk, machine, alone, shapes_at_hand, kept, journal)
     return desk
 
 

@@ -54,7 +54,7 @@ def try_shop_floor(machine: Machine, model: MtconnectTable) -> None:
 
 def keep_status(machine: Machine, snapshot: Callable[[], Snapshot], folder: Path) -> Callable[[], None]:
     """Begin to keep the status file in this folder; returns how to end it."""
-    reader = FloorReader(machine, _conditions(device_of(machine, machine.name)), time.monotonic)
+    reader = FloorReader(machine, conditions_of_device(device_of(machine, machine.name)), time.monotonic)
     keeper = StatusKeeper(
         StatusFile(folder / NAME, lambda: stamp(utc_now())),
         lambda: status_of(machine.name, reader.look(snapshot())),
@@ -67,7 +67,7 @@ def keep_status(machine: Machine, snapshot: Callable[[], Snapshot], folder: Path
 def adapter_of(machine: Machine, model: MtconnectTable, snapshot: Callable[[], Snapshot]) -> Adapter:
     """The adapter on real time; it looks at snapshots and at nothing else."""
     device = device_of(machine, model.device)
-    reader = FloorReader(machine, _conditions(device), time.monotonic)
+    reader = FloorReader(machine, conditions_of_device(device), time.monotonic)
     return Adapter(model, tuple(device.all_items()), lambda: _report(reader.look(snapshot())), RealClock())
 
 
@@ -95,7 +95,8 @@ def device_model(machine: Machine, at: datetime) -> str:
     return devices_xml(device_of(machine, model.device), f"{machine.name}, {machine.kind}", at)
 
 
-def _conditions(device: Component) -> frozenset[str]:
+def conditions_of_device(device: Component) -> frozenset[str]:
+    """The keys of its conditions."""
     return frozenset(item.key for item in device.all_items() if item.category is Category.CONDITION)
 
 

@@ -7,7 +7,7 @@ from app.compose.inverter_backend import has_inverter, with_inverter
 from core.machine.machine_model import Axis, Machine
 from core.machine.setter_table import SetterModel
 from core.ports import Clock
-from drivers.feeder.feeder_server import Driven
+from drivers.feeder.feeder_server import RESTS, Driven
 from drivers.lookalikes.plant_config import (
     SimAxis,
     SimCollet,
@@ -62,7 +62,13 @@ def _axis(axis: Axis, machine: Machine) -> SimAxis:
 def _driven(machine: Machine, clock: Clock) -> Driven:
     """For the feeder; the plant goes on also when nobody looks."""
     ports, hands = simulated(machine, clock)
-    return Driven(ports, ports.axes.sample, _nothing, hands)
+    wakeup = ports.wakeup
+    assert wakeup is not None
+
+    def idle(asleep: bool) -> float:
+        return RESTS if asleep and wakeup.settled() else 0.0
+
+    return Driven(ports, ports.axes.sample, _nothing, hands, idle=idle)
 
 
 def _in_process(machine: Machine, clock: Clock) -> Connected:

@@ -7,14 +7,17 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from app.compose.machine_setup import setup_for
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
-from app.offsets.offset_book import OffsetBook, secondary_offsets, tool_offsets
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset, ZeroOffset
+from app.offsets.mill_offsets import MillOffsets, with_mill
+from app.offsets.offset_book import PRESET, OffsetBook, preset_of, secondary_offsets, tool_offsets
+from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
 from core.store.store_rows import SecondaryRow, ToolRow, ZeroRow
 
 if TYPE_CHECKING:
     from app.compose.journal import Journal
+    from core.machine.machine_model import Machine
     from core.part.tool_shape import ToolShape
     from core.store.store import Store
 
@@ -27,23 +30,52 @@ class Offsets(NamedTuple):
     tools: Mapping[int, ToolOffset]
     secondary: Mapping[int, SecondaryOffset]
     zero: Mapping[int, ZeroOffset]
+    mill: MillOffsets = MillOffsets()
 
 
 NONE = Offsets({}, {}, {})
 
 
+def setup_with(
+    machine: Machine,
+    offsets: Offsets,
+    *,
+    inputs: Mapping[str, bool] | None = None,
+    block_delete: bool = False,
+    strict: bool = False,
+) -> Setup:
+    """Circumstances of a pass after power-up with all offsets that this machine has."""
+    tools, secondary, zero, mill = offsets
+    return with_mill(
+        setup_for(
+            machine,
+            tools=tools,
+            secondary=secondary,
+            zero=zero,
+            inputs=inputs,
+            block_delete=block_delete,
+            strict=strict,
+        ),
+        mill,
+    )
+
+
 def stored_offsets() -> Offsets:
     """Those of the store; none where there is no store yet.
 
-    Raises CommandError when the store cannot be trusted.
+    Raises CommandError when the store cannot be trusted, an offset of it not either.
     """
     folder = data_folder()
     if not folder.is_dir():
         return NONE
+    from core.store.damaged_rows import OF_PROGRAMS
     from core.store.store import Store, StoreError
 
     try:
         with Store.open(folder, read_only=True) as store:
+            damaged = store.damaged(OF_PROGRAMS, {PRESET})
+            if damaged:
+                raise CommandError(damaged[0])
             return offsets_of(store)
     except StoreError as error:
         raise CommandError(str(error)) from error
@@ -81,7 +113,9 @@ def shapes_at_hand() -> dict[int, ToolShape]:
 
 def offsets_of(store: Store) -> Offsets:
     """What an open store holds, by value."""
-    return _of_rows(store.tools(), store.secondary(), store.zero_offsets())
+    found, presets = _of_rows(store.tools(), store.secondary(), store.zero_offsets()), store.presets()
+    preset = preset_of(store.setting(PRESET), presets)
+    return found._replace(mill=MillOffsets(store.mill_tools(), presets, preset))
 
 
 def read_offsets(path: Path) -> Offsets:
@@ -103,10 +137,13 @@ def book_of(offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBo
     """
     if journal is not None and offsets is stored_offsets:
         return journal.book()
-    tools, secondary, zero = offsets()
+    tools, secondary, zero, _ = offsets()
     return OffsetBook(
         locked=OF_A_FILE,
-        tools={n: ToolRow(row.x, row.z, row.nose_radius) for n, row in tools.items()},
+        tools={
+            n: ToolRow(row.x, row.z, row.nose_radius, quadrant=row.quadrant, remark=row.name)
+            for n, row in tools.items()
+        },
         secondary={n: SecondaryRow(row.x, row.z, row.r) for n, row in secondary.items()},
         zero={n: ZeroRow(row.x, row.z, row.c) for n, row in zero.items()},
     )

@@ -39,21 +39,23 @@ class Thumbnails:
     folder: Path
     machine: Machine
     parts: PartDesk
+    wide: int = WIDE
+    high: int = HIGH
 
     def of(self, job: Job, watch: Watch) -> Thumbnail | None:
-        """The picture of the job's part, WIDE by HIGH; None: it makes none. ``watch`` may give up."""
+        """The picture of the job's part, ``wide`` by ``high``; None: it makes none. ``watch`` may give up."""
         if self.machine.kind != "lathe":
             return None
         setting = self.parts.setting(job, watch)[0]
-        path = self.folder / _key(job, setting)
-        pixels = _found(path)
+        path = self.folder / self._key(job, setting)
+        pixels = _found(path, self.wide * self.high)
         if pixels is None:
             image = self._made(job, setting, watch)
             if image is None:
                 return None
             pixels = np.ascontiguousarray(image, dtype=np.uint32).tobytes()
             _keep(path, pixels)
-        return Thumbnail(pixels, WIDE, HIGH)
+        return Thumbnail(pixels, self.wide, self.high)
 
     def _made(self, job: Job, setting: PartSetting, watch: Watch) -> Image | None:
         from core.part.solid_picture import SolidPicture
@@ -71,16 +73,16 @@ class Thumbnails:
         part = finished_part(moves, watch) if moves is not None else None
         if part is None:
             return None
-        scale, centre = fitted(part.back, part.front, part.radius, WIDE, HIGH, _AZIMUTH)
+        scale, centre = fitted(part.back, part.front, part.radius, self.wide, self.high, _AZIMUTH)
         view = SolidView(_AZIMUTH, _TILT, 0.0, scale, centre)
-        return SolidPicture().draw(part.solid, view, WIDE, HIGH)
+        return SolidPicture().draw(part.solid, view, self.wide, self.high)
 
-
-def _key(job: Job, setting: PartSetting) -> str:
-    """What the picture depends on, in a name."""
-    tools = (sorted(setting.shapes.items()), sorted(setting.nose_radii.items()), sorted(setting.gang.items()))
-    said = (job.source.name, job.digest, setting.stock, setting.clamping, tools, WIDE, HIGH)
-    return sha256(f"{_core_version()}\n{said!r}".encode("utf-8", "surrogatepass")).hexdigest()
+    def _key(self, job: Job, setting: PartSetting) -> str:
+        """What the picture depends on, in a name."""
+        shapes, radii, gang = setting.shapes, setting.nose_radii, setting.gang
+        tools = (sorted(shapes.items()), sorted(radii.items()), sorted(gang.items()))
+        said = (job.source.name, job.digest, setting.stock, setting.clamping, tools, self.wide, self.high)
+        return sha256(f"{_core_version()}\n{said!r}".encode("utf-8", "surrogatepass")).hexdigest()
 
 
 @lru_cache(maxsize=1)
@@ -92,13 +94,13 @@ def _core_version() -> str:
     return total.hexdigest()
 
 
-def _found(path: Path) -> bytes | None:
+def _found(path: Path, pixels_wanted: int) -> bytes | None:
     try:
         pixels = zlib.decompress(path.read_bytes())
         os.utime(path)  # the oldest that nobody looks at go first
     except (OSError, zlib.error):
         return None
-    return pixels if len(pixels) == 4 * WIDE * HIGH else None
+    return pixels if len(pixels) == 4 * pixels_wanted else None
 
 
 def _keep(path: Path, pixels: bytes) -> None:

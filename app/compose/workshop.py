@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING
 
 from app.compose.desk_part import KeptOfProgram, PartDesk, Shapes, nothing_kept
 from app.compose.journal import Journal
-from app.compose.machine_setup import setup_for
-from app.compose.stored_offsets import Offsets
+from app.compose.stored_offsets import Offsets, setup_with
 from app.compose.thumbnails import Thumbnails
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
 from app.desk.latest import Watch
 from app.desk.persistence import Persistence
+from app.desk.prepared_line import ProveLine
 from app.desk.program_loading import LoadingSteps, PartProved, Proved
-from app.mdi.mdi_model import MdiLine, MdiModel, ProveLine
+from app.jog.hand_functions import HandFunctions
+from app.mdi.mdi_model import MdiLine, MdiModel
 from app.part.part_sheet import PartSheet
 from app.searchto.searchto_model import SearchtoModel
 from core.executor.job import Job, Proof, make_job
@@ -28,7 +29,7 @@ from core.interpreter.job_setup import ToolOffset
 from core.interpreter.modal_state import Modal
 from core.interpreter.restart.restart_approach import Choices
 from core.language.diagnostics import Diagnostic
-from core.language.source import Source, SourceError, load_source
+from core.language.source import Dialect, Source, SourceError, load_source
 from core.machine.machine_model import Machine
 from core.proving.proof_report import Report
 
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
     from app.offsets.offset_effect import ComparePart, Draw
     from app.path.path_picture import Picture, Timed
     from app.programs.preview import DrawThumbnail
-    from core.interpreter.restart.state_rebuild import StateRebuild
+    from app.searchto.searchto_finder import Search
     from core.proving.program_timeline import MotionSpan, RestSpan
 
 
@@ -63,16 +64,15 @@ def workshop(
     def new_job(source: Source, block_delete: bool) -> Job:
         if journal is not None:
             journal.keep(source)
-        tools, secondary, zero = offsets()
-        setup = setup_for(machine, tools=tools, secondary=secondary, zero=zero, block_delete=block_delete)
+        setup = setup_with(machine, offsets(), block_delete=block_delete)
         if left is not None:
             modal = left()
             setup = replace(setup, metric=modal.metric, last_rapid=modal.rapid_rate)
         return make_job(_whole(source), setup)
 
     def renewed(job: Job) -> Job:
-        tools, secondary, zero = offsets()
-        setup = replace(job.setup, tools=tools, secondary=secondary, zero=zero)
+        now = setup_with(machine, offsets(), block_delete=job.setup.block_delete)
+        setup = replace(now, metric=job.setup.metric, last_rapid=job.setup.last_rapid)
         return replace(make_job(job.source, setup), reading=job.reading)
 
     parts = PartDesk(machine, shapes, kept, _read)
@@ -154,6 +154,7 @@ def proof_of(job: Job, report: Report) -> Proof:
         blocks=report.elementary,
         cycle_time=report.times.cycle,
         tools=report.tools,
+        measured=tuple(sorted({*report.tools} - {*report.missing_tools})),
         needs=report.needs,
     )
 
@@ -168,7 +169,16 @@ def part_comparer(machine: Machine, shapes: Shapes = dict, kept: KeptOfProgram =
 
 def thumbnails(machine: Machine, shapes: Shapes, kept: KeptOfProgram) -> DrawThumbnail:
     """Draws the finished part of a job small, and keeps it in the data folder."""
-    return Thumbnails(data_folder() / "thumbnails", machine, PartDesk(machine, shapes, kept, _read)).of
+    return _part_pictures(machine, shapes, kept).of
+
+
+def office_pictures(machine: Machine, shapes: Shapes, kept: KeptOfProgram) -> DrawThumbnail:
+    """The same, as large as a telephone shows it."""
+    return replace(_part_pictures(machine, shapes, kept), wide=OFFICE_WIDE, high=OFFICE_HIGH).of
+
+
+def _part_pictures(machine: Machine, shapes: Shapes, kept: KeptOfProgram) -> Thumbnails:
+    return Thumbnails(data_folder() / "thumbnails", machine, PartDesk(machine, shapes, kept, _read))
 
 
 def drawer(machine: Machine) -> Draw:
@@ -200,7 +210,7 @@ def _seen(blocks: Iterator[Timed], frame: Mapping[int, ToolOffset]) -> Iterator[
 
 def point_of(snapshot: Snapshot) -> Checkpoint:
     """What the next line inherits at the machine of this instant."""
-    return Checkpoint(snapshot.modal, tool_line=-1 if snapshot.tool_open else 0)
+    return Checkpoint(snapshot.modal, tool_line=-1 if snapshot.tool_open else 0, kept=snapshot.kept)
 
 
 def line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
@@ -209,13 +219,12 @@ def line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
     def prove_line(text: str, snapshot: Snapshot, watch: Watch) -> tuple[Job, Proved]:
         from core.proving.prove_program import prove
 
-        tools, secondary, _ = offsets()
         setup = replace(
-            setup_for(machine, tools=tools, secondary=secondary),
+            setup_with(machine, offsets()),
             start=snapshot.demand,
             begin=Begin(point_of(snapshot), single=True),
         )
-        job = make_job(Source("MDI", text), setup)
+        job = make_job(Source("MDI", text, Dialect(machine.language)), setup)
         report = prove(job.reading, job.setup, machine, watch)
         return job, Proved(proof_of(job, report), report.diagnostics)
 
@@ -223,11 +232,13 @@ def line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
 
 
 def give_mdi(desk: Desk, machine: Machine, offsets: Callable[[], Offsets], keep: Persistence) -> None:
-    """Give the desk its MDI."""
+    """Give the desk its MDI, and the Jog page what it switches by the same lines."""
     prove_line = line_prover(machine, offsets)
     mdi = MdiModel(prove_line, desk.post, desk.snapshot, desk.say, desk.clear, MdiLine(keep))
-    desk.attach(mdi)
-    desk.own_starts.append(mdi)
+    hand = HandFunctions(desk, machine, prove_line)
+    for each in (mdi, hand):
+        desk.attach(each)
+        desk.own_starts.append(each)
 
 
 # --- The page PART of a desk: what is kept of stock and checks.
@@ -247,11 +258,16 @@ def give_part(desk: Desk, machine: Machine, keep: Persistence) -> None:
 # --- SEARCHTO of a desk on this machine.
 
 
+OFFICE_WIDE, OFFICE_HIGH = 600, 400  # pixels
 _MODEST = 0.2  # of the manual rapid: legs within the part
 
 
-def rebuilt(job: Job, watch: Watch) -> StateRebuild:
+def rebuilt(job: Job, watch: Watch) -> Search:
     """What goes through the program of a job; the interpreter is loaded when it is first asked for."""
+    if job.source.dialect is not Dialect.OMNITURN:
+        from core.interpreter.restart.program_search import ProgramSearch
+
+        return ProgramSearch(job.reading, job.setup, watch)
     from core.interpreter.restart.state_rebuild import StateRebuild
 
     return StateRebuild(job.source, job.setup, watch)

@@ -7,6 +7,8 @@ from pathlib import Path
 
 from platformdirs import user_data_path
 
+HOME = "TURNDESK_HOME"
+BACKUPS = "backups"  # the folder of backups, within it
 RECORDS = "records"  # the folder of what the scope has recorded, within it
 
 
@@ -19,7 +21,7 @@ def check_data_folder() -> None:
 
     Raises HomeError.
     """
-    named = os.environ.get("TURNDESK_HOME", "")
+    named = os.environ.get(HOME, "")
     if not named:
         return
     folder = data_folder()
@@ -33,7 +35,7 @@ def check_data_folder() -> None:
 
 def data_folder() -> Path:
     """The folder of store, logs and settings: ``TURNDESK_HOME``, else the platform's data folder."""
-    named = os.environ.get("TURNDESK_HOME", "")
+    named = os.environ.get(HOME, "")
     if named:
         return Path(named).expanduser().absolute()
     return user_data_path("turndesk", appauthor=False)

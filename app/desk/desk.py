@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from app.desk import interrupted_notice, prompt_line
 from app.desk.alarm_log import AlarmLog
+from app.desk.first_job import FirstJob
+from app.desk.interrupted_notice import NoticeRow
 from app.desk.machine_file_changes import FileChanges
 from app.desk.machine_status import MachineStatus, SilenceWatch, Tone, status_of
 from app.desk.program_folder import ProgramFolders
@@ -26,6 +28,7 @@ from app.desk.readouts import Readout
 from app.desk.screen_settings import SettingsBook
 from app.desk.station_hands import OVERRIDE_MOST, StationHands, StationPanel, stepped
 from app.desk.translation import tr
+from app.desk.waiting import how_it_ends
 from app.offsets.offset_book import NONE_KEPT, OffsetBook
 from app.programs.run_history import RunHistory
 from app.special.part_count import PartCounter
@@ -96,6 +99,8 @@ class Desk:
     with_c: bool = True
     machine: str = ""
     lathe: Machine | None = None  # what the machine file says, for moves by hand
+    one_hand: bool = False  # nothing real moves: palms may be pressed one after the other
+    set_input: Callable[[str, bool], None] | None = None  # of a simulated machine
     shut: Callable[[], None] = field(default=lambda: None)  # what drives the machine
     waiting: Callable[[], str] = str  # what of it waits in memory, in words
     differs: Callable[[], str] = str  # how the file on the disk is not the program on the desk
@@ -110,6 +115,7 @@ class Desk:
     restoring: bool = False  # a backup takes the place of what is kept
     book: OffsetBook = field(default_factory=lambda: OffsetBook(locked=NONE_KEPT))
     changes: FileChanges = field(default_factory=FileChanges)  # of the machine file, to be accepted
+    stirs: Callable[[], None] = lambda: None  # called from any thread when a machine at rest has changed
     stop_held: Callable[[], bool] = bool  # whether a key that stops is held down
     starts_here: bool = True  # whether the page in front is one on which cycles are started
     field_open: Callable[[], bool] = bool  # whether a field of that page has the letters
@@ -118,7 +124,10 @@ class Desk:
     log: AlarmLog = field(init=False)
     answers: PromptAnswers = field(init=False)
     rebuilding: ProgramRenewal = field(init=False)
+    first_job: FirstJob = field(default_factory=FirstJob)
     own_starts: list[OwnStart] = field(default_factory=list)
+    hears: Callable[[Snapshot], None] = lambda _snapshot: None  # the sounds
+    offered: Callable[[Snapshot], NoticeRow | None] = lambda _snapshot: None  # between cycles: the next job
     watches: list[Watcher] = field(default_factory=list)  # what else looks at every frame
     _attached: dict[type[Attached], Attached] = field(default_factory=dict)
     _silence: SilenceWatch = field(default_factory=SilenceWatch)
@@ -140,6 +149,10 @@ class Desk:
     def say(self, text: str) -> None:
         """Put an answer on the prompt line; it stays until the next key or the next state."""
         self.answers.say(text)
+
+    def done(self, text: str) -> None:
+        """Say that it was done: a success looks different from a refusal."""
+        self.answers.say(text, done=True)
 
     def refuse(self, why: str) -> None:
         """Say that it was not done, and why."""
@@ -168,7 +181,7 @@ class Desk:
 
     @notice.setter
     def notice(self, text: str) -> None:
-        self.answers.notice, self.answers.asked = text, None
+        self.answers.notice, self.answers.asked, self.answers.done = text, None, False
 
     @property
     def start_words(self) -> str:
@@ -184,6 +197,11 @@ class Desk:
             by_hand = "RELEASE THE BUTTON BY HAND, U WRITES HERE; F1 LEAVES THE PAGE"
             return by_hand if self.station is not None else "RELEASE THE BUTTON, F1 LEAVES THE PAGE"
         return "RELEASE THE BUTTON" if self.station is None else "RELEASE THE BUTTON (U)"
+
+    @property
+    def language(self) -> str:
+        """The machine's own language, in which MDI is typed."""
+        return self.lathe.language if self.lathe is not None else "omniturn"
 
     @property
     def readout(self) -> Readout:
@@ -257,8 +275,12 @@ class Desk:
             self.record.see(snapshot, loaded)
             for watcher in self.watches:
                 watcher.see(snapshot, loaded)
+        self.hears(snapshot)
         self._tell_part(snapshot, loaded)
-        view = status_of(snapshot, self.readout, self.with_c, self.settings.units)
+        if self.settings.now.first_job:
+            self.first_job.see(snapshot, loaded, self.counter.count)
+        third = self.lathe.third_axis if self.lathe is not None else "C"
+        view = status_of(snapshot, self.readout, self.with_c, self.settings.units, self.language, third)
         if self._silence.silent(snapshot.t, self.hands.clock()):
             view = replace(view, state=SILENT, tone=Tone.ALARM)
         return snapshot, view, loaded
@@ -283,6 +305,8 @@ class Desk:
         if page:
             return prompt_line.alarm_of(snapshot, self.release_words) or page
         standing = prompt_line.prompt(snapshot, loaded, self.start_words, self.release_words)
+        if snapshot.state is State.WAIT:
+            standing = how_it_ends(snapshot, self.set_input is not None) or standing
         other = self.differs() if snapshot.state in {State.IDLE, State.DISABLED} and not loaded.busy else ""
         return " · ".join(each for each in (other, self._due(snapshot, standing), standing) if each)
 
@@ -427,7 +451,7 @@ class Desk:
         elif state is State.FAULT:
             self.say("AN ALARM STANDS: PRESS R TO ACKNOWLEDGE IT FIRST")
         else:
-            self.say("THE DRIVES ARE ON")
+            self.done("THE DRIVES ARE ON")
 
     def escape(self) -> bool:
         """Esc takes a question back; while something moves it holds, because it is what a hand hits first.

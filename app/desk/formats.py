@@ -42,9 +42,9 @@ def feed_unit(metric: bool, per_rev: bool) -> str:
 
 
 def feed(value: float, metric: bool, per_rev: bool) -> str:
-    """A feed given in mm/s, or in mm/rev when ``per_rev``; metric ones carry the control's ``MM`` prefix."""
+    """A feed given in mm/s, or in mm/rev when ``per_rev``, without its unit (``feed_unit``)."""
     if metric:
-        return "MM" + (fixed(value, 4) if per_rev else fixed(value * 60, 1))
+        return fixed(value, 4) if per_rev else fixed(value * 60, 1)
     return fixed(value / MM_PER_INCH, 5) if per_rev else fixed(value * 60 / MM_PER_INCH, 2)
 
 

@@ -9,7 +9,7 @@ from app.desk import formats
 from app.desk.program_loading import Loaded
 from app.desk.screen_settings import Units
 from app.desk.translation import tr
-from core.executor.interrupted_job import InterruptedJob
+from core.executor.interrupted_job import CONTROL_LOST, InterruptedJob
 from core.executor.snapshot import Snapshot, Starts, State
 from core.language.source import Dialect
 
@@ -46,7 +46,7 @@ def notice_of(snapshot: Snapshot, loaded: Loaded, units: Units) -> NoticeRow | N
         why=tr(found.why),
         changed=tr(" (ITS TEXT HAS CHANGED SINCE)") if _changed(found, loaded) else "",
     )
-    return NoticeRow(words, _places(found, snapshot, units))
+    return NoticeRow(words, _places(found, snapshot, units) + _uncertain(found))
 
 
 def interrupted_prompt(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
@@ -113,6 +113,13 @@ def _places(found: InterruptedJob, snapshot: Snapshot, units: Units) -> str:
         return tr("STANDS AT {stood} FROM HOME").format(stood=stood)
     now = _figures(snapshot.axes, snapshot.actual, snapshot, units)
     return tr("STOOD AT {stood}, STANDS AT {now} FROM HOME").format(stood=stood, now=now)
+
+
+def _uncertain(found: InterruptedJob) -> str:
+    """What nobody knows of a job whose control was gone at once: its note was written once a second."""
+    if found.why != CONTROL_LOST:
+        return ""
+    return tr(". NOT CERTAIN: THE LAST SECOND OF ITS WAY, AND IF THE CUT IS WHOLE. LOOK AT TOOL AND PART")
 
 
 def _figures(axes: Sequence[str], where: Sequence[float], snapshot: Snapshot, units: Units) -> str:

@@ -22,8 +22,12 @@ from app.desk.readouts import (
     spindle_figures,
 )
 from app.desk.screen_settings import Units
+from app.desk.translation import tr
+from app.desk.waiting import waits_for
 from core.alarms import CATALOGUE, Reaction
 from core.executor.snapshot import Alarm, Snapshot, State
+from core.interpreter.modal_state import Modal
+from core.tool_edges import tool_of
 
 
 class Tone(StrEnum):
@@ -37,6 +41,7 @@ class Tone(StrEnum):
     ALARM = "alarm"
 
 
+NOT_HOMED = "NOT HOMED"
 TONES = {
     State.ESTOP: Tone.ALARM,
     State.DISABLED: Tone.OFF,
@@ -78,25 +83,39 @@ class MachineStatus:
     stop: Alarm | None  # why it stands where no alarm says it, unless somebody asked for it
 
 
+def _second(modal: Modal) -> str:
+    """What stands behind T: the secondary offset, or the cutting edge and the settable offset."""
+    if modal.edge is not None:
+        return f"D{modal.edge} G{modal.settable}" if modal.settable else f"D{modal.edge}"
+    return "" if modal.settable else f"D{modal.secondary}"
+
+
 def status_of(
-    snapshot: Snapshot, readout: Readout, with_c: bool, units: Units = Units.PROGRAM
+    snapshot: Snapshot,
+    readout: Readout,
+    with_c: bool,
+    units: Units = Units.PROGRAM,
+    language: str = "omniturn",
+    third_axis: str = "C",
 ) -> MachineStatus:
-    """What the page shows of ``snapshot``; ``with_c`` when the machine has a C axis.
+    """What the page shows of ``snapshot``; ``with_c`` when the machine has a C axis, ``language`` is its own.
+    ``third_axis`` is what it calls C.
 
     Every figure is in the one unit that ``units`` and this very snapshot come to.
     """
     modal = snapshot.modal
     metric = units.metric(modal.metric)
     stop = unasked(snapshot)
+    state = _state(snapshot, stop)
     return MachineStatus(
         program=snapshot.program,
-        state=_state(snapshot, stop),
-        tone=TONES[snapshot.state],
-        position=position_figures(snapshot, readout, with_c, metric),
-        tool=f"G{modal.settable}" if modal.settable else f"T{modal.tool}",
-        secondary="" if modal.settable else f"D{modal.secondary}",
+        state=state,
+        tone=Tone.OFF if state == NOT_HOMED else TONES[snapshot.state],
+        position=position_figures(snapshot, readout, with_c, metric, third_axis),
+        tool=f"G{modal.settable}" if modal.settable and modal.edge is None else f"T{tool_of(modal.tool)}",
+        secondary="" if "Y" in snapshot.axes else _second(modal),
         feed=feed_figures(snapshot, metric),
-        spindle=spindle_figures(snapshot, metric),
+        spindle=spindle_figures(snapshot, metric, language),
         modes=modes_of(snapshot),
         lamps=lamps_of(snapshot),
         cycle=formats.duration(snapshot.cycle_elapsed),
@@ -122,12 +141,21 @@ def unasked(snapshot: Snapshot) -> Alarm | None:
 def _state(snapshot: Snapshot, stop: Alarm | None) -> str:
     """In words, with the number of what is in the way."""
     if snapshot.state is State.WAIT and snapshot.waiting_for:
-        return f"WAITING: {snapshot.waiting_for}"
+        return tr("WAITING: {what}").format(what=waits_for(snapshot))
+    if snapshot.state is State.RUN and snapshot.waiting_for:
+        return waits_for(snapshot)
     if snapshot.state is State.FAULT and snapshot.alarms:
         return f"ALARM {snapshot.alarms[0].number}: {snapshot.alarms[0].text}"
     if snapshot.state is State.HOLD and stop is not None:
         return f"FEED HOLD {stop.number}: {stop.text}"
+    if snapshot.state is State.IDLE and not_homed(snapshot):
+        return NOT_HOMED
     return snapshot.state.value
+
+
+def not_homed(snapshot: Snapshot) -> bool:
+    """Whether an axis does not know where it is: no cycle starts then."""
+    return not all(snapshot.homed)
 
 
 def _message(snapshot: Snapshot) -> str:

@@ -8,6 +8,7 @@ from app.desk import formats
 from app.desk.translation import tr
 from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.modal_state import Modal
+from core.tool_edges import edge_name
 
 NONE = formats.NOTHING
 
@@ -21,9 +22,11 @@ class ModalRow:
     value: str
 
 
-def rows_of(point: Checkpoint) -> tuple[ModalRow, ...]:
-    """Every group of codes, always in the same order."""
+def rows_of(point: Checkpoint, language: str = "omniturn") -> tuple[ModalRow, ...]:
+    """Every group of codes of the machine's language, always in the same order."""
     modal = point.modal
+    if language != "omniturn":
+        return _rows_in(point, language)
     return (
         *_geometry(modal),
         *_feeds(point),
@@ -34,6 +37,62 @@ def rows_of(point: Checkpoint) -> tuple[ModalRow, ...]:
         *_frame(modal),
         *_functions(modal),
     )
+
+
+_GROUPS = {
+    "klartext": (
+        *("tool", "length", "speed", "spindle", "feed", "preset", "datum", "plane", "transform", "tcpm"),
+        *("coolant", "outputs"),
+    ),
+    "sinumerik": (
+        *("motion", "settable", "trans", "units", "x words", "distance", "tool", "speed", "spindle", "feed"),
+        *("coolant", "outputs"),
+    ),
+}
+
+
+def _rows_in(point: Checkpoint, language: str) -> tuple[ModalRow, ...]:
+    """The groups of Klartext or SINUMERIK, as the pass that was kept tells them; without one what a program
+    that has ended leaves."""
+    told = dict(point.kept.lines) if point.kept is not None else {}
+    values = _left_by_program(point.modal) | told
+    labels = _labels()
+    return tuple(ModalRow(key, labels[key], values.get(key) or NONE) for key in _GROUPS[language])
+
+
+def _left_by_program(modal: Modal) -> dict[str, str]:
+    return {
+        "tool": edge_name(modal.tool) if modal.tool else "",
+        "speed": f"S{modal.rpm:g}" if modal.rpm else "",
+        "spindle": {1: "M3", 0: "M5", -1: "M4"}[modal.spindle],
+        "coolant": "M8" if modal.coolant else "M9",
+        "settable": "G500",
+        "tcpm": "M129",
+        "outputs": " ".join(sorted(name.upper() for name in modal.outputs)),
+    }
+
+
+def _labels() -> dict[str, str]:
+    return {
+        "tool": tr("TOOL"),
+        "length": tr("LENGTH, RADIUS"),
+        "speed": tr("SPEED"),
+        "spindle": tr("SPINDLE"),
+        "feed": tr("FEED"),
+        "preset": tr("PRESET"),
+        "datum": tr("DATUM SHIFT"),
+        "plane": tr("TILTED PLANE"),
+        "transform": tr("MIRROR, ROT, SCALE"),
+        "tcpm": tr("TCPM"),
+        "motion": tr("MOTION"),
+        "settable": tr("ZERO OFFSET"),
+        "trans": tr("TRANS"),
+        "units": tr("UNITS"),
+        "x words": tr("X WORDS"),
+        "distance": tr("DISTANCE"),
+        "coolant": tr("COOLANT"),
+        "outputs": tr("M FUNCTIONS"),
+    }
 
 
 def _geometry(modal: Modal) -> tuple[ModalRow, ...]:
@@ -84,7 +143,7 @@ def _spindle(modal: Modal) -> tuple[ModalRow, ...]:
 def _frame(modal: Modal) -> tuple[ModalRow, ...]:
     pair = _pair
     return (
-        ModalRow("tool", tr("TOOL"), f"T{modal.tool}"),
+        ModalRow("tool", tr("TOOL"), edge_name(modal.tool)),
         ModalRow("tool offset", tr("TOOL OFFSET"), pair(modal, modal.tool_x, modal.tool_z)),
         ModalRow("secondary", tr("D OFFSET"), f"D{modal.secondary}  {_d(modal)}"),
         ModalRow("shift", tr("G10 IN FORCE"), pair(modal, modal.shift_x, modal.shift_z)),

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.desk.program_loading import Loaded
+from core.drawings.drawing_file import is_drawing
 from core.language.source import Source, SourceError, load_source
 
 LISTED = 2000  # a folder with more programs than this is typed into, not looked through
@@ -37,7 +38,7 @@ class ProgramFolders:
         """What can be picked, by name; folders that are not there are empty."""
         seen: dict[str, ListedProgram] = {}
         for folder in self.folders:
-            for path in _programs(folder):
+            for path in _files(folder, lambda name: Path(name).suffix.lower() in ENDINGS):
                 seen.setdefault(path.name.lower(), ListedProgram(path.name, path))
         return tuple(sorted(seen.values(), key=lambda entry: entry.name.lower()))
 
@@ -45,6 +46,14 @@ class ProgramFolders:
         """The entries whose name holds what was typed."""
         part = typed.strip().lower()
         return tuple(entry for entry in self.entries() if part in entry.name.lower())
+
+    def drawings(self) -> tuple[ListedProgram, ...]:
+        """The drawings beside the programs, by name: what a program can be made of."""
+        seen: dict[str, ListedProgram] = {}
+        for folder in self.folders:
+            for path in _files(folder, is_drawing):
+                seen.setdefault(path.name.lower(), ListedProgram(path.name, path))
+        return tuple(sorted(seen.values(), key=lambda entry: entry.name.lower()))
 
     def find(self, typed: str) -> Path | None:
         """The program that a typed name means: any case, with or without its ending; or a path.
@@ -65,12 +74,12 @@ class ProgramFolders:
         return next((e.path for e in entries if e.path.stem.lower() == wanted), None)
 
 
-def _programs(folder: Path) -> Iterator[Path]:
+def _files(folder: Path, taken: Callable[[str], bool]) -> Iterator[Path]:
     try:
         paths = sorted(folder.iterdir(), key=lambda path: path.name.lower())
     except OSError:
         return
-    good = (p for p in paths if p.suffix.lower() in ENDINGS and not p.name.startswith(".") and p.is_file())
+    good = (p for p in paths if taken(p.name) and not p.name.startswith(".") and p.is_file())
     for count, path in enumerate(good):
         if count >= LISTED:
             return

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from enum import StrEnum
 
 from app.desk import interrupted_notice
 from app.desk.machine_status import MachineStatus
@@ -16,6 +17,7 @@ from app.desk.program_loading import Loaded, Phase
 from core.executor.job import WARNING
 from core.executor.snapshot import Alarm, Event, Snapshot, State
 from core.language.diagnostics import Severity
+from core.tool_edges import edge_name
 
 NOT_FOUND = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
 ASK_FILE = "FILE TO BE PROCESSED"
@@ -110,6 +112,8 @@ def _idle(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
 def _lacking(snapshot: Snapshot, loaded: Loaded) -> str:
     """What a good program lacks to be started; empty when nothing."""
     missing = missing_tools(loaded)
+    if missing and "Y" in snapshot.axes:
+        return f"WILL NOT START: {', '.join(missing)} NOT IN THE TOOL TABLE (F8)"
     if missing:
         return f"WILL NOT START: NO OFFSET WAS EVER SET FOR {', '.join(missing)} (F8 SETS THEM)"
     return f"WILL NOT START: {snapshot.next_barred}" if snapshot.next_barred else ""
@@ -119,7 +123,7 @@ def missing_tools(loaded: Loaded) -> list[str]:
     """The tools that the program on the desk asks for and nobody has set."""
     if loaded.proof is None or loaded.job is None:
         return []
-    return [f"T{number}" for number in sorted(set(loaded.proof.tools) - loaded.job.tools_set)]
+    return [edge_name(key) for key in loaded.proof.unset(loaded.job)]
 
 
 def refusal(loaded: Loaded) -> str:
@@ -160,6 +164,14 @@ def _progress(loaded: Loaded) -> str:
 HEARD = 100  # events that wait for the next frame; older ones are in the log
 
 
+class Sort(StrEnum):
+    """What an answer is: each has its colour and its sign."""
+
+    ANSWER = "answer"  # a refusal, or what to do before it can be done
+    DONE = "done"
+    ASKED = "asked"
+
+
 YES = "Y"
 READ = 0.5  # s: sooner nobody has read a question, and what is pressed is meant for something else
 
@@ -178,15 +190,23 @@ class PromptAnswers:
     notice: str = ""
     asked: Callable[[], None] | None = None  # what yes does now
     key: str = YES  # that means yes
+    done: bool = False  # the notice tells that something was done
     _since: float = 0.0
     _in: State | None = None
     _refused: str = ""
     _not_kept: str = ""
     _heard: deque[Event] = field(default_factory=lambda: deque(maxlen=HEARD))
 
-    def say(self, text: str) -> None:
-        """Put an answer on the prompt line."""
-        self.notice, self.asked = text, None
+    @property
+    def sort(self) -> Sort:
+        """What stands on the prompt line while there is a notice."""
+        if self.asked is not None:
+            return Sort.ASKED
+        return Sort.DONE if self.done else Sort.ANSWER
+
+    def say(self, text: str, *, done: bool = False) -> None:
+        """Put an answer on the prompt line; ``done``: it tells of a success."""
+        self.notice, self.asked, self.done = text, None, done
         self._in = self.snapshot().state
 
     def ask(self, question: str, yes: Callable[[], None], key: str = YES) -> None:

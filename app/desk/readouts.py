@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -52,11 +53,18 @@ def lamps_of(snapshot: Snapshot) -> tuple[Lamp, ...]:
         )
     live = Lamp("LIVE TOOL", any(name.startswith("live") for name in snapshot.outputs))
     coolant = Lamp("COOLANT", "coolant" in snapshot.outputs)
-    if Unknown.OUTPUTS in snapshot.unknown:
+    if Unknown.OUTPUTS in snapshot.unknown and "collet" not in snapshot.absent:
         collet = Lamp("COLLET ?", lit=True, warn=True)
     else:
         collet = _collet_lamp(snapshot)
     return (_spindle_lamp(snapshot), _output_lamp(snapshot, coolant), collet, _output_lamp(snapshot, live))
+
+
+def drives_lamp(snapshot: Snapshot, key: str = "") -> Lamp:
+    """As the drives tell it: an alarm takes their power too, and of those unheard nothing is known."""
+    if Unknown.SLIDES in snapshot.unknown:
+        return Lamp("DRIVES ?", lit=True, key=key, warn=True)
+    return Lamp("DRIVES ON", snapshot.powered, key)
 
 
 def _output_lamp(snapshot: Snapshot, lamp: Lamp) -> Lamp:
@@ -88,6 +96,8 @@ def _spindle_lamp(snapshot: Snapshot) -> Lamp:
 
 def _collet_lamp(snapshot: Snapshot) -> Lamp:
     """The output decides, not the program's word: it is what holds the bar."""
+    if "collet" in snapshot.absent:
+        return Lamp("COLLET BY HAND", lit=False)
     if "collet" in snapshot.outputs:
         return Lamp("COLLET CLOSED", lit=True)
     return Lamp("COLLET OPEN", lit=True, warn=True)
@@ -102,12 +112,13 @@ _SLIDES = 3
 
 def plane_figures(snapshot: Snapshot, swivel: Swivel) -> tuple[float, ...]:
     """Where the tip stands in the working plane, mm, and the rotary axes as they are shown."""
-    return (*swivel.system.place.point(_slides(snapshot.actual)), *_shown(snapshot, swivel))
+    zero = swivel.system.kinematics.zero
+    return (*swivel.system.place.point(_slides(snapshot.actual)), *_shown(snapshot, swivel, zero))
 
 
 def home_figures(snapshot: Snapshot, swivel: Swivel) -> tuple[float, ...]:
     """Where the slides stand from home, and the rotary axes as they are shown."""
-    return (*_slides(snapshot.actual), *_shown(snapshot, swivel))
+    return (*_slides(snapshot.actual), *_shown(snapshot, swivel, {}))
 
 
 def figures_to_go(snapshot: Snapshot, swivel: Swivel) -> tuple[float, ...]:
@@ -137,13 +148,13 @@ def _slides(at: tuple[float, ...]) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _shown(snapshot: Snapshot, swivel: Swivel) -> list[float]:
-    """Rotary axes; of a modulo axis 0 to under 360, and what would be written as 360 is 0."""
+def _shown(snapshot: Snapshot, swivel: Swivel, zero: Mapping[str, float]) -> list[float]:
+    """Rotary axes from their zeros; of a modulo axis 0 to under 360, what is written as 360 is 0."""
     found = []
     for name, at in zip(snapshot.axes[_SLIDES:], snapshot.actual[_SLIDES:], strict=True):
-        axis = swivel.system.kinematics.rotary(name)
+        axis, angle = swivel.system.kinematics.rotary(name), at - zero.get(name, 0.0)
         wraps = axis is not None and axis.modulo
-        found.append(round(at, ANGLE_PLACES) % 360.0 if wraps else at)
+        found.append(round(angle, ANGLE_PLACES) % 360.0 if wraps else angle)
     return found
 
 
@@ -220,19 +231,22 @@ def _wrapped(at: tuple[float, ...], snapshot: Snapshot) -> tuple[float, ...]:
     return (*at[:-1], round(at[-1], formats.ANGLE_PLACES) % 360.0)
 
 
-def position_figures(snapshot: Snapshot, readout: Readout, with_c: bool, metric: bool) -> PositionFigures:
+def position_figures(
+    snapshot: Snapshot, readout: Readout, with_c: bool, metric: bool, third_axis: str = "C"
+) -> PositionFigures:
     """Both figures of every axis; the second is the distance to go, or the position beside that.
 
-    ``metric``: mm, else inches. C is a row of a lathe only ``with_c``.
+    ``metric``: mm, else inches. C is a row of a lathe only ``with_c``, under the name of ``third_axis``.
     """
     diameter = snapshot.modal.diameter
     beside = Readout.POSITION if readout is Readout.TO_GO else Readout.TO_GO
     large, small = (_figures(snapshot, r, metric, diameter) for r in (readout, beside))
     mark = "" if snapshot.axes != LATHE else "Ø" if diameter else "R"
     known = Unknown.SLIDES not in snapshot.unknown
+    names = (*snapshot.axes[:2], third_axis) if snapshot.axes == LATHE else snapshot.axes
     rows = [
         AxisFigures(name, mark if name == "X" else "", a, b, homed, known)
-        for name, a, b, homed in zip(snapshot.axes, large, small, snapshot.homed, strict=True)
+        for name, a, b, homed in zip(names, large, small, snapshot.homed, strict=True)
     ]
     return PositionFigures(
         readout=readout,
@@ -324,8 +338,17 @@ def feed_figures(snapshot: Snapshot, metric: bool) -> FeedFigures:
     )
 
 
-def spindle_figures(snapshot: Snapshot, metric: bool) -> SpindleFigures:
-    """Speed as it is commanded and measured, and the surface speed in m/min or feet/min."""
+def _directions(language: str) -> tuple[str, str, str]:
+    if language == "omniturn":
+        return tr("M03 FWD"), tr("M04 REV"), tr("M05 OFF")
+    return tr("M3 FWD"), tr("M4 REV"), tr("M5 OFF")
+
+
+def spindle_figures(snapshot: Snapshot, metric: bool, language: str) -> SpindleFigures:
+    """Speed as it is commanded and measured, and the surface speed in m/min or feet/min.
+
+    ``language`` is the machine's own: OmniTurn writes M05 what Klartext and SINUMERIK write M5.
+    """
     modal = snapshot.modal
     if Unknown.SPINDLE in snapshot.unknown:
         return SpindleFigures(
@@ -342,7 +365,8 @@ def spindle_figures(snapshot: Snapshot, metric: bool) -> SpindleFigures:
     lathe = snapshot.axes == LATHE  # on a mill it would be the tool's, whose radius nobody knows
     surface = 2 * math.pi * radius * snapshot.rpm_actual / 60 if lathe else math.nan
     command = snapshot.rpm_command
-    direction = "M03 FWD" if command > 0 else "M04 REV" if command < 0 else "M05 OFF"
+    forward, reverse, off = _directions(language)
+    direction = forward if command > 0 else reverse if command < 0 else off
     return SpindleFigures(
         direction=f"{direction} · G96" if modal.css else direction,
         rpm=formats.rpm(command),

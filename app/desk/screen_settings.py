@@ -33,6 +33,9 @@ class Settings:
     units: str = Units.PROGRAM.value
     readout: str = "POSITION"
     dock: bool = True
+    full_screen: bool = False
+    first_job: bool = False  # its card is shown
+    latched: bool = False  # palms one after the other, where everything is simulated
 
 
 CHOICES: Mapping[str, tuple[object, ...]] = {
@@ -41,6 +44,9 @@ CHOICES: Mapping[str, tuple[object, ...]] = {
     "units": tuple(unit.value for unit in Units),
     "readout": ("POSITION", "DISTANCE TO GO", "FROM HOME"),
     "dock": (True, False),
+    "full_screen": (True, False),
+    "latched": (True, False),
+    "first_job": (True, False),
 }
 
 

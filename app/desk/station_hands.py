@@ -111,6 +111,7 @@ class Pot:
 
 OVERRIDE_STEP = 0.1
 OVERRIDE_MOST = 1.5
+LATCHED = 5.0  # s for which a palm that was touched waits for the other one
 LONGEST_TURN = 0.1  # seconds of turning at a time: a screen that was away does not catch up with a jump
 
 
@@ -133,6 +134,8 @@ class StationHands:
     estop_pressed: bool = False
     spindle_pot: Pot = field(default_factory=lambda: Pot(1.0))
     feed_pot: Pot = field(default_factory=lambda: Pot(OVERRIDE_MOST))
+    latched: str = ""  # the palm that waits for the other one, "left" or "right"
+    _latched_at: float = 0.0
     _looked: float | None = None
 
     def at(self) -> float:
@@ -158,6 +161,33 @@ class StationHands:
             if self.palms.release(side):
                 self.say(ONE_PALM)
 
+    def latch(self, side: str) -> None:
+        """A palm where everything is simulated, by one finger or the mouse: it waits for the other one.
+
+        With that both go down at once, as two hands press them; the finger that comes up lets both go.
+        """
+        first, self.latched = self.latch_now(), ""
+        if first in {"", side}:
+            if why := self.barred():
+                self.say(why)
+            elif not first:
+                self.clear()
+                self.latched, self._latched_at = side, self.clock()
+            return
+        for each in (first, side):
+            self.palm(each, down=True)
+
+    def latch_now(self) -> str:
+        """The palm that waits for the other one; after a while it waits no more."""
+        if self.latched and self.clock() - self._latched_at > LATCHED:
+            self.latched = ""
+        return self.latched
+
+    def latch_up(self) -> None:
+        """The finger has come up."""
+        for side in tuple(self.palms.down):
+            self.palm(side, down=False)
+
     def _palm_down(self, station: StationPanel, side: str) -> None:
         self.clear()
         if self.palms.press(side, self.at()):
@@ -169,11 +199,13 @@ class StationHands:
 
     def let_go(self) -> None:
         """Hands off: the window has lost the keyboard, so no release would ever arrive."""
+        self.latched = ""
         for side in tuple(self.palms.down):
             self.palm(side, down=False)
 
     def hold(self, down: bool) -> None:
         """The station's feed hold button."""
+        self.latched = ""
         if self.station:
             (self.station.press_hold if down else self.station.release_hold)()
 

@@ -8,6 +8,7 @@ from core.part.holder_codes import outline_points
 from core.part.shape_rules import ShapeMistake, shape_mistakes
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.store.store_rows import ShapeRow, ToolRow
+from core.tool_edges import edge_name, tool_of
 
 
 def shape_of(row: ShapeRow, tool: ToolRow | None) -> ToolShape:
@@ -22,10 +23,14 @@ def shape_of(row: ShapeRow, tool: ToolRow | None) -> ToolShape:
 
 
 def tool_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -> dict[int, ToolShape]:
-    """The shapes by tool, without those that cannot be: nothing can be drawn of them."""
+    """The shapes by tool, without those that cannot be: nothing can be drawn of them.
+
+    A further edge is of its tool's shape, with its own nose radius and tip.
+    """
+    edges = {key: shapes[tool_of(key)] for key in tools if tool_of(key) in shapes}
     return {
         number: shape_of(row, tools.get(number))
-        for number, row in shapes.items()
+        for number, row in {**edges, **shapes}.items()
         if not row_mistakes(row, tools.get(number))
     }
 
@@ -36,7 +41,7 @@ def wrong_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -
     Each field was sound when it was entered; it is another that has changed since, or the tool's offset.
     """
     return tuple(
-        f"T{number} {wrong.field}: {wrong.text}"
+        f"{edge_name(number)} {wrong.field}: {wrong.text}"
         for number, row in shapes.items()
         for wrong in row_mistakes(row, tools.get(number))
     )

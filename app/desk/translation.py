@@ -36,10 +36,19 @@ def spoken() -> str:
     return _Speaker.language
 
 
+_DATA, _END = "\u2068", "\u2069"  # Unicode's own isolates: they take no room
+
+
+def data(text: str) -> str:
+    """Somebody's text within a sentence that ``tr`` gets: a remark, a name. It is left as it is."""
+    return f"{_DATA}{text}{_END}" if text else ""
+
+
 def tr(text: str) -> str:
     """The text in the operator's language; the English one where the catalogue has none."""
     translate = _Speaker.translate
-    return text if translate is None else translate(text) or text
+    shown = text if translate is None else translate(text) or text
+    return shown.replace(_DATA, "").replace(_END, "") if _DATA in shown else shown
 
 
 # --- the catalogue of texts ---------------------------------------------------------------------------
@@ -51,17 +60,26 @@ HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
 BETWEEN = "  ·  "  # parts of a title are texts of their own
 _WORD = re.compile(r"[^\W\d_]{2}")
 _DEEPEST = 3  # values in values
+_NAMES = frozenset({"{name}", "{program}", "{path}", "{text}", "{remark}"})  # holes for somebody's text
 _SLIGHT = 4  # characters between two holes, such as " OF ", that any sentence has
 
 
+_LOWER = re.compile(r"[a-z]{2}")
+_CODE = re.compile(r"[^a-z\s]+")  # one word in capitals: in a finding it is the program's own
+
+
 class _Template:
-    """One sentence with holes, in both languages."""
+    """One sentence with holes, in both languages.
+
+    ``of_program``: it is no sentence of the screen, which are in capitals, but a finding about a program.
+    """
 
     def __init__(self, english: str, other: str) -> None:
         pieces = HOLE.split(english)
         self.head, self.tail = pieces[0], pieces[-1]
         self.weight = sum(map(len, pieces))
         self.joined = BETWEEN in english
+        self.of_program = any(_LOWER.search(piece) for piece in pieces)
         self.slight = not (self.head or self.tail) and self.weight <= _SLIGHT
         self._holes = HOLE.findall(english)
         self._other = other
@@ -95,11 +113,12 @@ class Catalogue:
     def _translated(self, text: str) -> str:
         return self._look_up(text, 0) or text
 
-    def _look_up(self, text: str, depth: int) -> str:
-        """Empty when nothing of it is known."""
-        if depth > _DEEPEST or not _WORD.search(text):
+    def _look_up(self, text: str, depth: int, of_program: bool = False) -> str:
+        """Empty when nothing of it is known; ``of_program``: within a finding about a program."""
+        if depth > _DEEPEST or not _WORD.search(text) or text.startswith(_DATA):
             return ""
-        return self._find(text) or self._shouted(text) or self._made(text, depth) or self._joined(text, depth)
+        made = self._find(text) or self._shouted(text) or self._made(text, depth, of_program)
+        return made or self._joined(text, depth)
 
     def _shouted(self, text: str) -> str:
         """Sentences of the control that are shown in capitals."""
@@ -112,11 +131,18 @@ class Catalogue:
         joined = BETWEEN.join(parts)
         return joined if joined != text else ""
 
-    def _made(self, text: str, depth: int) -> str:
+    def _made(self, text: str, depth: int, of_program: bool) -> str:
         joined = BETWEEN in text  # its parts are texts: no hole reaches over from one into the next
         for template in self._templates:
             values = template.values(text) if template.joined or not joined else None
             if values is not None:
-                known = {hole: self._look_up(v, depth + 1) or v for hole, v in values.items()}
+                found = of_program or template.of_program
+                known = {hole: self._value(hole, value, depth, found) for hole, value in values.items()}
                 return template.filled(known)
         return ""
+
+    def _value(self, hole: str, value: str, depth: int, of_program: bool) -> str:
+        """What stands in a hole: a sentence of ours is translated, what a program says is not."""
+        if hole in _NAMES or (of_program and _CODE.fullmatch(value)):
+            return value
+        return self._look_up(value, depth + 1, of_program) or value

@@ -18,6 +18,7 @@ from app.desk.sheet import Entry
 from app.desk.translation import tr
 from app.programs.program_rows import Program
 from app.programs.whole_file import FileError, present, write_whole
+from core.drawings.drawing_file import is_drawing
 from core.store.program_records import check_name
 from core.store.store_errors import StoreError
 
@@ -32,7 +33,7 @@ def checked_name(name: str, like: Path) -> str:
     name = name.strip()
     if not name:
         raise FileError("NOTHING IS ENTERED; TYPE A NAME")
-    if Path(name).suffix.lower() not in ENDINGS - {""}:
+    if Path(name).suffix.lower() not in ENDINGS - {""} and not is_drawing(name):
         name += like.suffix
     try:
         check_name(name)
@@ -172,7 +173,7 @@ class CopyRenameDelete:
 
         def done(name: str) -> None:
             self.question = ""
-            self.desk.say(tr(words).format(name=name))
+            self.desk.done(tr(words).format(name=name))
             self.changed(name)
 
         self.worker.queue(work, done, self.desk.refuse)

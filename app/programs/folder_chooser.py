@@ -2,62 +2,16 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk import formats
 from app.desk.program_folder import ENDINGS
 from app.desk.sheet import Row, Sheet
+from app.programs.removable_media import Medium, Stick, sticks, why_not
 from app.programs.whole_file import FileError
-
-# --- USB sticks and other removable media ------------------------------------------------------------------
-
-
-ROOTS = (Path("/media"), Path("/run/media"), Path("/mnt"))
-
-
-@dataclass(frozen=True, slots=True)
-class Stick:
-    """One medium: its label and where it is mounted; ``free`` bytes."""
-
-    label: str
-    path: Path
-    free: int
-
-
-def sticks(
-    roots: Sequence[Path] = ROOTS, mounted: Callable[[Path], bool] = os.path.ismount
-) -> tuple[Stick, ...]:
-    """What is plugged in and mounted now, by label; a folder that is no mount is a medium that has gone."""
-    found = {path: Stick(path.name, path, _free(path)) for root in roots for path in _mounts(root, mounted)}
-    return tuple(sorted(found.values(), key=lambda stick: stick.label.lower()))
-
-
-def _mounts(root: Path, mounted: Callable[[Path], bool]) -> Iterator[Path]:
-    """Two levels: /media/STICK of some systems, /media/USER/STICK of others."""
-    for path in _folders(root):
-        if mounted(path):
-            yield path
-        else:
-            yield from (below for below in _folders(path) if mounted(below))
-
-
-def _folders(path: Path) -> list[Path]:
-    try:
-        return sorted(below for below in path.iterdir() if below.is_dir())
-    except OSError:
-        return []
-
-
-def _free(path: Path) -> int:
-    try:
-        return shutil.disk_usage(path).free
-    except OSError:
-        return 0
-
+from core.drawings.drawing_file import is_drawing
 
 UP = ".."
 MOST = 2000
@@ -71,6 +25,7 @@ class FolderLine:
     path: Path
     folder: bool
     size: int = 0
+    locked: bool = False  # a place that takes nothing
 
 
 @dataclass(slots=True)
@@ -83,17 +38,22 @@ class FolderChooser:
     top: Path | None = None  # the place it belongs to; the way up ends there
     lines: tuple[FolderLine, ...] = ()
     marked: int = 0
+    medium: Medium | None = None  # the place that is open, as it was when it was opened
     trouble: str = field(default="")
 
     def look(self) -> tuple[FolderLine, ...]:
         """What is there now; raises FileError when the folder cannot be read. On a worker."""
         if self.at is None:
-            places = [FolderLine(stick.label, stick.path, True, stick.free) for stick in self.plugged()]
+            self.medium = None
+            places = [FolderLine(s.label, s.path, True, s.free, s.locked) for s in self.plugged()]
             return (*places, FolderLine("THIS CONTROL", self.home, True))
+        if self.medium is None:
+            self.medium = Medium.of(self.top or self.at)
+        self.medium.check()
         try:
             return (FolderLine(UP, self.at.parent, True), *_inside(self.at))
         except OSError as error:
-            raise FileError(f"{self.at.name} CANNOT BE READ: {error.strerror}") from error
+            raise FileError(why_not(error, self.at)) from error
 
     def show_lines(self, lines: tuple[FolderLine, ...]) -> None:
         """Take what ``look`` has found."""
@@ -125,7 +85,8 @@ def _inside(folder: Path) -> list[FolderLine]:
     paths = sorted(folder.iterdir(), key=lambda path: path.name.lower())[:MOST]
     seen = [path for path in paths if not path.name.startswith(".")]
     folders = [FolderLine(path.name, path, True) for path in seen if path.is_dir()]
-    files = [path for path in seen if path.suffix.lower() in ENDINGS and path.is_file()]
+    taken = [path for path in seen if path.suffix.lower() in ENDINGS or is_drawing(path.name)]
+    files = [path for path in taken if path.is_file()]
     return folders + [FolderLine(path.name, path, False, path.stat().st_size) for path in files]
 
 
@@ -135,7 +96,7 @@ def chooser_sheet(chooser: FolderChooser, title: str) -> Sheet:
         Row(
             (
                 line.name,
-                "FOLDER" if line.folder else "PROGRAM",
+                "READ-ONLY" if line.locked else "FOLDER" if line.folder else "PROGRAM",
                 formats.file_size(line.size) if line.size else "",
             )
         )

@@ -6,7 +6,8 @@ is told as done when it has been written, brought to the disk and read back.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -18,12 +19,15 @@ from app.desk.sheet import STEPS, Key, Sheet
 from app.desk.translation import tr
 from app.programs.copy_rename_delete import BUSY, checked_name, same_name_in
 from app.programs.folder_chooser import FolderChooser, chooser_sheet
+from app.programs.removable_media import Medium, why_not
 from app.programs.whole_file import FileError, present, settle, write_out, write_whole
+from core.drawings.drawing_file import is_drawing
 from core.language.source import SourceError, load_source
 from core.store.store_errors import StoreError
 
 LARGEST = 50_000_000  # bytes: no program is larger
 
+Told = Callable[[int, int], None]  # so many of so many are done
 Check = Callable[[Path], str]  # the first error that proving finds in a program; empty: none
 PLACE_FIRST = "OPEN A PLACE FIRST: ARROWS MARK IT, RETURN OPENS IT"
 
@@ -41,7 +45,13 @@ class Carried:
 
 
 def import_programs(
-    sources: Sequence[Path], folder: Path, persistence: Persistence, check: Check, *, replace: bool
+    sources: Sequence[Path],
+    folder: Path,
+    persistence: Persistence,
+    check: Check,
+    *,
+    replace: bool,
+    told: Told = lambda _done, _of: None,
 ) -> Carried:
     """Programs into the operator's folder, each proved. Raises FileError.
 
@@ -52,30 +62,62 @@ def import_programs(
     if differing and not replace:
         return Carried(differing=differing)
     found = []
-    for name, text in texts.items():
+    for number, (name, text) in enumerate(texts.items()):
+        told(number, len(texts))
         target = folder / (same_name_in(folder, name) or name)
         _keep_old(target, persistence, text)
         write_whole(target, text)
-        if trouble := check(target):
+        if not is_drawing(target.name) and (trouble := check(target)):
             found.append(f"{target.name}: {trouble}")
     return Carried(tuple(texts), (), tuple(found))
 
 
-def export_programs(sources: Sequence[Path], folder: Path, *, replace: bool) -> Carried:
-    """Programs to a folder or stick, whole and on the medium when this comes back. Raises FileError."""
+def export_programs(
+    sources: Sequence[Path],
+    folder: Path,
+    *,
+    replace: bool,
+    medium: Medium | None = None,
+    told: Told = lambda _done, _of: None,
+) -> Carried:
+    """Programs to a folder or stick, whole and on the medium when this comes back. Raises FileError.
+
+    ``medium`` is what stood there when it was opened: without it, nothing is written.
+    """
     texts = {path.name: _bytes(path) for path in sources}
+    medium = medium or Medium.of(folder)
+    medium.check()
     differing = _differing(texts, folder)
     if differing and not replace:
         return Carried(differing=differing)
-    for name, text in texts.items():
-        write_out(folder / (same_name_in(folder, name) or name), text)
-    settle(folder)
+    medium.room_for(sum(map(len, texts.values())))
+    for number, (name, text) in enumerate(texts.items()):
+        told(number, len(texts))
+        with _on(medium, number, len(texts)):
+            medium.check()
+            write_out(folder / (same_name_in(folder, name) or name), text)
+    with _on(medium, 0, len(texts)):
+        settle(folder)
+        medium.check()
     return Carried(tuple(texts))
 
 
+@contextmanager
+def _on(medium: Medium, done: int, of: int) -> Iterator[None]:
+    """What goes wrong on a stick is told in the words of who holds it, with how many are on it."""
+    try:
+        yield
+    except FileError as error:
+        cause = error.__cause__
+        why = why_not(cause, medium.folder) if isinstance(cause, OSError) else str(error)
+        raise FileError(f"{tr('{done} OF {of} COPIED').format(done=done, of=of)}: {why}") from error
+
+
 def _program(path: Path) -> bytes:
-    """The text, read as a program first: what is none does not come in."""
+    """The text, read as a program first: what is none does not come in. A drawing is read later."""
     data = _bytes(path)
+    if is_drawing(path.name):
+        return data
     try:
         load_source(path)
     except SourceError as error:
@@ -131,6 +173,7 @@ class ImportExport:
     one: Path | None = None  # what is marked in it
     _asked: tuple[Path, ...] = ()  # what is being carried
     _at: Path = Path()  # and where
+    _done_of: tuple[int, int] = (0, 0)  # so many of so many are done, as the worker tells
 
     def begin(self, shown: tuple[Path, ...], marked: Path | None, out: bool) -> None:
         """Open the chooser at the list of places."""
@@ -233,18 +276,32 @@ class ImportExport:
             return
         self._asked = paths
         self._at = at
-        self.desk.say("COPYING: LEAVE THE STICK WHERE IT IS")
+        self._done_of = (0, len(paths))
+        self.desk.clear()
+        told = self._count
         if self.out:
-            self.worker.queue(lambda: export_programs(paths, at, replace=replace), self._done, self._failed)
+            work = partial(export_programs, paths, at, replace=replace, medium=self.chooser.medium, told=told)
         else:
             own, persistence, check = self.own, self.persistence, self.check
-            self.worker.queue(
-                lambda: import_programs(paths, own, persistence, check, replace=replace),
-                self._done,
-                self._failed,
-            )
+            work = partial(import_programs, paths, own, persistence, check, replace=replace, told=told)
+        self.worker.queue(partial(self._carried, work, self.chooser.medium), self._done, self._failed)
+
+    def _count(self, done: int, of: int) -> None:
+        """From the worker: what the prompt line shows meanwhile."""
+        self._done_of = (done, of)
+
+    @staticmethod
+    def _carried(work: Callable[[], Carried], medium: Medium | None) -> Carried:
+        """On the worker: where the stick is not there any more, that is the reason. Raises FileError."""
+        try:
+            return work()
+        except FileError:
+            if medium is not None:
+                medium.check()
+            raise
 
     def _done(self, carried: Carried) -> None:
+        self._done_of = (0, 0)
         if carried.differing:
             names = ", ".join(carried.differing[:3]) + (" …" if len(carried.differing) > 3 else "")
             asked = tr("{names}: THERE ALREADY WITH ANOTHER TEXT. PRESS Y TO REPLACE, ESC TO KEEP")
@@ -263,16 +320,21 @@ class ImportExport:
             )
         else:
             words = tr("{count} IMPORTED AND PROVED WITHOUT AN ERROR").format(count=count)
-        self.desk.say(words)
+        (self.desk.say if carried.findings else self.desk.done)(words)
         self._look()
         self.finished()
 
     def _failed(self, why: str) -> None:
-        self._asked = ()
+        self._asked, self._done_of = (), (0, 0)
+        self.finished()
         self.desk.refuse(why)
 
     def prompt(self) -> str:
         """What the keys do here, for the prompt line."""
+        done, of = self._done_of
+        if of:
+            words = tr("COPYING {number} OF {of}: LEAVE THE STICK WHERE IT IS")
+            return words.format(number=min(done + 1, of), of=of)
         if self.out:
             return "RETURN OPENS A PLACE OR FOLDER; F4 COPIES THE MARKED PROGRAM THERE, F5 ALL; ESC GOES BACK"
         return "RETURN OPENS A PLACE OR FOLDER, ON A PROGRAM IT IMPORTS IT; F5 IMPORTS ALL; ESC GOES BACK"

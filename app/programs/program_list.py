@@ -19,6 +19,8 @@ from app.programs.preview import Preview
 from app.programs.program_rows import ORDERS, Program, list_programs, minute_of, minute_of_file, sorted_by
 from core.executor.snapshot import State
 
+DRAWING = "{name} IS A DRAWING: F3 MAKES A PROGRAM OF IT"
+
 
 @dataclass(slots=True)
 class ProgramList:
@@ -166,8 +168,8 @@ class ProgramList:
 
     def may_load(self) -> bool:
         """Whether the marked program can become that of the desk; why not is said."""
-        if self.program is None:
-            self.desk.say(NONE)
+        if self.program is None or self.program.drawing:
+            self.desk.say(NONE if self.program is None else DRAWING.format(name=self.program.name))
             return False
         return self.desk.may_choose() and self.desk.program_folders.find(str(self.program.path)) is not None
 
@@ -247,7 +249,7 @@ def details_of(program: Program) -> tuple[Detail, ...]:
     run = program.run
     return (
         ("SIZE", formats.file_size(program.size)),
-        ("WHERE", "SAMPLE" if program.sample else "OWN PROGRAM"),
+        ("WHERE", "DRAWING" if program.drawing else "SAMPLE" if program.sample else "OWN PROGRAM"),
         (
             "LAST RUN",
             f"{minute_of(run.started)}  ·  {run.outcome}" if run.outcome else minute_of(run.started),

@@ -11,6 +11,7 @@ from pathlib import Path
 from app.desk import formats
 from app.desk.persistence import Persistence
 from app.desk.program_folder import ProgramFolders
+from core.drawings.drawing_file import is_drawing
 from core.store.store_rows import RunRow
 
 
@@ -26,6 +27,11 @@ class Program:
     run: RunRow
 
     @property
+    def drawing(self) -> bool:
+        """Whether it is a drawing, of which a program can be made."""
+        return is_drawing(self.name)
+
+    @property
     def key(self) -> tuple[str, float, int]:
         """Another text is another key: what was drawn of it stays good as long as this is the same."""
         return str(self.path), self.changed, self.size
@@ -34,11 +40,14 @@ class Program:
 def list_programs(
     program_folders: ProgramFolders, own: Path, persistence: Persistence
 ) -> tuple[Program, ...]:
-    """All programs of the folders. Takes its time; raises StoreError when the store cannot be read."""
+    """All programs of the folders, and the drawings beside them.
+
+    Takes its time; raises StoreError when the store cannot be read.
+    """
     runs = {row.program: row for row in persistence.runs()}
     return tuple(
         Program(entry.name, entry.path, status.st_size, status.st_mtime, entry.path.parent != own, run)
-        for entry in program_folders.entries()
+        for entry in (*program_folders.entries(), *program_folders.drawings())
         if (status := _status(entry.path)) is not None
         for run in (runs.get(entry.name, RunRow(entry.name)),)
     )

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QWidget
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.editor.editor import Editor
+from app.jobs.jobs_model import JobsModel
 from app.path.path_view import PathView
 from app.programs.copy_rename_delete import NONE
 from app.programs.preview import Thumbnail
@@ -23,6 +24,7 @@ from app.screen.look import Painter
 from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Panel, Shown
 from app.screen.sheet_panel import ListPage, SheetPanel
+from app.shapes.shapes_model import Shapes
 from app.working_plane.plane_instant import at_line
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
@@ -102,13 +104,13 @@ class ProgramsPage(ListPage):
 
     def labels(self) -> tuple[str, ...]:
         """Those of the list or of the chooser."""
-        own = {"F3": "" if self.model.transfer.open else "EDIT"}
+        own = {} if self.model.transfer.open else {"F3": "EDIT", "F10": "JOB"}
         return self.labels_of(own, self.model.keys())
 
     def key_actions(self) -> KeyActions:
         """The function keys of the list, or of the chooser over it."""
         keys = self.model.keys()
-        own = {} if self.model.transfer.open else {"F3": self._edit}
+        own = {} if self.model.transfer.open else {"F3": self._edit, "F10": self._job}
         return {**own, **{name: partial(self._do, name) for name in keys}}
 
     def _do(self, name: str) -> None:
@@ -121,8 +123,20 @@ class ProgramsPage(ListPage):
         if here is None or editor is None:
             self.desk.say(NONE)
             return
-        editor.wanted = str(here.path)
-        self.host.go(page_table.EDITOR)
+        shapes = self.desk.attached(Shapes)
+        if here.drawing and shapes is not None:
+            shapes.wanted = here.path
+        editor.wanted = f"{here.path.stem}.nc" if here.drawing else str(here.path)
+        if not self.host.go(page_table.EDITOR) and shapes is not None:
+            shapes.wanted = None
+
+    def _job(self) -> None:
+        """The marked program as one more job of the queue; how many parts is asked on its page."""
+        here, jobs = self.model.program, self.desk.attached(JobsModel)
+        if here is None or jobs is None or here.drawing:
+            self.desk.say(NONE)
+        elif self.host.go(page_table.JOBS):
+            jobs.add_program(here.name)
 
     def _chosen(self, row: int) -> None:
         model = self.model
@@ -157,7 +171,7 @@ class ProgramsPage(ListPage):
         model.look()
         self.table.show_sheet(model.sheet())
         here = model.program
-        self._show_picture(model.preview.of(here))
+        self._show_picture(model.preview.of(None if here is not None and here.drawing else here))
         self.letters.setVisible(bool(model.question or model.find.text) and not model.transfer.open)
         self.record.program = here
         self.record.part = model.preview.part_of(here)

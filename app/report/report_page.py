@@ -16,6 +16,7 @@ from app.report.run_record import RunRecord
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, Source
 from core.part.tool_shape import ToolShape
+from core.tool_edges import edge_name
 
 if TYPE_CHECKING:
     from core.interpreter.job_setup import Setup
@@ -163,7 +164,7 @@ class ProgramReport:
     def _tool(self, number: int, shape: ToolShape | None) -> tuple[str, ...]:
         time = self._record.times.get(number)
         seconds = (time.cutting, time.rapid, time.rest) if time is not None else (0.0, 0.0, 0.0)
-        name = f"T{number}" if number else "no tool"
+        name = edge_name(number) if number else "no tool"
         said = "" if shape == self._record.setting.shapes.get(number) else " (assumed)"
         words = escape(self._shape(shape) + said)
         return name, part_drawings.tool_picture(shape), words, *(f"{each:.1f}" for each in seconds)
@@ -193,11 +194,11 @@ class ProgramReport:
     def _offsets(self) -> str:
         setup, length = self._setup, self._length
         rows = [
-            (f"T{n}", length(row.x), length(row.z), f"nose radius {length(row.nose_radius)}")
+            (edge_name(n), length(row.x), length(row.z), f"nose radius {length(row.nose_radius)}")
             for n in self._report.tools
             if (row := setup.tools.get(n)) is not None
         ]
-        rows += [(f"T{n}", "not set", "not set", "taken as 0") for n in self._report.missing_tools]
+        rows += [(edge_name(n), "not set", "not set", "taken as 0") for n in self._report.missing_tools]
         rows += [
             (f"D{n}", length(d.x), length(d.z), f"radius {length(d.r)}")
             for n in sorted(self._record.secondary)

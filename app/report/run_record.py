@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from core.interpreter.actions import ProgramStop
 from core.interpreter.elementary_blocks import Block, TimedSeries
+from core.interpreter.working_plane import Corners
 from core.part.turned_part import Piece
 from core.proving.part_proof import PartProof, PartSetting
 from core.proving.program_timeline import MotionSpan, RestSpan
@@ -50,6 +51,7 @@ class RunRecord:
     stops: list[Stop] = field(default_factory=list)
     secondary: set[int] = field(default_factory=set)  # D numbers that are called
     settable: set[int] = field(default_factory=set)  # zero offsets, 54 to 59
+    blank: Corners | None = None  # of BLK FORM, on a mill
     cut_short: bool = False  # there are more moves than are drawn
     _steps: Steps = field(default_factory=Steps)
     _part: PartProof = field(init=False)
@@ -84,6 +86,8 @@ class RunRecord:
         self._tool = modal.tool
         self.secondary |= {modal.secondary} - {0}
         self.settable |= {modal.settable} - {0}
+        if block.swivel is not None:
+            self.blank = block.swivel.system.blank
         time = self._time
         if not block.moves:
             time.rest += seconds

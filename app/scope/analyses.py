@@ -1,4 +1,4 @@
-"""Analyses of a record: path error along the part, passes of a thread, ball-bar plot of an arc.
+"""Analyses of a record: path error, thread passes, ball-bar plot of an arc, response of axis and spindle.
 
 They take what the scope shows frozen, or of live samples the last program that ran. A worker works them out;
 what cannot be told is a sentence.
@@ -10,6 +10,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from itertools import combinations
+from operator import itemgetter
 
 import numpy as np
 import numpy.typing as npt
@@ -29,7 +31,8 @@ from app.scope.drive_test_figures import (
     shown_words,
 )
 from app.scope.scope_model import Scope
-from core.machine.machine_model import Axis
+from app.scope.spindle_response import SpindleResponse, last_run_up, spindle_drawing, spindle_sheet
+from core.machine.machine_model import Axis, SpindleModel
 from core.records.ball_bar import BallBar, arcs_in, ball_bar
 from core.records.path_error import PathError, WorstPlace, of_samples, worst_places
 from core.records.record import Record
@@ -50,6 +53,7 @@ class Kind(Enum):
     THREAD = "THREAD"
     BALL_BAR = "BALL BAR"
     RESPONSE = "RESPONSE"
+    SPINDLE = "SPINDLE"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,10 +68,12 @@ class Found:
     speeds: tuple[FloatArray, ...] = ()  # of the passes, rpm
     ball: BallBar | None = None
     response: AxisResponse | None = None
+    spindle: SpindleResponse | None = None
     test: DriveTestFigures | None = None  # the record is one of a drive test
     arc: tuple[int, int, int] = (0, 0, 0)  # its number, of how many, its line
     vmax: float = 0.0  # of the slide along a thread, mm/s
-    axes: tuple[str, str] = ("Z", "X")
+    axes: tuple[str, str] = ("Z", "X")  # that are drawn
+    slides: tuple[str, ...] = ("Z", "X")  # of a path: all that it goes in
 
 
 @dataclass(slots=True)
@@ -76,6 +82,7 @@ class Analyses:
 
     scope: Scope
     drives: Mapping[str, Axis] = field(default_factory=dict)  # by letter
+    spindle: SpindleModel | None = None
     worker: Latest = field(default_factory=lambda: Latest("editing-analyses"))
     kind: Kind = Kind.PATH
     arc: int = 0
@@ -132,20 +139,21 @@ class Analyses:
         """Once a frame: what the worker has found; it is asked once."""
         self.worker.poll()
         if self._of is None and not self.worker.busy:
-            kind, arc, drives = self.kind, self.arc, self.drives
+            kind, arc, drives, spindle = self.kind, self.arc, self.drives, self.spindle
             self._of = (kind, arc)
             frozen, window, live = self.scope.frozen, self.scope.window, self.scope.live
 
             def work(_request: object) -> Found:
                 if frozen is not None:
                     begin, end = frozen.zero + window.begin, frozen.zero + window.end
-                    return analysed(kind, frozen.record.between(begin, end), arc, drives)
+                    return analysed(kind, frozen.record.between(begin, end), arc, drives, spindle)
                 if live is None or not math.isfinite(live.last):
                     return Found(kind, tr("NOTHING IS RECORDED ON THIS MACHINE: OPEN A RECORD WITH F9"))
                 names = {each.name for each in live.channels if each.unit in {"mm", "deg"}}
-                names |= {"line", "spindle turns", "spindle speed"}
+                names |= {"line", "spindle turns", "spindle speed", "spindle command"}
                 record = live.between(live.last - live.lasts, live.last, names)
-                return analysed(kind, record if kind is Kind.RESPONSE else last_run(record), arc, drives)
+                cut = record if kind in {Kind.RESPONSE, Kind.SPINDLE} else last_run(record)
+                return analysed(kind, cut, arc, drives, spindle)
 
             self.worker.ask(work, self._take, self.desk.say)
 
@@ -168,11 +176,9 @@ class Analyses:
             return _path_drawing(found, self.magnified, self.marked)
         if found.thread is not None:
             return _thread_drawing(found)
-        if found.response is not None:
-            return response_drawing(found.response)
-        if found.test is not None:
-            return response_drawing(found.test.move)
-        return _ball_drawing(found, self.magnified) if found.ball is not None else Drawing()
+        if found.ball is not None:
+            return _ball_drawing(found, self.magnified)
+        return _response_drawing(found)
 
     def sheet(self) -> Sheet:
         """Figures of what was found."""
@@ -186,10 +192,7 @@ class Analyses:
             return _thread_sheet(title, found.thread, found.vmax, metric, self.marked)
         if found.ball is not None:
             return _ball_sheet(title, found.ball, found, metric)
-        if found.test is not None:
-            return figures_sheet(title, found.test, metric)
-        nothing = Sheet(title, ("",), (1.0,), ())
-        return response_sheet(title, found.response, metric) if found.response is not None else nothing
+        return _response_sheet(title, found, metric)
 
     @property
     def words(self) -> str:
@@ -201,10 +204,8 @@ class Analyses:
             return found.why
         if found.thread is not None:
             return tr("passes over each other by the spindle's angle: way beside the thread, and speed")
-        if found.test is not None:
-            return shown_words(found.test.path, self.scope.metric)
-        if found.response is not None:
-            return tr("asked and done of the last move, and its following error, over seconds")
+        if found.kind in {Kind.RESPONSE, Kind.SPINDLE}:
+            return _response_words(found, self.scope.metric)
         return tr("error drawn {times} times as large; Z changes that").format(times=f"{self.magnified:g}")
 
 
@@ -220,9 +221,13 @@ def last_run(record: Record) -> Record:
     return record.between(float(record.times[first]), float(record.times[on[-1]]))
 
 
-def analysed(kind: Kind, record: Record, arc: int, drives: Mapping[str, Axis]) -> Found:
+def analysed(
+    kind: Kind, record: Record, arc: int, drives: Mapping[str, Axis], spindle: SpindleModel | None = None
+) -> Found:
     """Work it out; what cannot be is told by ``why``."""
     try:
+        if kind is Kind.SPINDLE:
+            return Found(kind, spindle=last_run_up(record, spindle))
         return _analysed(kind, record, arc, drives)
     except AnalysisError as error:
         return Found(kind, str(error))
@@ -238,13 +243,14 @@ def _analysed(kind: Kind, record: Record, arc: int, drives: Mapping[str, Axis]) 
     letters = [each.name[0] for each in record.channels if each.name[1:] == " demand" and each.unit == "mm"]
     if len(letters) < 2 or not len(record.times):
         raise AnalysisError(tr("the record has no two slides, and so no path"))
-    axes = ("Z", "X") if {"X", "Z"} <= set(letters) else (letters[0], letters[1])
-    demand = np.column_stack([columns[f"{each} demand"] for each in axes])
-    actual = np.column_stack([columns[f"{each} actual"] for each in axes])
+    slides = ("Z", "X") if set(letters) == {"X", "Z"} else tuple(sorted(letters))
+    demand = np.column_stack([columns[f"{each} demand"] for each in slides])
+    actual = np.column_stack([columns[f"{each} actual"] for each in slides])
     lines = columns.get("line", np.zeros(len(record.times)))
+    axes = _drawn(slides, demand)
     if kind is Kind.PATH:
         path = of_samples(demand, actual, lines, record.rate)
-        return Found(kind, path=path, worst=worst_places(path, _WORST), axes=axes)
+        return Found(kind, path=path, worst=worst_places(path, _WORST), axes=axes, slides=slides)
     if kind is Kind.THREAD:
         speed = columns.get("spindle speed", np.full(len(lines), np.nan))
         turns = columns.get("spindle turns", np.full(len(lines), np.nan))
@@ -252,17 +258,35 @@ def _analysed(kind: Kind, record: Record, arc: int, drives: Mapping[str, Axis]) 
         thread = find_thread(turns, actual[:, 0], actual[:, 1], speed)
         speeds = tuple(speed[each.first : each.last + 1] for each in thread.passes)
         return Found(kind, thread=thread, speeds=speeds, vmax=vmax, axes=axes)
-    arcs = arcs_in(demand, np.where(np.isfinite(lines), lines, 0.0))
+    return _ball_bar_found(slides, demand, actual, np.where(np.isfinite(lines), lines, 0.0), arc)
+
+
+def _ball_bar_found(
+    slides: tuple[str, ...], demand: FloatArray, actual: FloatArray, lines: FloatArray, arc: int
+) -> Found:
+    """The arc of this number, in whichever plane of two slides it lies."""
+    arcs = [
+        (cut.start, line, cut, pair)
+        for pair in combinations(range(len(slides)), 2)
+        for line, cut in arcs_in(demand[:, pair], lines)
+    ]
     if not arcs:
-        raise AnalysisError(
-            tr("there is no arc of 60 degrees or more in this time: record while a G02 or G03 is cut")
-        )
+        raise AnalysisError(tr("there is no arc of 60 degrees or more in this time: record while one is cut"))
+    arcs.sort(key=itemgetter(0))
     number = arc % len(arcs)
-    line, cut = arcs[number]
-    part = demand[cut]
+    _, line, cut, pair = arcs[number]
+    part = demand[cut][:, pair]
     moved = np.append(True, (np.abs(np.diff(part, axis=0)) > 1e-9).any(axis=1))
-    ball = ball_bar(part[moved], actual[cut][moved])
-    return Found(kind, ball=ball, arc=(number, len(arcs), line), axes=axes)
+    ball = ball_bar(part[moved], actual[cut][:, pair][moved])
+    axes = slides[pair[0]], slides[pair[1]]
+    return Found(Kind.BALL_BAR, ball=ball, arc=(number, len(arcs), line), axes=axes)
+
+
+def _drawn(slides: tuple[str, ...], demand: FloatArray) -> tuple[str, str]:
+    """The two slides that went furthest: a path of three is drawn as it is seen along the third."""
+    least = int(np.argmin(np.ptp(demand, axis=0))) if len(slides) > 2 else -1
+    first, second = (each for number, each in enumerate(slides) if number != least)
+    return first, second
 
 
 # --- drawings -------------------------------------------------------------------------------------------
@@ -275,12 +299,19 @@ def _thinned(points: FloatArray, most: int = MOST_POINTS) -> FloatArray:
 def _path_drawing(found: Found, factor: float, marked: int) -> Drawing:
     path = found.path
     assert path is not None
+    seen = [found.slides.index(each) for each in found.axes]
     marks: tuple[tuple[float, float, str], ...] = ()
     if marked < len(found.worst):
         worst = found.worst[marked]
-        place = path.magnified(factor)[worst.sample]
+        place = path.magnified(factor)[worst.sample][seen]
         marks = ((float(place[0]), float(place[1]), tr("line {line}").format(line=worst.line)),)
-    return Drawing(_thinned(path.foot), (_thinned(path.magnified(factor)),), (), marks)
+    soft, curve = _thinned(path.foot[:, seen]), _thinned(path.magnified(factor)[:, seen])
+    return Drawing(soft, (curve,), (), marks, names=_axis_names(found))
+
+
+def _axis_names(found: Found) -> tuple[str, str, str]:
+    across, up = (f"{letter}  {{unit}}" for letter in found.axes)
+    return up, "", across
 
 
 def _thread_drawing(found: Found) -> Drawing:
@@ -291,7 +322,15 @@ def _thread_drawing(found: Found) -> Drawing:
         for each, speed in zip(found.thread.passes[:8], found.speeds, strict=False)
         if np.isfinite(speed).all()
     )
-    return Drawing(curves=curves, below=below, equal=False)
+    names = tr("WAY BESIDE THE THREAD") + "  {unit}", tr("SPINDLE") + "  rpm", tr("turns")
+    return Drawing(curves=curves, below=below, equal=False, names=names)
+
+
+def _response_drawing(found: Found) -> Drawing:
+    if found.spindle is not None:
+        return spindle_drawing(found.spindle)
+    move = found.test.move if found.test is not None else found.response
+    return response_drawing(move) if move is not None else Drawing()
 
 
 def _ball_drawing(found: Found, factor: float) -> Drawing:
@@ -300,7 +339,7 @@ def _ball_drawing(found: Found, factor: float) -> Drawing:
     angles = np.radians(ball.angles)
     out = np.column_stack([np.cos(angles), np.sin(angles)])
     seen = (ball.radius + factor * ball.deviation)[:, None] * out
-    return Drawing(_thinned(ball.radius * out), (_thinned(seen),))
+    return Drawing(_thinned(ball.radius * out), (_thinned(seen),), names=_axis_names(found))
 
 
 # --- figures --------------------------------------------------------------------------------------------
@@ -314,15 +353,20 @@ def _path_sheet(title: str, found: Found, metric: bool, marked: int) -> Sheet:
     path = found.path
     assert path is not None
     rows = tuple(
-        Row((str(each.line), formats.length(each.distance, metric), formats.length(each.place[0], metric)))
+        Row((str(each.line), *(formats.length(way, metric) for way in (each.distance, *each.place))))
         for each in found.worst
     )
+    lathe = len(found.slides) == 2
     notes = (
         tr("Greatest: {far}").format(far=_length(path.greatest, metric)),
-        tr("Positive lies to the left of the way the tool goes."),
+        *((tr("Positive lies to the left of the way the tool goes."),) if lathe else ()),
+        tr("The worst place of each line; slides are counted from home, X as a radius.")
+        if lathe
+        else tr("The worst place of each line; slides are counted from home."),
     )
-    heads = (tr("LINE"), tr("OFF THE PATH"), found.axes[0])
-    shares, figures = (0.22, 0.4, 0.38), frozenset({1, 2})
+    heads = (tr("LINE"), tr("OFF THE PATH"), *found.slides)
+    shares = (0.16, 0.3, 0.27, 0.27) if lathe else (0.11, 0.23, 0.22, 0.22, 0.22)
+    figures = frozenset(range(1, len(heads)))
     return Sheet(title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, figures=figures)
 
 
@@ -350,6 +394,24 @@ def _thread_sheet(title: str, thread: Thread, vmax: float, metric: bool, marked:
     shares = (0.12, 0.24, 0.2, 0.24, 0.2)
     figures = frozenset({1, 2, 3, 4})
     return Sheet(title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, figures=figures)
+
+
+def _response_sheet(title: str, found: Found, metric: bool) -> Sheet:
+    if found.test is not None:
+        return figures_sheet(title, found.test, metric)
+    if found.spindle is not None:
+        return spindle_sheet(title, found.spindle)
+    if found.response is not None:
+        return response_sheet(title, found.response, metric)
+    return Sheet(title, ("",), (1.0,), ())
+
+
+def _response_words(found: Found, metric: bool) -> str:
+    if found.test is not None:
+        return shown_words(found.test.path, metric)
+    if found.spindle is not None:
+        return tr("asked and turned of the last run-up, over seconds")
+    return tr("asked and done of the last move, and its following error, over seconds")
 
 
 def _ball_sheet(title: str, ball: BallBar, found: Found, metric: bool) -> Sheet:
@@ -388,8 +450,11 @@ def _ball_sheet(title: str, ball: BallBar, found: Found, metric: bool) -> Sheet:
 
 def scaled(drawing: Drawing, factor: float) -> Drawing:
     """In another unit of length, both ways of equal axes, else upwards."""
-    by = np.array([factor if drawing.equal else 1.0, factor])
+    by = np.array([factor if drawing.equal else 1.0, factor if drawing.lengths else 1.0])
     marks = tuple((x * by[0], y * by[1], word) for x, y, word in drawing.marks)
     curves = tuple(each * by for each in drawing.curves)
     below = tuple(each * by for each in drawing.below) if drawing.lengths_below else drawing.below
-    return replace(drawing, soft=drawing.soft * by, curves=curves, marks=marks, below=below)
+    unit = "mm" if factor == 1.0 else "in"
+    upper, lower, across = (each.replace("{unit}", unit) for each in drawing.names)
+    soft, names = drawing.soft * by, (upper, lower, across)
+    return replace(drawing, soft=soft, curves=curves, marks=marks, below=below, names=names)

@@ -24,19 +24,22 @@ class AnalysisChart(Chart):
         super().__init__(look, parent)
         self.drawing = Drawing()
 
-    def show_drawing(self, drawing: Drawing) -> None:
-        """Draw this, in the units it is given in."""
+    def show_drawing(self, drawing: Drawing) -> bool:
+        """Draw this, in the units it is given in. False: its plots are still being made, ask again."""
+        if not self.ready(bool(drawing.curves) + bool(drawing.below)):
+            return False
         self.drawing = drawing
         self.empty()
         if not drawing.curves:
-            return
+            return True
         upper = self.add()
-        upper.vb.invertY(drawing.equal)  # X+ goes downwards, as the operator sees the slide
+        upper.vb.invertY(drawing.downwards)
         self._fill(upper, drawing.soft, drawing.curves)
         if drawing.below:
             self._fill(self.add(), np.empty((0, 2)), drawing.below)
         self.share_left(_LEFT)
         self._fit()
+        return True
 
     def _fill(self, plot: Plot, soft: FloatArray, curves: tuple[FloatArray, ...]) -> None:
         if len(soft):
@@ -70,7 +73,12 @@ class AnalysisChart(Chart):
         super().drawForeground(painter, rect)
         if not self.plots:
             return
-        u, plot = self.look.u, self.plots[0]
+        u, plot, names = self.look.u, self.plots[0], self.drawing.names
+        for shown, text in zip(self.plots, names, strict=False):
+            self.name(painter, text, shown.room())
+        last = self.plots[-1].room()
+        right = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignBottom
+        painter.drawText(last.adjusted(0, 0, -0.6 * u, -0.3 * u), right, names[2])
         (x0, x1), (y0, y1) = plot.vb.viewRange()
         room = plot.room()
         for x, y, word in self.drawing.marks:
@@ -92,5 +100,5 @@ def _range(plot: Plot, parts: list[FloatArray], *, equal: bool) -> None:
     if equal and room.width() > 1.0 and room.height() > 1.0:
         scale = max(wide[0] / room.width(), wide[1] / room.height())
         wide = scale * np.array([room.width(), room.height()])
-    plot.setXRange(middle[0] - wide[0] / 2, middle[0] + wide[0] / 2, padding=0)
-    plot.setYRange(middle[1] - wide[1] / 2, middle[1] + wide[1] / 2, padding=0)
+    plot.vb.setXRange(middle[0] - wide[0] / 2, middle[0] + wide[0] / 2, padding=0)
+    plot.vb.setYRange(middle[1] - wide[1] / 2, middle[1] + wide[1] / 2, padding=0)

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from app.scope.analyses_chart_view import AnalysisChart
 
 _TABLE, _HEAD = 50.0, 3.4  # units
+PLOTS = 2  # of a drawing at most
 
 
 def chart_class() -> type[AnalysisChart]:
@@ -69,16 +70,24 @@ class AnalysesPage(ListPage):
         self.chart.setGeometry(self.room.rect())
         self.chart.show()
 
+    def ahead(self) -> bool:
+        """The chart, then its plots."""
+        self.analyses.worker.poll()
+        return self.chart is None or not self.chart.ready(PLOTS)
+
     def _keys(self) -> Mapping[str, Key]:
         choose = self.analyses.choose
+        mill = self.desk.language == "klartext"  # no slide follows its spindle
+        thread = {} if mill else {"F3": Key("THREAD", partial(choose, Kind.THREAD))}
         return {
             "F2": Key("PATH", partial(choose, Kind.PATH)),
-            "F3": Key("THREAD", partial(choose, Kind.THREAD)),
+            **thread,
             "F4": Key("BALL BAR", partial(choose, Kind.BALL_BAR)),
             "F5": Key("NEXT ARC", self.analyses.next_arc),
             "F6": Key("RESPONSE", partial(choose, Kind.RESPONSE)),
             "F8": Key("SCOPE", self._back),
             "F9": Key("TEST", self._test),
+            "F10": Key("SPINDLE", partial(choose, Kind.SPINDLE)),
         }
 
     def _test(self) -> None:
@@ -121,11 +130,13 @@ class AnalysesPage(ListPage):
         metric = analyses.scope.metric
         shown = (analyses.found, analyses.magnified, analyses.marked, metric)
         if self.chart is not None and shown != self._drawn:
-            self._drawn = shown
-            self.chart.show_drawing(scaled(analyses.drawing(), 1.0 if metric else 1.0 / MM_PER_INCH))
+            drawing = scaled(analyses.drawing(), 1.0 if metric else 1.0 / MM_PER_INCH)
+            if self.chart.show_drawing(drawing):
+                self._drawn = shown
 
     def dress(self) -> None:
-        """Other colours are in force."""
+        """Other colours, or another language, are in force."""
+        self._drawn = None
         if self.chart is not None:
             self.chart.dress()
 

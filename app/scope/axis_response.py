@@ -125,7 +125,8 @@ def response_drawing(found: Moved) -> Drawing:
     asked = np.column_stack([found.times, found.demand])
     done = np.column_stack([found.times, found.actual])
     error = np.column_stack([found.times, found.error])
-    return Drawing(asked, (done,), (error,), equal=False, lengths_below=True)
+    names = f"{found.letter}  {{unit}}", tr("FOLLOWING ERROR") + "  {unit}", "s"
+    return Drawing(asked, (done,), (error,), equal=False, lengths_below=True, names=names)
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,8 +36,8 @@ class Kept(NamedTuple):
 
     @property
     def when(self) -> str:
-        """The time of day it was written."""
-        return time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(self.written))
+        """Day and time at which it was written; the year stands in its name."""
+        return time.strftime("%m-%d %H:%M:%S", time.localtime(self.written))
 
     @property
     def size_words(self) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFontMetricsF, QPainter
+from PySide6.QtGui import QColor, QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
@@ -31,23 +31,25 @@ class ScopeChart(Chart):
         super().__init__(look, parent)
         self._lanes: dict[Quantity, Plot] = {}
         self._curves: dict[tuple[str, bool], pg.PlotCurveItem] = {}
-        self._made: object = None
+        self._known: object = None  # what lanes and curves are made for
+        self._waiting: list[Quantity] = []  # lanes that are still to be made
         self.sight = Sight()
         self.cursors = Cursors()
         self.colours: dict[str, int] = {}  # of the signals, by key: the number of the colour
 
     # --- what is seen --------------------------------------------------------------------------------
 
-    def show_sight(self, sight: Sight, cursors: Cursors) -> None:
-        """Draw this picture; nothing is worked out here."""
+    def show_sight(self, sight: Sight, cursors: Cursors) -> bool:
+        """Draw this picture; nothing is worked out here. False: its lanes are still being made, ask again."""
+        if not (self.ready(len(_quantities(sight))) and self._made_for(sight)):
+            return False
         self.sight, self.cursors = sight, cursors
-        self._make(sight)
         for quantity, plot in self._lanes.items():
             low, high = sight.ranges.get(quantity, (0.0, 1.0))
             if quantity is Quantity.LOGIC:
                 low, high = -_STEP * self._count(sight.curves) + _HIGH, 1.0
-            plot.setXRange(sight.begin, sight.end, padding=0)
-            plot.setYRange(low, high, padding=0)
+            plot.vb.setXRange(sight.begin, sight.end, padding=0)
+            plot.vb.setYRange(low, high, padding=0)
         place = 0
         for curve in sight.curves:
             down = 0.0
@@ -58,6 +60,7 @@ class ScopeChart(Chart):
             if curve.signal.quantity is not Quantity.LOGIC:
                 self._draw(curve, True, 0.0)
         self.viewport().update()
+        return True
 
     def _draw(self, curve: Curve, earlier: bool, down: float) -> None:
         item = self._curves.get((curve.signal.key, earlier))
@@ -69,27 +72,31 @@ class ScopeChart(Chart):
             values = values * _HIGH + down
         set_curve(item, points.times, values, _connect(points))
 
-    def _make(self, sight: Sight) -> None:
-        """Lanes and curves for what is shown, where they are not those that are there."""
+    def _made_for(self, sight: Sight) -> bool:
+        """Whether lanes and curves are those of this picture; one lane is made a call."""
         shown = [*((each, True) for each in sight.earlier), *((each, False) for each in sight.curves)]
         known = tuple((each.signal.key, earlier) for each, earlier in shown)
-        if known == self._made:
-            return
-        self._made = known
-        self.empty()
-        self._lanes.clear()
-        self._curves.clear()
-        self.colours = {each.signal.key: number for number, each in enumerate(sight.curves)}
-        quantities = list(dict.fromkeys(each.signal.quantity for each in sight.curves))
-        quantities.sort(key=lambda each: each is Quantity.LOGIC)
-        for quantity in quantities:
-            plot = self._lanes[quantity] = self.add()
-            plot.showAxis("bottom", quantity is quantities[-1])
-            plot.getAxis("left").setStyle(showValues=quantity is not Quantity.LOGIC)
+        if known != self._known:
+            self._known, self._waiting = known, _quantities(sight)
+            self.viewport().setUpdatesEnabled(False)
+            self.empty()
+            self._lanes.clear()
+            self._curves.clear()
+            self.colours = {each.signal.key: number for number, each in enumerate(sight.curves)}
+        if self._waiting:
+            self._make(self._waiting.pop(0), shown)
+        if not self._waiting:
+            self.viewport().setUpdatesEnabled(True)
+        return not self._waiting
+
+    def _make(self, quantity: Quantity, shown: list[tuple[Curve, bool]]) -> None:
+        """The lane of a quantity, with its curves."""
+        plot = self._lanes[quantity] = self.add()
+        plot.axis("bottom").setVisible(not self._waiting)
+        plot.axis("left").setStyle(showValues=quantity is not Quantity.LOGIC)
         for each, earlier in shown:
-            lane = self._lanes.get(each.signal.quantity)
-            if lane is not None:
-                self._curves[each.signal.key, earlier] = lane.curve(line_pen(self._ink(each, earlier)))
+            if each.signal.quantity is quantity:
+                self._curves[each.signal.key, earlier] = plot.curve(line_pen(self._ink(each, earlier)))
         self.share_left(_LEFT)
 
     def _ink(self, curve: Curve, earlier: bool) -> QColor:
@@ -99,7 +106,7 @@ class ScopeChart(Chart):
     def dress(self) -> None:
         """Colours and letters of now: everything is made anew with the next picture."""
         super().dress()
-        self._made = None
+        self._known = None
 
     @staticmethod
     def _count(curves: Sequence[Curve]) -> int:
@@ -138,7 +145,7 @@ class ScopeChart(Chart):
         if not self.plots or not self.room.width():
             return
         for quantity, plot in self._lanes.items():
-            self._name(painter, quantity, plot.room())
+            self._lane(painter, quantity, plot.room())
         sight, room, u = self.sight, self.room, self.look.u
         painter.setPen(self.look.colour("soft"))
         painter.drawText(QRectF(room.right() - 2 * u, room.bottom() + 0.4 * u, 2 * u, 2 * u), _RIGHT, "s")
@@ -149,7 +156,7 @@ class ScopeChart(Chart):
                 if room.x() <= self.across(time) <= room.right():
                     self._upright(painter, time, "accent" if number == self.cursors.at else "soft", word)
 
-    def _name(self, painter: QPainter, quantity: Quantity, room: QRectF) -> None:
+    def _lane(self, painter: QPainter, quantity: Quantity, room: QRectF) -> None:
         u = self.look.u
         painter.setFont(self.look.font(_LETTERS, bold=True))
         if quantity is Quantity.LOGIC:
@@ -163,11 +170,7 @@ class ScopeChart(Chart):
             return
         unit = quantity.unit(self.sight.metric)
         text = tr(quantity.title) + (f"  {unit}" if unit else "")
-        wide = QFontMetricsF(painter.font()).horizontalAdvance(text)
-        box = QRectF(room.x() + 0.4 * u, room.y() + 0.3 * u, wide + 0.8 * u, 2.0 * u)
-        painter.fillRect(box, self.look.colour("panel"))
-        painter.setPen(self.look.colour("soft"))
-        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
+        self.name(painter, text, room)
 
     def _upright(self, painter: QPainter, time: float, ink: str, word: str) -> None:
         u, room, x = self.look.u, self.room, round(self.across(time))
@@ -178,6 +181,12 @@ class ScopeChart(Chart):
         painter.setPen(self.look.colour("panel"))
         painter.setFont(self.look.font(_LETTERS, bold=True))
         painter.drawText(box, Qt.AlignmentFlag.AlignCenter, word)
+
+
+def _quantities(sight: Sight) -> list[Quantity]:
+    """The lanes of a picture from above to below; inputs and outputs last."""
+    found = list(dict.fromkeys(each.signal.quantity for each in sight.curves))
+    return sorted(found, key=lambda each: each is Quantity.LOGIC)
 
 
 def _connect(points: Points) -> object:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from functools import partial
 
 import numpy as np
 
@@ -143,7 +144,8 @@ class Scope:
             return
         if not self._stays(wanted):
             self._asked = wanted, self.desk.snapshot(), self.desk.clock()
-            self.worker.ask(lambda _: carried.sight(wanted, overlay), self._take, self.desk.say)
+            taken = partial(self._take, of=(wanted.trigger, wanted.armed))
+            self.worker.ask(lambda _: carried.sight(wanted, overlay), taken, self.desk.say)
 
     def _stays(self, wanted: Wanted) -> bool:
         """Level lines of a machine that tells what it told when they were asked for, not long ago."""
@@ -153,11 +155,12 @@ class Scope:
         recent = self.desk.clock() - at < LEVEL_FOR
         return recent and asked == wanted and snapshot.tells_as(self.desk.snapshot())
 
-    def _take(self, sight: Sight) -> None:
+    def _take(self, sight: Sight, of: tuple[Trigger, float] | None = None) -> None:
+        """``of``: the trigger looked for, and when it was armed; set anew meanwhile, it releases nothing."""
         if sight.live is not self.is_live:
             return  # it was asked for before
         self.sight = sight
-        if sight.released is not None and self.armed and self._released is None:
+        if self.armed and self._released is None and of == (self.trigger, self._armed_at):
             self._released = sight.released
 
     # --- live and frozen -----------------------------------------------------------------------------

@@ -100,7 +100,7 @@ class ScopeSheets:
         )
         notes = () if files else (tr("No record is kept yet: F2 saves what is seen."),)
         heads = (tr("NAME"), tr("WRITTEN"), tr("SIZE"))
-        return Sheet(tr("RECORDS"), heads, (0.5, 0.32, 0.18), rows, self.at, notes=notes, raw=frozenset({0}))
+        return Sheet(tr("RECORDS"), heads, (0.55, 0.3, 0.15), rows, self.at, notes=notes, raw=frozenset({0}))
 
     def _lit(self, name: str) -> bool:
         return name in {self.scope.name, self.scope.over_name}

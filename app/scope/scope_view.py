@@ -35,6 +35,7 @@ _READINGS, _TABLE, _PAD, _HEAD = 34.0, 56.0, 28.4, 3.4  # units: widths, height 
 _NOTCH = 120  # of the mouse's wheel, as Qt has it
 _NEAR, _STILL = 22.0, 6.0  # pixels: a finger takes a cursor; what is no drag yet
 _LEAST = 24.0  # pixels between two fingers
+_LANES = 4  # that are made ahead: of following error, velocity and spindle, and one more
 
 
 def _chart_class() -> type[ScopeChart]:
@@ -54,7 +55,7 @@ class HeadLine(Panel):
         u = self.look.u
         left, right, warn = self.words
         room = self.area().adjusted(0.8 * u, 0, -0.8 * u, 0)
-        half = room.width() * 0.62
+        half = room.width() * (0.66 if right else 1.0)
         painter.write(QRectF(room.x(), room.y(), half, room.height()), left, 1.8, "text", raw=True)
         rest = QRectF(room.x() + half, room.y(), room.width() - half, room.height())
         painter.write(rest, right, 1.8, "pause" if warn else "soft", raw=True)
@@ -177,6 +178,7 @@ class ScopePage(ListPage):
         self.pad = KeyPad(self.look, self.touched, own=None, parent=self)
         self._laid: object = None
         self._drawn: object = None
+        self._undrawn = True  # what is to be seen is not drawn yet
         scope.filing.queue(_chart_class, self._chart_there, self.desk.say)
 
     def _chart_there(self, chart_class: type[ScopeChart]) -> None:
@@ -185,6 +187,12 @@ class ScopePage(ListPage):
         self.curves.chart = chart
         chart.setGeometry(self.curves.rect())
         chart.show()
+
+    def ahead(self) -> bool:
+        """The chart, then its lanes."""
+        self.scope.filing.poll()
+        chart = self.curves.chart
+        return chart is None or not chart.ready(_LANES)
 
     def _marked(self, number: int) -> None:
         self.scope.mark(number)
@@ -227,8 +235,8 @@ class ScopePage(ListPage):
         }
 
     def lively(self) -> bool:
-        """Live curves go on; level lines that roll are the same picture again."""
-        return self.scope.is_live and self.scope.sight.level is None
+        """Live curves go on, lanes are being made; level lines that roll are the same picture again."""
+        return self._undrawn or (self.scope.is_live and self.scope.sight.level is None)
 
     def has_field(self) -> bool:
         """A level or a line that is asked for."""
@@ -261,9 +269,9 @@ class ScopePage(ListPage):
         if not self.table.isHidden():
             self.table.show_sheet(self.sheets.sheet())
         shown = (_seen(scope.sight), scope.cursors.times, scope.cursors.at)
-        if chart is not None and shown != self._drawn:
+        if chart is not None and shown != self._drawn and chart.show_sight(scope.sight, scope.cursors):
             self._drawn = shown
-            chart.show_sight(scope.sight, scope.cursors)
+        self._undrawn = chart is None or shown != self._drawn
 
     def _words(self) -> tuple[str, str, bool]:
         scope, sight = self.scope, self.scope.sight

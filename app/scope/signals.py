@@ -204,10 +204,14 @@ def signals_of(channels: Sequence[Channel]) -> tuple[Signal, ...]:
 
 
 def first_chosen(signals: Sequence[Signal]) -> tuple[str, ...]:
-    """What is shown before anybody has chosen: following errors and velocities of the slides, the spindle."""
-    slides = [each.letter for each in signals if each.quantity is Quantity.ERROR][:2]
+    """What is shown before anybody has chosen: following errors and velocities of the slides, the spindle.
+
+    As many as the list of figures shows on the smallest screen.
+    """
+    slides = [each.letter for each in signals if each.quantity is Quantity.ERROR][:3]
     wanted = [f"{letter} following error" for letter in slides]
     wanted += [f"{letter} velocity" for letter in slides]
-    wanted += ["spindle command", "spindle speed"]
+    wanted += ["spindle command"] if len(slides) < 3 else []
+    wanted += ["spindle speed"]
     there = {each.key for each in signals}
     return tuple(each for each in wanted if each in there)

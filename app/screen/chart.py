@@ -13,14 +13,14 @@ import numpy as np
 import numpy.typing as npt
 import pyqtgraph as pg
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QPainter, QPen
-from PySide6.QtWidgets import QFrame, QGraphicsItem, QGraphicsView, QWidget
+from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPen
+from PySide6.QtWidgets import QFrame, QGraphicsGridLayout, QGraphicsItem, QGraphicsView, QWidget
 
 from app.desk.formats import fixed
 from app.screen.look import FAMILY, LEAST, Look
 from app.screen.theme import CURVES
 
-_TICK = 1.6  # units: height of the figures on an axis
+_TICK, _NAME = 1.6, 1.5  # units: height of the figures on an axis, of the name of a plot
 FloatArray = npt.NDArray[np.float64]
 
 
@@ -56,22 +56,51 @@ class Axis(pg.AxisItem):  # type: ignore[misc]
         return [fixed(value, places) for value in values]
 
 
-class Plot(pg.PlotItem):  # type: ignore[misc]
-    """One plot of a chart. The ranges are its owner's alone."""
+class Plot(pg.GraphicsWidget):  # type: ignore[misc]
+    """One plot of a chart: curves with an axis at the left and one below. The ranges are its owner's alone.
+
+    No PlotItem of pyqtgraph: its menus, which nobody may open here, take three quarters of its time.
+    """
 
     def __init__(self) -> None:
-        axes = {side: Axis(side) for side in ("left", "bottom")}
-        super().__init__(axisItems=axes, enableMenu=False)
-        self.hideButtons()
-        self.setMouseEnabled(False, False)
+        super().__init__()
+        self.layout = QGraphicsGridLayout()
+        self.layout.setContentsMargins(1, 1, 1, 1)
+        self.layout.setSpacing(0)
+        self.setLayout(self.layout)
+        self.vb = pg.ViewBox(parent=self, enableMouse=False, enableMenu=False, defaultPadding=0.0)
         self.vb.disableAutoRange()
-        self.vb.setDefaultPadding(0.0)
+        self.layout.addItem(self.vb, 0, 1)
+        self._axes = {side: Axis(side) for side in ("left", "bottom")}
+        for side, place in (("left", (0, 0)), ("bottom", (1, 1))):
+            axis = self._axes[side]
+            axis.linkToView(self.vb)
+            axis.setZValue(0.5)
+            self.layout.addItem(axis, *place)
+
+    def axis(self, side: str) -> Axis:
+        """The axis at the ``left`` or the ``bottom``."""
+        return self._axes[side]
+
+    def put(self, item: QGraphicsItem) -> None:
+        """Have an item among the curves, in their units."""
+        self.vb.addItem(item)
+
+    def empty(self) -> None:
+        """As it was made."""
+        self.vb.clear()
+        self.vb.invertY(False)
+        for axis in self._axes.values():
+            axis.show()
+            axis.setStyle(showValues=True)
+            if axis.labelText:
+                axis.setLabel("")
 
     def curve(self, pen: QPen) -> pg.PlotCurveItem:
         """A curve that takes ready arrays: see ``set_curve``."""
         found = pg.PlotCurveItem(pen=pen, antialias=False, skipFiniteCheck=True)
         found.setSegmentedLineMode("on")  # lines, no path: half the time
-        self.addItem(found)
+        self.put(found)
         return found
 
     def room(self) -> QRectF:
@@ -83,10 +112,10 @@ class Plot(pg.PlotItem):  # type: ignore[misc]
         """A line at each figure of both axes, in pixels of the chart."""
         room, ((x0, x1), (y0, y1)) = self.room(), self.vb.viewRange()
         lines = []
-        for value in self.getAxis("bottom").figures(x0, x1, room.width()):
+        for value in self.axis("bottom").figures(x0, x1, room.width()):
             x = room.x() + (value - x0) / (x1 - x0) * room.width()
             lines.append(QLineF(x, room.y(), x, room.bottom()))
-        for value in self.getAxis("left").figures(y0, y1, room.height()):
+        for value in self.axis("left").figures(y0, y1, room.height()):
             y = room.bottom() - (value - y0) / (y1 - y0) * room.height()
             lines.append(QLineF(room.x(), y, room.right(), y))
         return lines
@@ -112,6 +141,7 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         super().__init__(parent)
         self.look = look
         self.plots: list[Plot] = []
+        self._spare: list[Plot] = []
         self.setFrameShape(QFrame.Shape.NoFrame)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
@@ -120,28 +150,39 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self.setCacheMode(QGraphicsView.CacheModeFlag.CacheNone)  # of the background: the grid moves
         self.dress()
 
+    def ready(self, count: int) -> bool:
+        """Whether so many plots are at hand; one is made a call: all at once take longer than a frame."""
+        if len(self.plots) + len(self._spare) < count:
+            self._spare.append(Plot())
+            return False
+        return True
+
     def add(self) -> Plot:
         """One more plot, below the others."""
-        plot = Plot()
+        plot = self._spare.pop() if self._spare else Plot()
         self.addItem(plot, row=len(self.plots), col=0)
         self.plots.append(plot)
         self._dress(plot)
         return plot
 
     def empty(self) -> None:
-        """No plot any more."""
+        """No plot any more; those that were are kept for the next."""
         self.clear()
+        for plot in self.plots:
+            plot.empty()
+        self._spare += self.plots
         self.plots.clear()
 
     def share_left(self, units: float) -> None:
         """All left axes as wide as this, in units: the plots stand exactly below each other."""
         for plot in self.plots:
-            plot.getAxis("left").setWidth(round(units * self.look.u))
+            plot.axis("left").setWidth(round(units * self.look.u))
 
     def dress(self) -> None:
         """Colours and letters of now."""
         margin = round(0.4 * self.look.u)
-        self.ci.layout.setContentsMargins(margin, margin, margin, margin)
+        top = round(0.6 * _TICK * self.look.u)  # half a figure stands above the highest line
+        self.ci.layout.setContentsMargins(margin, top, margin, margin)
         self.ci.layout.setSpacing(round(1.2 * self.look.u))  # figures of two axes never touch
         self.setBackground(self.look.colour("panel"))
         for plot in self.plots:
@@ -151,7 +192,7 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         look = self.look
         font = look.font(_TICK)
         for side in ("left", "bottom"):
-            axis = plot.getAxis(side)
+            axis = plot.axis(side)
             axis.setPen(line_pen(look.colour("frame")))
             axis.setTextPen(line_pen(look.colour("soft")))
             axis.setStyle(tickFont=font, tickLength=-round(0.5 * look.u))
@@ -160,8 +201,20 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
                 "font-size": f"{max(8, round(LEAST * look.u))}px",
                 "font-family": FAMILY,
             }
-            axis.setLabel(axis.labelText)
-            axis.showLabel(bool(axis.labelText))
+            if axis.labelText:
+                axis.setLabel(
+                    axis.labelText
+                )  # in its style of now; without words it would be set all the same
+
+    def name(self, painter: QPainter, text: str, room: QRectF) -> None:
+        """What a plot shows, in its upper left corner, on a ground of its own."""
+        u = self.look.u
+        painter.setFont(self.look.font(_NAME, bold=True))
+        wide = QFontMetricsF(painter.font()).horizontalAdvance(text)
+        box = QRectF(room.x() + 0.4 * u, room.y() + 0.3 * u, wide + 0.8 * u, 2.0 * u)
+        painter.fillRect(box, self.look.colour("panel"))
+        painter.setPen(self.look.colour("soft"))
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
 
     def drawBackground(self, painter: QPainter, rect: QRectF) -> None:
         """The ground, and a line at each figure of an axis: all at once, in a tenth of the time of Qt's."""

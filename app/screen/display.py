@@ -25,7 +25,7 @@ def trouble() -> str:
         return ""
     from PySide6 import QtGui  # before the child is made: it has it then
 
-    if QtGui.QGuiApplication.instance() is not None:
+    if QtGui.QGuiApplication.instance() is not None or not hasattr(os, "fork"):
         return ""  # it is open already
     opened, said = _tried(QtGui)
     return "" if opened else _why(said)

@@ -147,6 +147,7 @@ class Keyboard(QObject):
         self._dead: set[int] = set()  # of these: pressed for something else, or nobody knows when
         self._stops: set[int] = set()  # of these: what stops the machine as long as it is held
         self._up: dict[int, int] = {}  # the stamp of the last release
+        self._known_up: dict[int, float] = {}  # when the server said so of a key whose release is on its way
         self._sending = False
         self._stamp = 0  # of the event that is handled now
         self._whose = ""  # clock counts it
@@ -197,6 +198,7 @@ class Keyboard(QObject):
         for code in self._down.keys() - self._server.keys():
             key, dead = self._down.pop(code, None), code in self._dead
             self._dead.discard(code)
+            self._known_up[code] = self.times.clock()
             if key is not None and not dead:  # handling one looks again
                 self._send(QKeyEvent(QEvent.Type.KeyRelease, key, Qt.KeyboardModifier.NoModifier))
 
@@ -248,6 +250,8 @@ class Keyboard(QObject):
         return event.key() not in _MODIFIERS and self._pressed(event, code)
 
     def _pressed(self, event: QKeyEvent, code: int) -> bool:
+        if self._overtaken(code) and not self._writes(event):
+            return True
         repeat = self._repeats(event, code)
         if code in self._dead:
             return True
@@ -257,6 +261,16 @@ class Keyboard(QObject):
         if repeat and not event.isAutoRepeat():
             return self._send_repeat(event)
         return self._latched(event) and self._send(_like(event, repeat=repeat, shift=False))
+
+    def _overtaken(self, code: int) -> bool:
+        """Whether a press was made before the server said that its key is up: a repeat, late on its way."""
+        said = self._known_up.get(code)
+        if said is None or not self._stamp:
+            return False
+        if self.times.at(self._stamp, self._whose) <= said:
+            return True
+        del self._known_up[code]
+        return False
 
     def _latched(self, event: QKeyEvent) -> bool:
         """Whether Shift is locked or sticks: for a key that writes nothing only a held Shift is one."""
@@ -269,6 +283,7 @@ class Keyboard(QObject):
         if event.isAutoRepeat():
             return False
         self._up[code] = self._stamp
+        self._known_up.pop(code, None)
         dead = code in self._dead
         self._down.pop(code, None)
         self._dead.discard(code)

@@ -54,8 +54,13 @@ NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_PageDown, NONE): "Page down",
     (Key.Key_Home, NONE): "Follow",
     (Key.Key_F10, SHIFT): "Scope",
+    (Key.Key_F3, SHIFT): "Shapes",
+    (Key.Key_F4, SHIFT): "Calculators",
+    (Key.Key_F6, SHIFT): "Jobs",
     (Key.Key_Q, NONE): "Q",
 }
+OF_MENU = {"J": "Step back"}
+"""Letters of the main menu that are called otherwise, by what they do where a part is played."""
 REPEATING = frozenset(
     {"+", "-", ",", ".", "Zoom in", "Zoom out", "Page up", "Page down"}
     | {"Pan left", "Pan right", "Pan up", "Pan down", "Step back", "Step on"}

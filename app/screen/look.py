@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 from importlib.resources import files
 from typing import Self
 
@@ -24,6 +24,7 @@ from PySide6.QtWidgets import QApplication
 from app.desk.machine_status import Tone
 from app.desk.translation import tr
 from app.screen.theme import Palette
+from app.screen.window_layout import FINGER
 
 # B612 has figures of one width, and an O that cannot be taken for a 0. (In B612 Mono both are alike, and its
 # point is followed by a gap, so that X.69 reads as X. 69.)
@@ -31,6 +32,8 @@ FAMILY = "B612"
 LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 LEAST = 1.35  # units: the smallest text
+DESK_DPI = 96.0  # dots per inch of a monitor that does not say
+LEAST_ROW = 20.0  # pixels: a line of text
 SQUEEZED = 0.6  # a translation may be set in letters of this share of their size
 CENTRE = Qt.AlignmentFlag.AlignCenter
 
@@ -52,6 +55,7 @@ class Look:
     def __init__(self, palette: Palette, u: float = 12.0) -> None:
         self.palette = palette
         self.u = u
+        self.mm = DESK_DPI / 25.4  # pixels of a millimetre of the glass
         self._colours: dict[str, QColor] = {}
         self._fonts: dict[tuple[float, bool], QFont] = {}
 
@@ -61,16 +65,29 @@ class Look:
             self.u = u
             self._fonts.clear()
 
+    def row(self, units: float, mm: float, *, touch: bool = False) -> float:
+        """Height of a row of a list, pixels: ``units`` of the window, but not above ``mm`` of the glass.
+
+        So a larger glass shows more rows and not only larger ones. What is touched is never lower than a
+        fingertip on the smallest screen.
+        """
+        high = min(units * self.u, mm * self.mm)
+        return max(high, float(FINGER)) if touch else max(high, min(units * self.u, LEAST_ROW))
+
+    def measure(self, dots_per_inch: float) -> None:
+        """Take the size of the glass; what a monitor says of itself wrongly is limited to what there is."""
+        self.mm = min(max(dots_per_inch, 75.0), 350.0) / 25.4
+
     def repaint(self, palette: Palette) -> None:
         """Take the colours of another palette."""
         self.palette = palette
         self._colours.clear()
 
     def colour(self, name: str) -> QColor:
-        """A colour of the palette."""
+        """A colour of the palette, the caller's own: it may be made faint."""
         if name not in self._colours:
             self._colours[name] = QColor(getattr(self.palette, name))
-        return self._colours[name]
+        return QColor(self._colours[name])
 
     def font(self, size: float, *, bold: bool = False) -> QFont:
         """A bundled font, ``size`` in units (height of the em)."""
@@ -92,7 +109,7 @@ class Look:
         Never so small that it cannot be read: text that is too long even then is elided where it is put.
         """
         font = self.font(size, bold=bold)
-        wide = QFontMetricsF(font).horizontalAdvance(tr(text))
+        wide = width_of(tr(text), font)
         if wide <= width or wide <= 0:
             return font
         smaller = QFont(font)
@@ -106,13 +123,15 @@ def put(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> 
     A translation that is longer than its place is made smaller, as far as it can still be read.
     """
     shown, font = tr(text), painter.font()
-    wide = QFontMetricsF(font).horizontalAdvance(shown)
-    if shown != text and wide > rect.width() > 0:
+    wide = width_of(shown, font) if shown != text else 0.0
+    if wide > rect.width() > 0:
         smaller = QFont(font)
         smaller.setPixelSize(int(font.pixelSize() * max(SQUEEZED, rect.width() / wide)))
         painter.setFont(smaller)
-    put_raw(painter, rect, flags, shown)
-    painter.setFont(font)
+        put_raw(painter, rect, flags, shown)
+        painter.setFont(font)
+    else:
+        put_raw(painter, rect, flags, shown)
 
 
 def put_raw(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:
@@ -120,16 +139,44 @@ def put_raw(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str)
 
     Its capitals are centred on the middle of ``rect``; it is elided when it is too long.
     """
-    metrics = QFontMetricsF(painter.font())
-    if metrics.horizontalAdvance(text) > rect.width() + 1:
-        text = metrics.elidedText(text, Qt.TextElideMode.ElideRight, rect.width())
-    width = metrics.horizontalAdvance(text)
+    font = painter.font()
+    width = width_of(text, font)
+    if width > rect.width() + 1:
+        text = QFontMetricsF(font).elidedText(text, Qt.TextElideMode.ElideRight, rect.width())
+        width = width_of(text, font)
     x = rect.left()
     if flags & Qt.AlignmentFlag.AlignRight:
         x = rect.right() - width
     elif flags & Qt.AlignmentFlag.AlignHCenter:
         x = rect.center().x() - width / 2
-    painter.drawText(round(x), round(rect.center().y() + metrics.capHeight() / 2), text)
+    painter.drawText(round(x), round(rect.center().y() + _capitals(*_face(font)) / 2), text)
+
+
+def width_of(text: str, font: QFont) -> float:
+    """How wide a line of text is in one of our fonts, pixels: Qt would shape it anew for every question."""
+    return _width(text, *_face(font))
+
+
+def _face(font: QFont) -> tuple[str, int, bool]:
+    return font.family(), font.pixelSize(), font.bold()
+
+
+@lru_cache(maxsize=4096)
+def _width(text: str, family: str, pixels: int, bold: bool) -> float:
+    return _metrics(family, pixels, bold).horizontalAdvance(text)
+
+
+@cache
+def _capitals(family: str, pixels: int, bold: bool) -> float:
+    return _metrics(family, pixels, bold).capHeight()
+
+
+def _metrics(family: str, pixels: int, bold: bool) -> QFontMetricsF:
+    font = QFont(family)
+    if pixels > 0:  # else the size of the desk's own font
+        font.setPixelSize(pixels)
+    font.setBold(bold)
+    return QFontMetricsF(font)
 
 
 class Painter(QPainter):

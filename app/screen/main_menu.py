@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from PySide6.QtCore import QRectF
@@ -10,12 +10,12 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.screen import page_table
+from app.screen.keys import OF_MENU
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.page_base import Host, KeyActions, Page
-from app.screen.page_table import IN_MENU, PageEntry
+from app.screen.page_table import PageEntry, menu_keys, menu_of
 from app.screen.panel import Panel
 
-_LABEL_OF = {entry.key: entry.label for entry in IN_MENU}
 COLUMNS = 2
 
 
@@ -23,17 +23,22 @@ class MenuPage(Page):
     """The page that opens all others, by key or finger."""
 
     NAME = page_table.MENU
-    LABELS = tuple(
-        {"F1": "MENU", "F7": "ALARMS", **_LABEL_OF}.get(f"F{number}", "") for number in range(1, 11)
-    )
 
     def __init__(self, host: Host, parent: QWidget) -> None:
         super().__init__(host, parent)
-        self.list = _Tiles(self.look, host.press, self)
+        self._entries = menu_of(host.desk.language)
+        self._keys = menu_keys(host.desk.language)
+        labels = {"F1": "MENU", "F7": "ALARMS", **{key: each.label for key, each in self._keys.items()}}
+        self._labels = tuple(labels.get(f"F{number}", "") for number in range(1, 11))
+        self.list = _Tiles(self.look, host.press, self._entries, self)
+
+    def labels(self) -> tuple[str, ...]:
+        """Those of the entries that this machine has."""
+        return self._labels
 
     def key_actions(self) -> KeyActions:
         """The function keys of the entries."""
-        return {entry.key: partial(self._open, entry.name) for entry in IN_MENU}
+        return {OF_MENU.get(key, key): partial(self._open, entry.name) for key, entry in self._keys.items()}
 
     def _open(self, name: str) -> None:
         self.desk.clear()  # an answer to the key before has been read
@@ -58,19 +63,21 @@ class _Tiles(Panel):
 
     title = page_table.MENU
 
-    def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget) -> None:
+    def __init__(
+        self, look: Look, press: Callable[[str], None], entries: Sequence[PageEntry], parent: QWidget
+    ) -> None:
         super().__init__(look, parent)
-        self._press = press
+        self._press, self._entries = press, entries
 
     def draw(self, painter: Painter) -> None:
         u, room = self.look.u, self.inside()
-        rows = -(-len(IN_MENU) // COLUMNS)
+        rows = -(-len(self._entries) // COLUMNS)
         wide, high = room.width() / COLUMNS, min(room.height() / rows, 13.0 * u)
-        for number, entry in enumerate(IN_MENU):
+        for number, entry in enumerate(self._entries):
             column, row = divmod(number, rows)
             box = QRectF(room.x() + column * wide, room.y() + row * high, wide - u, high - u)
             self._tile(painter, box, entry)
-            self.place(box, partial(self._press, entry.key))
+            self.place(box, partial(self._press, OF_MENU.get(entry.key, entry.key)))
 
     def _tile(self, painter: Painter, box: QRectF, entry: PageEntry) -> None:
         u = self.look.u

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
+from importlib.resources import files
 
-from PySide6.QtCore import QEvent, Qt, QTimer
+from PySide6.QtCore import QEvent, Qt, QTimer, Signal
 from PySide6.QtGui import (
     QCloseEvent,
+    QIcon,
     QInputEvent,
     QKeyEvent,
     QPointerEvent,
     QResizeEvent,
+    QScreen,
     QShowEvent,
 )
 from PySide6.QtWidgets import QApplication, QWidget
@@ -25,18 +29,34 @@ from app.screen.keys import ANSWER, PALMS, REPEATING, STOPPING, TYPED_AGAIN, nam
 from app.screen.language import speak_in
 from app.screen.look import Look, dress
 from app.screen.page_table import AUTOMATIC
+from app.screen.pages_ahead import PagesAhead
 from app.screen.panel import FingerPanel
 from app.screen.theme import PALETTES
 from app.screen.window_frame import Frame
 from app.screen.window_layout import LEAST
 
 FRAME_MS = 16  # at most 60 pictures a second
-REST_MS = 48  # between two looks at a machine at rest that nobody has touched of late
+SOON_MS = 48  # the same at rest, once nobody has touched anything of late, and something new was to be shown
+REST_MS = 96  # the same where nothing was: what changes at rest rings
 UNTOUCHED = 2.0  # s
+START_SIZE = (1280, 720)
+TITLE_BAR = 60  # pixels: what a window manager takes of the height
+
+
+def fill_screen(window: QWidget, *, frameless: bool = False) -> None:
+    """The whole screen; the geometry is set too, as without a window manager nobody else does it."""
+    if frameless:
+        window.setWindowFlag(Qt.WindowType.FramelessWindowHint)
+    screen = window.screen()
+    if screen is not None:
+        window.setGeometry(screen.geometry())
+    window.showFullScreen()
 
 
 class MainWindow(QWidget):
     """One page at a time; without a desk yet it shows that it is starting."""
+
+    stirred = Signal()  # from any thread: the machine has changed
 
     def __init__(self, look: Look, closed: Callable[[], None] = lambda: None) -> None:
         super().__init__()
@@ -44,9 +64,11 @@ class MainWindow(QWidget):
         self._meant = False  # to leave, whatever is lost by it
         self.look = look
         self.frame: Frame | None = None
+        self.ahead: PagesAhead | None = None
         self._keys: dict[str, Callable[[], None]] = {}
         self.times = EventTimes()
         self.times.woken = self._wake
+        self.stirred.connect(self._wake, Qt.ConnectionType.QueuedConnection)
         self.keyboard = Keyboard(self, self.times)
         self._page = ""  # that has the keyboard
         self._timer = QTimer(self)
@@ -54,12 +76,20 @@ class MainWindow(QWidget):
         self._timer.timeout.connect(self._tick)
         self.setWindowTitle("TurnDesk")
         self.setMinimumSize(*LEAST)
+        self.setWindowIcon(QIcon(str(files("resources") / "desktop" / "turndesk.svg")))
+        self.kiosk = False  # nothing but the desk is to be seen, and nobody closes it
+        self._full: bool | None = None  # as it is shown now; None: as it was opened
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
 
     def open_desk(self, desk: Desk) -> None:
         """Put the desk on the screen and begin to poll it."""
         self.frame = Frame(self.look, desk, self.press, self)
+        if (earlier := desk.attached(PagesAhead)) is not None:  # of another window on this desk
+            earlier.close()
+        self.ahead = PagesAhead(desk, self.frame.page_named)
+        desk.attach(self.ahead)
         self._keys = self._table(desk)
+        desk.stirs = self._stir
         desk.stop_held = self.keyboard.stop_held
         desk.hands.ago = lambda: self.times.clock() - self.keyboard.now
         self.frame.setGeometry(self.rect())
@@ -72,19 +102,31 @@ class MainWindow(QWidget):
         """Every picture at the full pace; at rest those in which there is something new."""
         known, frame = self.times.known, self.frame
         self.times.frame()
+        known = (
+            known and self.times.known
+        )  # a stall has just been noticed, or what waited for it is not shown
         if frame is None:
             return
-        if not known or self._lively(frame) or frame.stale():
+        changed = not known or self._lively(frame) or frame.changed()
+        if changed or frame.aged():
             self.refresh()
-        self._pace(FRAME_MS if self._lively(frame) else REST_MS)
+        makes = self.ahead is not None and not self.ahead.done
+        if self.ahead is not None:
+            self.ahead.step()
+        self._pace(FRAME_MS if self._lively(frame) else SOON_MS if changed or makes else REST_MS)
 
     def _lively(self, frame: Frame) -> bool:
         """Whether every picture counts: something moves or was touched, on the machine or on the screen."""
         played = frame.page.lively() and not self.isMinimized()
         return not frame.at_rest or played or self.times.clock() - self.times.touched < UNTOUCHED
 
+    def _stir(self) -> None:
+        """Called from any thread; a window that has gone has nothing to show."""
+        with suppress(RuntimeError):
+            self.stirred.emit()
+
     def _wake(self) -> None:
-        """The first event ends the leisure, before it is judged."""
+        """The first event ends the leisure, before it is judged; so does a change of the machine."""
         self._pace(FRAME_MS)
 
     def _pace(self, interval: int) -> None:
@@ -160,6 +202,34 @@ class MainWindow(QWidget):
             dress(self.look.palette)
             frame.dress()
 
+        if not self.kiosk and settings.full_screen is not (self._full or False):
+            self._fill(settings.full_screen)
+
+    def _fill(self, full: bool) -> None:
+        """The whole screen, or a window again."""
+        self._full = full
+        if full:
+            fill_screen(self)
+        else:
+            self.showMaximized()
+
+    def open_on(self, screen: QScreen) -> None:
+        """As large as it needs to be: a panel that is hardly larger than the least window is filled.
+
+        So is any where no window manager would place it (a title bar that takes some lines of a panel of 600
+        would push the function keys off it).
+        """
+        room = screen.availableGeometry()
+        self.setMinimumSize(min(LEAST[0], room.width()), min(LEAST[1], room.height()))
+        if self.kiosk or room.height() < LEAST[1] + TITLE_BAR or room.width() <= LEAST[0]:
+            fill_screen(self, frameless=self.kiosk)
+        elif room.width() < 2 * START_SIZE[0]:
+            self.setGeometry(room)  # without a window manager nothing else would
+            self.showMaximized()
+        else:
+            self.resize(*START_SIZE)
+            self.show()
+
     def _escape(self) -> None:
         """One step back: in the page, then a question or the feed, and from the last step to Automatic."""
         frame = self.frame
@@ -217,6 +287,14 @@ class MainWindow(QWidget):
         window = self.windowHandle()
         if window is not None:
             self.keyboard.watch(window)
+            self._measure()
+            window.screenChanged.connect(self._measure)
+
+    def _measure(self) -> None:
+        """How large the glass is: rows of lists are told in millimetres."""
+        screen = self.screen()
+        if screen is not None:
+            self.look.measure(screen.physicalDotsPerInch())
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """A key goes down. A key that repeats by being held counts once, where once is what is meant."""
@@ -317,6 +395,11 @@ class MainWindow(QWidget):
     def closeEvent(self, event: QCloseEvent) -> None:
         """Not while a program is under way."""
         frame = self.frame
+        if self.kiosk and frame is not None and not self._meant:
+            frame.desk.say(tr("THE DESK WAS STARTED AS A KIOSK: IT ENDS WITH THE COMPUTER OR BY SIGTERM"))
+            self.refresh()
+            event.ignore()
+            return
         if frame is not None and frame.desk.snapshot().state in UNDER_WAY:
             frame.desk.say("A PROGRAM IS UNDER WAY: STOP IT AND PRESS R BEFORE LEAVING")
             self.refresh()

@@ -26,6 +26,7 @@ spindle, lamps, dock, prompt and function keys belong to the ``Frame``. To plug 
               ``desk.say``).
 ``escape()``  Esc; False when nothing was closed by it: then the desk takes its question back or holds, and
               where it has neither the Automatic page comes up.
+``ahead()``   makes one slice of what takes long, while the page is not shown yet; False: nothing is left.
 ``lively()``  whether something on it moves by itself, so that it is shown 60 times a second at rest, too.
 ``refresh``   once a frame while it is shown: snapshot, view and loaded program of the same instant.
 ``dress()``   the colours have changed; painted parts are updated by the frame anyway.
@@ -47,6 +48,7 @@ from app.desk.desk import Desk
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.screen.look import Look
+from app.screen.machine_labels import label_on
 from core.executor.snapshot import Snapshot
 
 KeyActions = Mapping[str, Callable[[], object]]  # by the name of the key; what they answer is not used
@@ -77,7 +79,7 @@ class Page(QWidget):
 
     def labels(self) -> tuple[str, ...]:
         """The labels of this moment; asked for once a frame."""
-        return self.LABELS
+        return tuple(label_on(self.desk.language, label) for label in self.LABELS)
 
     def key_actions(self) -> KeyActions:
         """Keys of this page alone."""
@@ -113,6 +115,10 @@ class Page(QWidget):
 
     def has_field(self) -> bool:
         """Whether an entry of the page has the keyboard."""
+        return False
+
+    def ahead(self) -> bool:
+        """Make one slice more of its charts, some milliseconds, before it is shown; False: nothing left."""
         return False
 
     def lively(self) -> bool:

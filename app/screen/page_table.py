@@ -13,9 +13,25 @@ from app.screen.page_base import Host, Page
 MENU, AUTOMATIC, EDITOR, MDI, JOG = "MAIN MENU", "AUTOMATIC", "EDITOR", "MDI", "JOG"
 SEARCHTO = "SEARCHTO"
 TOOLS, SECCMP, SPECIAL = "TOOL OFFSETS", "SECONDARY OFFSETS", "SPECIAL FUNCTIONS"
-PROGRAMS, ZERO, SHAPE, PART = "PROGRAMS", "ZERO OFFSETS", "TOOL SHAPE", "PART"
+ZERO, MILL_TOOLS, PRESETS = "ZERO OFFSETS", "TOOL TABLE", "PRESETS"
+PROGRAMS, SHAPE, PART = "PROGRAMS", "TOOL SHAPE", "PART"
 SCOPE, ANALYSES, DRIVE_TEST = "SCOPE", "ANALYSES", "DRIVE TEST"
-MEASURED = "MEASURED PARTS"
+MEASURED, JOBS = "MEASURED PARTS", "JOBS"
+
+
+_OMNITURN, _LATHES = frozenset({"omniturn"}), frozenset({"omniturn", "sinumerik"})
+_MILLS = frozenset({"klartext"})
+_ALL = _LATHES | _MILLS
+_PATH = (
+    "app.path.path_pane_view.Panes",
+    "app.path.path_marks_view.Button",
+    "app.path.measuring_view.Measure",
+    "app.path.part_pane_view.PartPane",
+    "app.path.solid_pane_view.SolidPane",
+    "app.path.part_bar_view.PartBar",
+    "app.path.part_section.metal_of",
+)
+_ANALYSIS = ("app.scope.analyses_chart_view.AnalysisChart",)
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +39,7 @@ class PageEntry:
     """One page. ``view`` and ``model`` are dotted names of classes: imported when the page is first opened.
 
     The model is the one that is attached to the desk; a view without one makes what it needs of the desk. A
-    page without a key is not in the main menu.
+    page without a key is not in the main menu. ``later`` are dotted names of what it imports once it is open.
     """
 
     name: str
@@ -32,10 +48,20 @@ class PageEntry:
     key: str = ""
     label: str = ""
     use: str = ""
+    languages: frozenset[str] = _ALL  # of the machines that have it
+    later: tuple[str, ...] = ()
 
 
 PAGES = (
-    PageEntry(AUTOMATIC, "app.automatic.automatic_view.AutomaticPage", "", "F2", "AUTO", "run programs"),
+    PageEntry(
+        AUTOMATIC,
+        "app.automatic.automatic_view.AutomaticPage",
+        "",
+        "F2",
+        "AUTO",
+        "run programs",
+        later=_PATH,
+    ),
     PageEntry(
         EDITOR,
         "app.editor.editor_view.EditorPage",
@@ -47,7 +73,7 @@ PAGES = (
     PageEntry(
         MDI, "app.mdi.mdi_view.MdiPage", "app.mdi.mdi_model.MdiModel", "F4", "MDI", "one line at a time"
     ),
-    PageEntry(JOG, "app.jog.jog_view.JogPage", "", "F5", "JOG", "move by hand, touch tools off"),
+    PageEntry(JOG, "app.jog.jog_view.JogPage", "", "F5", "JOG", "move by hand: axes, steps, home"),
     PageEntry(
         PROGRAMS,
         "app.programs.programs_view.ProgramsPage",
@@ -63,6 +89,16 @@ PAGES = (
         "F8",
         "TOOLS",
         "T1…T32: position and nose radius",
+        _LATHES,
+    ),
+    PageEntry(
+        MILL_TOOLS,
+        "app.offsets.cell_table_view.MillToolsPage",
+        "",
+        "F8",
+        "TOOLS",
+        "L, R, R2, oversizes, teeth, life; length touched off",
+        _MILLS,
     ),
     PageEntry(
         SECCMP,
@@ -71,14 +107,25 @@ PAGES = (
         "F9",
         "SECCMP",
         "D1…D32: corrections of wear and size",
+        _OMNITURN,
+    ),
+    PageEntry(
+        PRESETS,
+        "app.offsets.cell_table_view.PresetsPage",
+        "",
+        "F9",
+        "PRESETS",
+        "where the workpiece lies: X Y Z, rotary axes, basic rotation",
+        _MILLS,
     ),
     PageEntry(
         ZERO,
-        "app.offsets.zero_offsets_view.ZeroOffsetsPage",
+        "app.offsets.cell_table_view.ZeroOffsetsPage",
         "",
         "G",
         "ZERO",
         "G54…G59: where SINUMERIK programs have their zero",
+        _LATHES,
     ),
     PageEntry(
         SPECIAL,
@@ -95,6 +142,7 @@ PAGES = (
         "B",
         "PART",
         "findings of the program, its stock, silenced checks",
+        _LATHES,
     ),
     PageEntry(
         SCOPE,
@@ -103,6 +151,7 @@ PAGES = (
         "Q",
         "SCOPE",
         "axes and spindle as curves: following error, speed, load",
+        later=("app.scope.scope_chart_view.ScopeChart",),
     ),
     PageEntry(
         MEASURED,
@@ -110,10 +159,26 @@ PAGES = (
         "app.quality.quality_functions.QualityFunctions",
         "W",
         "MEASURED",
-        "readings, charts, wear, tool life, trends",
+        "features, readings, charts, trends",
+        later=("app.quality.plots_view.PlotsPane", "app.compose.desk_quality_sections.sections"),
     ),
-    PageEntry(ANALYSES, "app.scope.analyses_view.AnalysesPage", "app.scope.analyses.Analyses"),
-    PageEntry(DRIVE_TEST, "app.jog.drive_test_view.DriveTestPage", "app.jog.drive_test_model.DriveTests"),
+    PageEntry(
+        JOBS,
+        "app.jobs.jobs_view.JobsPage",
+        "app.jobs.jobs_model.JobsModel",
+        "J",
+        "JOBS",
+        "what is made next, how many, what it needs",
+    ),
+    PageEntry(
+        ANALYSES, "app.scope.analyses_view.AnalysesPage", "app.scope.analyses.Analyses", later=_ANALYSIS
+    ),
+    PageEntry(
+        DRIVE_TEST,
+        "app.jog.drive_test_view.DriveTestPage",
+        "app.jog.drive_test_model.DriveTests",
+        later=_ANALYSIS,
+    ),
     PageEntry(SHAPE, "app.offsets.tool_shapes_view.ToolShapePage"),
     PageEntry(MENU, "app.screen.main_menu.MenuPage"),
     PageEntry(
@@ -121,7 +186,50 @@ PAGES = (
     ),
 )
 IN_MENU = tuple(entry for entry in PAGES if entry.key)
+
+
+_INSTEAD = {
+    "klartext": {TOOLS: MILL_TOOLS, SECCMP: PRESETS, ZERO: PRESETS},
+    "sinumerik": {SECCMP: ZERO},
+}
+
+
+def page_on(language: str, name: str) -> str:
+    """The page that a machine of this language opens where another would open ``name``."""
+    return _INSTEAD.get(language, {}).get(name, name)
+
+
+def menu_of(language: str) -> tuple[PageEntry, ...]:
+    """The entries of the main menu on a machine of this language."""
+    return tuple(entry for entry in IN_MENU if language in entry.languages)
+
+
+def menu_keys(language: str) -> dict[str, PageEntry]:
+    """Each key of the main menu with what it opens; what is in the place of another page has its key too."""
+    entries = menu_of(language)
+    by_name = {entry.name: entry for entry in entries}
+    absent = [entry for entry in IN_MENU if language not in entry.languages]
+    instead = {
+        entry.key: by_name[page_on(language, entry.name)]
+        for entry in absent
+        if page_on(language, entry.name) in by_name
+    }
+    return {**instead, **{entry.key: entry for entry in entries}}
+
+
 _ENTRY_OF = {entry.name: entry for entry in PAGES}
+
+
+def pages_of(language: str) -> tuple[PageEntry, ...]:
+    """The pages of a machine of this language, those of the menu first."""
+    return tuple(entry for entry in PAGES if language in entry.languages)
+
+
+def load(entry: PageEntry) -> None:
+    """Import all that a page needs; on a worker, so that opening it takes no time of the screen's thread."""
+    for dotted in (entry.view, entry.model, *entry.later):
+        if dotted:
+            class_of(dotted)
 
 
 def make_page(name: str, host: Host, parent: QWidget) -> Page:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, Generic, TypeVar
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
@@ -146,6 +146,10 @@ class Control:
     along: Callable[[QPointF], None] | None = None
     up: Callable[[], None] | None = None
     always: bool = False  # it stops the machine: it acts however late the finger is seen
+
+    def stopping(self) -> Control:
+        """The same, as one that stops the machine."""
+        return replace(self, always=True)
 
 
 def pressed(box: QRectF, press: Press) -> Control:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from textwrap import wrap
 
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QWheelEvent
 
+from app.desk.translation import tr
 from app.screen.look import RIGHT, Painter
 from app.screen.panel import Panel, Shown
 
-ROW = 2.9  # units from line to line
+_LETTER = 1.1  # units: one of a sentence, about
+ROW, MM = 2.9, 7.0  # units from line to line, and at most so many millimetres
 
 
 class Listing(Panel):
@@ -21,6 +24,7 @@ class Listing(Panel):
     _top: Shown[int | None] = Shown(None)  # first row when scrolled by hand, None while it follows the run
     _bad: Shown[Mapping[int, str]] = Shown({})
     _lines: Sequence[str] = ()
+    trouble = Shown("")  # why there is nothing to be shown
 
     def show_source(self, lines: Sequence[str], bad: Mapping[int, str]) -> None:
         """Another program; ``bad`` are messages by line number."""
@@ -41,7 +45,17 @@ class Listing(Panel):
     @property
     def rows(self) -> int:
         """How many lines of the program fit into the window."""
-        return max(1, int((self.height() - 3.2 * self.look.u) / (ROW * self.look.u)))
+        return max(1, int((self.height() - 3.2 * self.look.u) / self._high))
+
+    @property
+    def _high(self) -> float:
+        """From line to line, pixels."""
+        return self.look.row(ROW, MM)
+
+    @property
+    def _scale(self) -> float:
+        """Of the letters, by the height of a line."""
+        return self._high / (ROW * self.look.u)
 
     @property
     def top(self) -> int:
@@ -78,22 +92,28 @@ class Listing(Panel):
         count = len(self._lines)
         title = f"PROGRAM  ·  {count} LINES" if count else "PROGRAM"
         self.frame(painter, title if self.follows else f"{title}  ·  HOME FOLLOWS AGAIN")
-        row = QRectF(0.3 * u, 2.5 * u, self.width() - 0.6 * u, ROW * u)
+        row = QRectF(0.3 * u, 2.5 * u, self.width() - 0.6 * u, self._high)
         number = self.top + 1
         for _ in range(self.rows):
             if number > count:
                 break
             self._source(painter, row, number)
-            row.translate(0, ROW * u)
+            row.translate(0, self._high)
             if number == self._line and self._block:
                 row = self._generated(painter, row)
             if row.bottom() > self.height() - 0.4 * u:
                 break
             number += 1
         if not count:
-            room = self.inside()
-            room.setHeight(4 * u)
-            painter.write(room, "No program.", 2.0, "soft", bold=False)
+            self._none(painter)
+
+    def _none(self, painter: Painter) -> None:
+        room, high = self.inside(), ROW * self.look.u
+        room.setHeight(high)
+        wide = max(10, int(room.width() / (_LETTER * self.look.u)))
+        for row in wrap(tr(self.trouble or "No program."), wide):
+            painter.write(room, row, 2.0, "text" if self.trouble else "soft", bold=False, raw=True)
+            room.translate(0, high)
 
     def _source(self, painter: Painter, row: QRectF, number: int) -> None:
         u = self.look.u
@@ -103,11 +123,12 @@ class Listing(Panel):
             painter.fill(QRectF(row.x(), row.y(), 0.7 * u, row.height()), "lit")
         if bad:
             painter.fill(QRectF(row.x(), row.y(), 0.7 * u, row.height()), "alarm")
-        wide = max(4, len(str(len(self._lines)))) * 1.2 * u
+        scale = self._scale
+        wide = max(4, len(str(len(self._lines)))) * 1.2 * u * scale
         margin = QRectF(row.x() + 1.2 * u, row.y(), wide, row.height())
-        painter.write(margin, str(number), 1.7, "alarm" if bad else "soft", at=RIGHT, bold=False)
+        painter.write(margin, str(number), 1.7 * scale, "alarm" if bad else "soft", at=RIGHT, bold=False)
         text, room = self._lines[number - 1].expandtabs(4), row.adjusted(wide + 2.4 * u, 0, -0.8 * u, 0)
-        painter.write(room, text, 2.1, "text", bold=here, raw=True, fit=False)
+        painter.write(room, text, 2.1 * scale, "text", bold=here, raw=True, fit=False)
 
     def _generated(self, painter: Painter, row: QRectF) -> QRectF:
         u = self.look.u
@@ -118,8 +139,10 @@ class Listing(Panel):
                 painter.fill(row, "here")
                 painter.fill(QRectF(row.x(), row.y(), 0.7 * u, row.height()), "lit")
             label = "BLOCK" if name == "accent" else "NEXT"
-            painter.write(QRectF(row.x() + 1.2 * u, row.y(), 5.6 * u, row.height()), label, 1.6, name)
+            painter.write(
+                QRectF(row.x() + 1.2 * u, row.y(), 5.6 * u, row.height()), label, 1.6 * self._scale, name
+            )
             room = row.adjusted(7.6 * u, 0, -0.8 * u, 0)
-            painter.write(room, text, 2.0, name, bold=name == "accent", raw=True, fit=False)
-            row = row.translated(0, ROW * u)
+            painter.write(room, text, 2.0 * self._scale, name, bold=name == "accent", raw=True, fit=False)
+            row = row.translated(0, self._high)
         return row

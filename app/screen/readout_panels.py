@@ -268,13 +268,13 @@ class HeadLine(Panel):
         u = self.look.u
         feed, spindle = view.feed, view.spindle
         cells = (
-            (f"FEED {percent(feed.override)}", f"{feed.actual} {tr(feed.actual_unit)}", 0.42),
+            (f"FEED {percent(feed.override)}", f"{feed.actual} {tr(feed.actual_unit)}", 0.36),
             (
                 f"SPINDLE {percent(spindle.override)}",
                 f"{tr(spindle.direction)} {spindle.rpm}/{spindle.actual}",
-                0.36,
+                0.44,
             ),
-            ("TOOL", f"{view.tool} {view.secondary}", 0.22),
+            ("TOOL", f"{view.tool} {view.secondary}", 0.2),
         )
         x = room.x() + 1.6 * u
         for label, figure, share in cells:

@@ -19,7 +19,6 @@ from app.screen.theme import PALETTES
 BuildDesk = Callable[[], Desk]
 _log = logging.getLogger(__name__)
 ENDING = (signal.SIGINT, signal.SIGTERM)  # the machine is stopped and the threads are ended, as by closing
-START_SIZE = (1280, 720)
 
 
 def run_screen(
@@ -28,22 +27,21 @@ def run_screen(
     offsets: str | None = None,
     theme: str = "dark",
     build: BuildDesk | None = None,
+    *,
+    kiosk: bool = False,
 ) -> int:
     """Show the screen until it is closed; the exit status.
 
     ``machine`` is a machine file, ``program`` a file to load at the start, ``offsets`` an offsets file that
     takes the place of the store's offsets, ``build`` makes the desk (default:
-    the composed one). What building raises is raised here, after the window is gone.
+    the composed one); a ``kiosk`` fills the screen and is not closed by hand.
+    What building raises is raised here, after the window is gone.
     """
     app = _application(theme)
     app.setQuitOnLastWindowClosed(False)  # it posts a quit that would outlive this loop
     window = MainWindow(Look(PALETTES[theme]), app.quit)
-    window.resize(*START_SIZE)
-    screen = app.primaryScreen()
-    if screen is not None and screen.availableGeometry().width() < 2 * START_SIZE[0]:
-        window.showMaximized()
-    else:
-        window.show()
+    window.kiosk = kiosk
+    window.open_on(app.primaryScreen())
     start = _Start(window, build or (lambda: _composed(machine, offsets)), program)
     before, sys.excepthook = sys.excepthook, start.mistake
     # Not quit: a window may refuse to close while a program is under way, a computer going down cannot wait.
@@ -102,6 +100,7 @@ def _application(theme: str) -> QApplication:
     present = QApplication.instance()
     app = present if isinstance(present, QApplication) else QApplication(sys.argv[:1])
     app.setApplicationName("TurnDesk")
+    app.setDesktopFileName("turndesk")  # by it a desktop finds name and icon, also under Wayland
     load_fonts()
     dress(PALETTES[theme])
     return app

@@ -41,8 +41,16 @@ class SheetPanel(Panel):
 
     @property
     def _high(self) -> float:
-        """Of a row, units."""
-        return TALL if self.sheet.tall else ROW
+        """Of a row, units: a fingertip, and on a large glass no more than 9 mm (a tall one 14)."""
+        look = self.look
+        return (
+            look.row(TALL, 14.0, touch=True) if self.sheet.tall else look.row(ROW, 9.0, touch=True)
+        ) / look.u
+
+    @property
+    def _letters(self) -> float:
+        """How large letters are in a row, by its height."""
+        return min(1.0, self._high / (TALL if self.sheet.tall else 4.2))
 
     @property
     def rows(self) -> int:
@@ -99,7 +107,7 @@ class SheetPanel(Panel):
             painter.fill(box, "here")
             painter.fill(QRectF(box.x(), box.y(), 0.5 * u, box.height()), "lit")
         if row.lit is not None:
-            side = 1.6 * u
+            side = min(1.6 * u, 0.5 * box.height())
             lamp = QRectF(box.x() + 1.0 * u, box.center().y() - side / 2, side, side)
             painter.box(lamp, row.tone.value, 0.2, row.tone.value if row.lit else "")
         for number, at in self._columns(box):
@@ -109,10 +117,10 @@ class SheetPanel(Panel):
             first, two, second = row.cells[number].partition("\n")
             if two:
                 half = QRectF(at.x(), at.center().y(), at.width(), 0.44 * at.height())
-                painter.write(half, second, 1.8, "soft", at=side, bold=False, raw=raw)
+                painter.write(half, second, 1.8 * self._letters, "soft", at=side, bold=False, raw=raw)
                 at.setTop(at.y() + 0.06 * at.height())
                 at.setHeight(half.height())
-            painter.write(at, first, 2.1, "text", at=side, bold=bold, raw=raw)
+            painter.write(at, first, 2.1 * self._letters, "text", at=side, bold=bold, raw=raw)
             if row.outline is not None and number == len(row.cells) - 1:
                 draw_outline(painter, at.adjusted(0, 0.2 * u, 0, -0.2 * u), row.outline, small=True)
 

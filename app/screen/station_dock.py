@@ -15,6 +15,7 @@ from app.desk.station_hands import Pot
 from app.desk.translation import tr
 from app.screen.look import CENTRE, RIGHT, Look, Painter
 from app.screen.panel import Control, FingerPanel, Shown, pressed
+from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
 
 DRAWN_FOR = 71.6  # units of height; a taller dock gives every row its share
@@ -38,7 +39,8 @@ class StationDock(FingerPanel):
         self._auto = snapshot.spindle_auto
         palms = frozenset(desk.hands.palms.down)
         pots = (desk.hands.spindle_pot.wanted, desk.hands.feed_pot.wanted)
-        self._shown = (desk.hands.estop_pressed, pots, palms)
+        latched = desk.settings.now.latched and desk.one_hand
+        self._shown = (desk.hands.estop_pressed, pots, palms, latched, desk.hands.latch_now())
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Over a pot the wheel turns it."""
@@ -54,10 +56,10 @@ class StationDock(FingerPanel):
         return QRectF(1.4 * u, y * scale, self.width() - 2.8 * u, high * scale)
 
     def _spindle_box(self) -> QRectF:
-        return self._row(31.4, 5.4)
+        return self._row(28.8, 6.5)
 
     def _feed_box(self) -> QRectF:
-        return self._row(40.4, 5.4)
+        return self._row(38.7, 6.5)
 
     def draw(self, painter: Painter) -> None:
         self.controls.clear()
@@ -65,9 +67,9 @@ class StationDock(FingerPanel):
         self._mushroom(painter)
         self._switch(painter)
         spindle, feed = desk.hands.spindle_pot, desk.hands.feed_pot
-        self._label(painter, self._row(28.6, 2.6), "SPINDLE SPEED", formats.percent(spindle.wanted), "text")
+        self._label(painter, self._row(26.2, 2.4), "SPINDLE SPEED", formats.percent(spindle.wanted), "text")
         self._pot(painter, self._spindle_box(), (",", "."), spindle, desk.hands.turn_spindle_pot)
-        self._label(painter, self._row(37.6, 2.6), "FEED RATE", formats.percent(feed.wanted), "text")
+        self._label(painter, self._row(36.1, 2.4), "FEED RATE", formats.percent(feed.wanted), "text")
         self._pot(painter, self._feed_box(), ("−", "+"), feed, desk.override)
         self._hold(painter)
         self._start(painter)
@@ -78,7 +80,7 @@ class StationDock(FingerPanel):
 
     def _mushroom(self, painter: Painter) -> None:
         look, u = self.look, self.look.u
-        box, pressed = self._row(2.6, 15.0), self._desk.hands.estop_pressed
+        box, pressed = self._row(2.6, 13.2), self._desk.hands.estop_pressed
         painter.fill(box, "estop_plate")
         side = min(box.width() - 8.0 * u, box.height() - 1.6 * u)
         head = QRectF(box.x() + 0.8 * u, box.center().y() - side / 2, side, side)
@@ -117,8 +119,8 @@ class StationDock(FingerPanel):
             self._desk.hands.estop(pressed=False)
 
     def _switch(self, painter: Painter) -> None:
-        self._label(painter, self._row(18.6, 2.6), "SPINDLE SWITCH", "A", "accent")
-        box = self._row(21.4, 5.6)
+        self._label(painter, self._row(16.4, 2.4), "SPINDLE SWITCH", "A", "accent")
+        box = self._row(18.9, 6.5)
         half = box.width() / 2
         for number, word in enumerate(("OFF", "AUTO")):
             on = self._auto is (word == "AUTO")
@@ -132,13 +134,14 @@ class StationDock(FingerPanel):
         self, painter: Painter, box: QRectF, keys: tuple[str, str], pot: Pot, turn: Callable[[int], None]
     ) -> None:
         u = self.look.u
-        less = QRectF(box.x(), box.y(), 4.6 * u, box.height())
-        more = QRectF(box.right() - 4.6 * u, box.y(), 4.6 * u, box.height())
+        wide = max(4.6 * u, float(FINGER))
+        less = QRectF(box.x(), box.y(), wide, box.height())
+        more = QRectF(box.right() - wide, box.y(), wide, box.height())
         for at, key, steps in ((less, keys[0], -1), (more, keys[1], 1)):
             painter.fill(at, "key")
             painter.write(at, key, 2.8, "accent", at=CENTRE)
             self.controls.append(pressed(at, partial(turn, steps)))
-        track = box.adjusted(5.2 * u, 0, -5.2 * u, 0)
+        track = box.adjusted(wide + 0.6 * u, 0, -wide - 0.6 * u, 0)
         painter.box(track, "frame", 0.14, "panel")
         self._slider(painter, track.adjusted(0.3 * u, 0.3 * u, -0.3 * u, -0.3 * u), pot.wanted / pot.most)
 
@@ -156,7 +159,7 @@ class StationDock(FingerPanel):
 
     def _hold(self, painter: Painter) -> None:
         look, u, desk = self.look, self.look.u, self._desk
-        box = self._row(47.4, 7.0)
+        box = self._row(46.4, 7.0)
         painter.box(box.adjusted(0.15 * u, 0.15 * u, -0.15 * u, -0.15 * u), "pause", 0.3, "panel")
         inner = box.adjusted(1.4 * u, 0, -1.4 * u, 0)
         room = inner.adjusted(0, 0, -3.0 * u, 0)
@@ -176,10 +179,12 @@ class StationDock(FingerPanel):
 
     def _start(self, painter: Painter) -> None:
         desk = self._desk
-        head = self._row(55.4, 2.6)
+        head = self._row(54.2, 2.4)
         text = "CYCLE START: BOTH PALMS" if desk.two_hand else "CYCLE START"
-        painter.write(head, text, 1.6, "soft")
-        box = self._row(58.2, 12.4)
+        if self._latches:
+            text = "CYCLE START: ONE BY ONE"
+        painter.write(head, text, 1.6, "pause" if self._latches else "soft")
+        box = self._row(56.8, 13.6)
         if not desk.two_hand:
             self._palm(painter, box, "F12", down=False)
             self.controls.append(pressed(box, desk.start_button))
@@ -187,10 +192,19 @@ class StationDock(FingerPanel):
         half = box.width() / 2
         for number, (side, key) in enumerate((("left", "F11"), ("right", "F12"))):
             at = QRectF(box.x() + number * half, box.y(), half, box.height())
-            self._palm(painter, at, key, side in desk.hands.palms.down)
+            waits = self._latches and desk.hands.latch_now() == side
+            self._palm(painter, at, "…" if waits else key, waits or side in desk.hands.palms.down)
             self.controls.append(self._palm_control(at, side))
 
+    @property
+    def _latches(self) -> bool:
+        """Whether one finger is enough: chosen in F10 7, where nothing real moves."""
+        return self._desk.settings.now.latched and self._desk.one_hand
+
     def _palm_control(self, at: QRectF, side: str) -> Control:
+        hands = self._desk.hands
+        if self._latches:
+            return Control(at, lambda _at: hands.latch(side), None, hands.latch_up)
         press, release = (partial(self._desk.hands.palm, side, down) for down in (True, False))
         return Control(at, lambda _at: press(), None, release)
 

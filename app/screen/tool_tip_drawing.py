@@ -8,7 +8,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPainterPath
 
 from app.screen.look import Painter
-from core.part.tool_shape import TIP_DIRECTIONS
+from core.tool_edges import TIP_DIRECTIONS
 
 _SPREAD = 0.7  # radians from the tool's axis to its flanks
 

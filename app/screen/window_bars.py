@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.interrupted_notice import NoticeRow
 from app.desk.machine_status import Tone
+from app.desk.prompt_line import Sort
 from app.desk.readouts import Lamp
 from app.desk.translation import tr
 from app.screen.keys import ANSWER
@@ -21,6 +22,8 @@ from app.screen.panel import Panel, Shown
 from app.screen.window_layout import FINGER
 
 TARGET = 13.0  # units: width of an answer to touch
+ANSWERS = {Sort.ANSWER: ("pause", "!"), Sort.DONE: ("run", "✓"), Sort.ASKED: ("wait", "?")}  # ground, sign
+SIGN = 5.0  # units: width of the sign
 
 
 class TitleLine(Panel):
@@ -77,24 +80,30 @@ class PromptLine(Panel):
     """
 
     text, reason, asked = Shown(""), Shown(""), Shown("")
-    _answer = Shown(False)
+    sort: Shown[Sort | None] = Shown(None)
 
     def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
         self._press = press
 
-    def show_text(self, text: str, *, answer: bool, asked: str = "", reason: str = "") -> None:
-        """``answer`` when it answers a key: it stands out then. ``asked``: the key that means yes."""
-        self.text, self._answer, self.asked, self.reason = text, answer, asked, reason
+    def show_text(self, text: str, *, sort: Sort | None, asked: str = "", reason: str = "") -> None:
+        """``sort`` when it answers a key: it stands out then. ``asked``: the key that means yes."""
+        self.text, self.sort, self.asked, self.reason = text, sort, asked, reason
 
     def draw(self, painter: Painter) -> None:
         u = self.look.u
         area = self.area()
-        painter.fill(area, "pause" if self._answer else "panel")
+        ground, sign = ANSWERS[self.sort] if self.sort is not None else ("panel", "")
+        painter.fill(area, ground)
         if self.asked:
             area.setRight(self._targets(painter, area))
-        ink = "on_state" if self._answer else "text"
+        ink = "on_state" if sign else "text"
         room = area.adjusted(1.4 * u, 0, -1.4 * u, 0)
+        if sign:
+            painter.write(
+                QRectF(area.x(), area.y(), SIGN * u, area.height()), sign, 3.0, ink, at=CENTRE, raw=True
+            )
+            room.setLeft(area.x() + SIGN * u)
         if self.reason:
             low = room.adjusted(0, 0.48 * room.height(), 0, -0.05 * room.height())
             painter.write(low, self.reason, 1.9, ink, bold=False)

@@ -12,17 +12,18 @@ from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
 from app.automatic.automatic_view import AutomaticPage
 from app.desk import formats, prompt_line
 from app.desk.desk import Desk
+from app.desk.first_job import CLOSE
 from app.desk.interrupted_notice import NoticeRow, may_go_on, notice_of
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
-from app.desk.readouts import Lamp
+from app.desk.readouts import Lamp, drives_lamp
 from app.desk.translation import tr
 from app.desk.unheard_notice import unheard_notice
 from app.screen import page_table
 from app.screen.alarm_panels import AlarmList, Notice
 from app.screen.look import Look
 from app.screen.page_base import Host, KeyActions, Page
-from app.screen.page_table import make_page
+from app.screen.page_table import make_page, page_on
 from app.screen.panel import Panel
 from app.screen.readout_panels import (
     FeedGauge,
@@ -41,7 +42,7 @@ from core.executor.snapshot import Snapshot, State
 _KEYS = (("F6", "SEARCHTO"), ("Y", "FROM LINE 1"))
 GAP = 4  # pixels under the rows that stand
 _RESTING = frozenset({State.ESTOP, State.DISABLED, State.IDLE, State.FAULT})
-STALE = 0.25  # s after which all is looked at again where nothing seems to have changed
+STALE = 0.45  # s after which all is looked at again where nothing seems to have changed
 _SETTLED = 3.0  # s after a move by hand before the room of a page may change
 
 
@@ -63,7 +64,7 @@ class Frame(QWidget):
         self.position = PositionPanel(look, self)
         self.feed = FeedGauge(look, "FEED", self)
         self.spindle = SpindleGauge(look, "SPINDLE", self)
-        self.tool = ToolGauge(look, "TOOL  ·  OFFSET", self)
+        self.tool = ToolGauge(look, "TOOL" if desk.language == "klartext" else "TOOL  ·  OFFSET", self)
         self.times = TimesGauge(look, "PARTS  ·  TIME", self)
         self.strip = LampStrip(look, press, self)
         self.notices = NoticeRows(look, press, self)
@@ -88,10 +89,10 @@ class Frame(QWidget):
 
     def go(self, name: str) -> bool:
         """Open a page; one that does not open now, or that does not let go, says so."""
+        name = page_on(self.desk.language, name)
         if name == self.page.NAME:
             return True
-        page = self._pages.get(name) or make_page(name, self._host, self)
-        self._pages[name] = page
+        page = self.page_named(name)
         if not page.opens() or not self.page.leave():
             return False
         self.desk.hands.let_go()
@@ -99,6 +100,12 @@ class Frame(QWidget):
         self.page = page
         self._front()
         return True
+
+    def page_named(self, name: str) -> Page:
+        """The page of this name, made with the first question for it; hidden until it is opened."""
+        page = self._pages.get(name) or make_page(name, self._host, self)
+        self._pages[name] = page
+        return page
 
     def open_record(self, name: str) -> None:
         """What was recorded before an alarm, in the scope."""
@@ -135,6 +142,8 @@ class Frame(QWidget):
             "F1": partial(self.go, page_table.MENU),
             "F7": self.toggle_log,
             "Scope": self.toggle_scope,
+            "Jobs": partial(self.go, page_table.JOBS),
+            CLOSE: partial(self.desk.choose_setting, "first_job", False),
             **self.page.key_actions(),
             **(self._log_keys() if self.log.isVisible() else {}),
         }
@@ -240,14 +249,18 @@ class Frame(QWidget):
 
     # --- what is shown -------------------------------------------------------------------------------
 
-    def stale(self) -> bool:
-        """Whether there may be something else to show than the last time: another state of the machine,
-        another program, something that was drawn since and may not be done; or that it was a while ago.
+    def changed(self) -> bool:
+        """Whether there is something else to show than the last time: another state of the machine, another
+        program, something that was drawn since and may not be done.
         """
         shown, desk = self._shown, self.desk
-        if shown is None or self._paints != Panel.paints or desk.clock() - self._shown_at > STALE:
+        if shown is None or self._paints != Panel.paints:
             return True
         return shown[1] is not desk.session.now or not shown[0].tells_as(desk.snapshot())
+
+    def aged(self) -> bool:
+        """Whether it is a while since all was shown."""
+        return self.desk.clock() - self._shown_at > STALE
 
     def refresh(self) -> None:
         """Take one snapshot and show it everywhere."""
@@ -294,7 +307,8 @@ class Frame(QWidget):
         self.title.show_state(name, view.state, view.tone, desk.machine, desk.time_of_day())
         text = self.page.asks() or desk.prompt(snapshot, loaded, self.page.prompt())
         reason = prompt_line.reason(view) or prompt_line.remedy(loaded, text)
-        self.prompt.show_text(text, answer=bool(desk.notice), asked=desk.asked, reason=reason)
+        sort = desk.answers.sort if desk.notice else None
+        self.prompt.show_text(text, sort=sort, asked=desk.asked, reason=reason)
 
     def _show_readouts(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
         """The figures of this instant, large."""
@@ -316,9 +330,8 @@ class Frame(QWidget):
 
     def _lamps_of(self, snapshot: Snapshot, view: MachineStatus) -> tuple[Lamp, ...]:
         """The lit words, from left to right."""
-        on = snapshot.state not in {State.ESTOP, State.DISABLED}
         kept = (Lamp("NOT KEPT", lit=True, warn=True),) if self.desk.not_kept() else ()
-        return (*view.modes, *view.lamps, *kept, Lamp("DRIVES ON", on, "D"), Lamp("RESET", False, "R"))
+        return (*view.modes, *view.lamps, *kept, drives_lamp(snapshot, "D"), Lamp("RESET", False, "R"))
 
     def _notices_of(self, snapshot: Snapshot, loaded: Loaded, *, here: bool) -> tuple[NoticeRow, ...]:
         """What stands until somebody does something; its keys where they mean that (``here``)."""
@@ -330,6 +343,11 @@ class Frame(QWidget):
         if found is not None:
             offered = here and snapshot.state is State.IDLE and bool(snapshot.interrupted_line)
             rows.append(replace(found, keys=_KEYS[not may_go_on(loaded) :] if offered else ()))
+        if here and desk.settings.now.first_job:
+            rows.append(desk.first_job.row)
+        offered_job = desk.offered(snapshot) if here else None
+        if offered_job is not None:
+            rows.append(offered_job)
         if desk.not_kept():
             held = desk.waiting()
             waits = tr("HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: {what}").format(what=held) if held else ""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
+from app.desk.daily_backup import ENDING
 from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.machine_status import Tone
@@ -15,13 +16,12 @@ from app.desk.persistence import Persistence
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.sheet import Key, Row, Sheet
 from app.desk.translation import tr
-from app.programs.folder_chooser import Stick, sticks
+from app.programs.removable_media import Stick, sticks
 from app.programs.whole_file import FileError
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot
 
 BARRED = "A PROGRAM IS UNDER WAY: NOTHING IS RESTORED BEFORE IT HAS ENDED"
-ENDING = ".turndesk.db"
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,9 +48,12 @@ class BackupAndRestore(SpecialFunction):
         worker: Latest,
         folder: Path,
         plugged: Callable[[], Sequence[Stick]] = sticks,
+        daily: Path | None = None,
     ) -> None:
+        """``daily`` is where the daily backups go, where that is not ``folder``."""
         super().__init__(desk)
         self.persistence, self.worker, self.folder, self.plugged = persistence, worker, folder, plugged
+        self.daily = daily
         self.places: tuple[Place, ...] = ()
         self.busy = ""
         self.restored: Callable[[], None] = lambda: None
@@ -66,7 +69,7 @@ class BackupAndRestore(SpecialFunction):
 
     def look(self) -> None:
         """List places and backups again; the answer comes with a later frame."""
-        self.worker.queue(lambda: _places(self.folder, self.plugged()), self._found, self._failed)
+        self.worker.queue(lambda: _places(self.folder, self.plugged(), self.daily), self._found, self._failed)
 
     def _found(self, places: tuple[Place, ...]) -> None:
         self.places = places
@@ -129,7 +132,7 @@ class BackupAndRestore(SpecialFunction):
 
     def _backed_up(self, name: str) -> None:
         self.busy = ""
-        self.desk.say(tr("BACKUP {name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED").format(name=name))
+        self.desk.done(tr("BACKUP {name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED").format(name=name))
         self.look()
 
     def _restore(self, place: Place) -> None:
@@ -152,7 +155,7 @@ class BackupAndRestore(SpecialFunction):
         self.desk.restoring = False
         self.restored()
         where = kept.name if kept else "—"
-        self.desk.say(tr("RESTORED; WHAT WAS THERE BEFORE IS KEPT AS {name}").format(name=where))
+        self.desk.done(tr("RESTORED; WHAT WAS THERE BEFORE IS KEPT AS {name}").format(name=where))
         self.look()
 
     def _failed(self, why: str) -> None:
@@ -165,10 +168,11 @@ class BackupAndRestore(SpecialFunction):
         return "RETURN ON A PLACE BACKS UP, ON A BACKUP RESTORES IT; F4 LOOKS FOR STICKS AGAIN"
 
 
-def _places(folder: Path, plugged: Sequence[Stick]) -> tuple[Place, ...]:
+def _places(folder: Path, plugged: Sequence[Stick], daily: Path | None) -> tuple[Place, ...]:
     """The control's own folder and the media, each followed by the backups in it, newest first."""
     found: list[Place] = []
-    for label, path in (("THIS CONTROL", folder), *((stick.label, stick.path) for stick in plugged)):
+    kept = [("THIS CONTROL", folder), *([("DAILY", daily)] if daily is not None else [])]
+    for label, path in (*kept, *((stick.label, stick.path) for stick in plugged)):
         found.append(Place(label, path))
         backups = sorted(path.glob(f"*{ENDING}"), key=lambda file: file.name, reverse=True)
         found += [_backup_of(file) for file in backups if not file.name.startswith(".")]

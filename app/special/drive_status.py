@@ -8,7 +8,7 @@ from app.desk.machine_status import Tone
 from app.desk.readouts import UNKNOWN
 from app.desk.sheet import Row, Sheet
 from app.special.special_functions import SpecialFunction
-from core.executor.snapshot import Alarm, Snapshot, State
+from core.executor.snapshot import Alarm, Snapshot
 from core.machine.machine_model import Axis, Machine
 from core.ports import Unknown
 
@@ -31,7 +31,7 @@ class DriveStatus(SpecialFunction):
     def sheet(self, snapshot: Snapshot) -> Sheet:
         """One row an axis, one for the spindle."""
         metric = self.desk.settings.units.metric(snapshot.modal.metric)
-        on = snapshot.state not in {State.ESTOP, State.DISABLED, State.FAULT}
+        on = snapshot.powered
         rows = [self._axis(snapshot, number, metric, on) for number in range(len(snapshot.axes))]
         unit = "MM" if metric else "INCH"
         largest = formats.length(snapshot.max_following_error, metric)

@@ -1,4 +1,4 @@
-"""Inputs, outputs and machine lamps, live; outputs are switched by hand at rest only."""
+"""Inputs, outputs and lamps, live; outputs are switched by hand at rest only, inputs where simulated."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from enum import StrEnum
 
 from app.desk.desk import Desk
 from app.desk.machine_status import Tone
-from app.desk.readouts import UNKNOWN, Lamp, lamps_of
+from app.desk.readouts import UNKNOWN, Lamp, drives_lamp, lamps_of
 from app.desk.sheet import Key, Row, Sheet, following
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
@@ -18,18 +18,18 @@ from core.ports import Unknown
 
 NOT_NOW = "OUTPUTS ARE SWITCHED BY HAND ONLY WHILE NO PROGRAM IS UNDER WAY AND NOTHING MOVES"
 AT_REST = frozenset({State.IDLE, State.DISABLED})
-# What asks for an input: the language's own codes, and what the control itself looks at.
-ASKED_BY = {
-    "TB2-5": "M91 M92",
-    "TB2-7": "M93 M94",
-    "TB2-9": "M95",
+# What asks for an input: codes of OmniTurn, and what the control itself looks at.
+_ASKED_IN_PROGRAMS = {"TB2-5": "M91 M92", "TB2-7": "M93 M94", "TB2-9": "M95"}
+_ASKED_BY = {
     "estop": "E-STOP",
     "start": "CYCLE START",
     "hold": "FEED HOLD",
     "guard": "GUARD",
     "collet_closed": "COLLET",
 }
-OWN_CODES = {"coolant": ("M08", "M09"), "collet": ("M12", "M13")}
+OF_STATION = frozenset({"estop", "start", "hold", "collet_closed"})  # no switch of its own
+_OWN_CODES = {"coolant": ("M8", "M9")}
+_OWN_CODES_OF_OMNITURN = {"coolant": ("M08", "M09"), "collet": ("M12", "M13")}
 
 
 class Kind(StrEnum):
@@ -59,6 +59,11 @@ class InputsOutputs(SpecialFunction):
             return len(self.machine.outputs)
         return len(self.machine.inputs) if self.kind is Kind.INPUTS else 0
 
+    @property
+    def _simulated(self) -> bool:
+        """Whether inputs are switched here: nobody else does it on a simulated machine."""
+        return self.desk.set_input is not None
+
     def sheet(self, snapshot: Snapshot) -> Sheet:
         """The list, every state from the one snapshot."""
         if self.kind is Kind.LAMPS:
@@ -81,7 +86,7 @@ class InputsOutputs(SpecialFunction):
     def _lamps(self, snapshot: Snapshot) -> Sheet:
         lamps = (
             *lamps_of(snapshot),
-            Lamp("DRIVES ON", snapshot.state not in {State.ESTOP, State.DISABLED}),
+            drives_lamp(snapshot),
             Lamp("ALARM", bool(snapshot.alarms), warn=True),
             Lamp("E-STOP", snapshot.state is State.ESTOP, warn=True),
             Lamp("AXES HOMED", all(snapshot.homed)),
@@ -94,8 +99,10 @@ class InputsOutputs(SpecialFunction):
 
     def _used(self, name: str, output: bool) -> str:
         if output:
-            return self._codes.get(name, "")
-        return ASKED_BY.get(name, f"M97I{name}" if name.isdigit() else "")
+            return tr("THE CONTROL, BY ITSELF") if name in self.machine.lamps else self._codes.get(name, "")
+        if name in _ASKED_BY or self.machine.language != "omniturn":
+            return _ASKED_BY.get(name, "")
+        return _ASKED_IN_PROGRAMS.get(name, f"M97I{name}" if name.isdigit() else "")
 
     def keys(self) -> Mapping[str, Key]:
         """F4 shows the next list."""
@@ -107,9 +114,24 @@ class InputsOutputs(SpecialFunction):
         self.kind, self.marked = following(Kind, self.kind), 0
 
     def act(self) -> bool:
-        """Switch the marked output over."""
-        self._switch()
+        """Switch the marked output over, or the marked input of a simulated machine."""
+        if self.kind is Kind.INPUTS and self._simulated:
+            self._switch_input()
+        else:
+            self._switch()
         return True
+
+    def _switch_input(self) -> None:
+        """At any time, as on a machine: also while a program waits for it."""
+        name = tuple(self.machine.inputs)[self.marked]
+        if name in OF_STATION:
+            self.desk.say(tr("{name} IS A BUTTON OF THE STATION OR FOLLOWS THE MACHINE").format(name=name))
+            return
+        on = name not in self.desk.snapshot().inputs
+        assert self.desk.set_input is not None
+        self.desk.set_input(name, on)
+        words = tr("SIMULATED INPUT {name} IS ON") if on else tr("SIMULATED INPUT {name} IS OFF")
+        self.desk.done(words.format(name=name))
 
     def _switch(self) -> None:
         if self.kind is not Kind.OUTPUTS:
@@ -119,6 +141,10 @@ class InputsOutputs(SpecialFunction):
         snapshot = self.desk.snapshot()
         if snapshot.state not in AT_REST:
             self.desk.say(NOT_NOW)
+            return
+        if name in self.machine.lamps:
+            self.desk.post(ForceOutput(name, True))
+            self.desk.done("LAMP TEST: ALL LAMPS OF THE TOWER ARE ON FOR TWO SECONDS")
             return
         on = name not in snapshot.outputs
         asked = (
@@ -130,6 +156,8 @@ class InputsOutputs(SpecialFunction):
 
     def prompt(self) -> str:
         """What Return does here, for the prompt line."""
+        if self.kind is Kind.INPUTS and self._simulated:
+            return tr("RETURN SWITCHES THE MARKED INPUT OF THE SIMULATED MACHINE; F4 SHOWS THE NEXT LIST")
         if self.kind is not Kind.OUTPUTS:
             return "F4 SHOWS THE NEXT LIST; ESC GOES BACK TO THE LIST OF FUNCTIONS"
         if self.desk.snapshot().state not in AT_REST:
@@ -142,8 +170,11 @@ def _state(on: bool) -> str:
 
 
 def _codes(machine: Machine) -> dict[str, str]:
-    """The M codes that switch each output, off after on."""
-    found: dict[str, list[str]] = {name: list(codes) for name, codes in OWN_CODES.items()}
+    """The M codes that switch each output, off after on, as the machine's language writes them."""
+    omniturn = machine.language == "omniturn"
+    own = _OWN_CODES_OF_OMNITURN if omniturn else _OWN_CODES
+    form = "M{:02d}" if omniturn else "M{}"
+    found = {name: list(codes) for name, codes in own.items()}
     for code, (output, _on) in sorted(machine.m_codes.items(), key=lambda entry: (not entry[1][1], entry[0])):
-        found.setdefault(output, []).append(f"M{code:02d}")
+        found.setdefault(output, []).append(form.format(code))
     return {name: " ".join(codes) for name, codes in found.items()}

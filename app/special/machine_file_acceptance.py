@@ -58,7 +58,7 @@ class MachineFileAcceptance(SpecialFunction):
     def _accepted(self) -> None:
         self.changes.accept()
         self.marked = 0
-        self.desk.say(tr("ACCEPTED: THE DRIVES CAN BE SWITCHED ON"))
+        self.desk.done(tr("ACCEPTED: THE DRIVES CAN BE SWITCHED ON"))
 
     def prompt(self) -> str:
         """What the keys do, for the prompt line."""

@@ -27,6 +27,7 @@ class PartCounter:
     program: str = ""
     count: int = 0
     target: int = 0
+    of_job: int = 0  # the count at which the job under way is done; it goes before the target
     _seen: int | None = None
     _announced: int = -1
     _made: int = -1  # as the executor was told
@@ -34,12 +35,17 @@ class PartCounter:
     @property
     def words(self) -> str:
         """Parts made, and the target where there is one: ``12`` or ``12/100``."""
-        return f"{self.count}/{self.target}" if self.target else str(self.count)
+        return f"{self.count}/{self.aim}" if self.aim else str(self.count)
+
+    @property
+    def aim(self) -> int:
+        """The count at which parts end, 0: none; that of the job under way, or else the target."""
+        return self.of_job or self.target
 
     @property
     def reached(self) -> bool:
         """Whether all the parts that were asked for are made."""
-        return 0 < self.target <= self.count
+        return 0 < self.aim <= self.count
 
     def see(self, snapshot: Snapshot, post: Callable[[Command], None], say: Callable[[str], None]) -> None:
         """One frame: another program, another part, the last part."""
@@ -49,12 +55,9 @@ class PartCounter:
             self._seen = snapshot.parts
         if self._seen is not None and snapshot.parts > self._seen:
             self.count += snapshot.parts - self._seen
-            if self.reached:
-                say(
-                    tr("TARGET REACHED: {count} OF {target} PARTS").format(
-                        count=self.count, target=self.target
-                    )
-                )
+            if self.reached and not self.of_job:  # the end of a job is told with what comes next
+                words = tr("TARGET REACHED: {count} OF {target} PARTS")
+                say(words.format(count=self.count, target=self.target))
         self._seen = snapshot.parts
         self._tell_executor(snapshot, post)
         self._stop_at(snapshot, post, say)
@@ -68,7 +71,7 @@ class PartCounter:
     def _stop_at(
         self, snapshot: Snapshot, post: Callable[[Command], None], say: Callable[[str], None]
     ) -> None:
-        last = snapshot.counts and self.target > 0 and self.count + 1 >= self.target
+        last = snapshot.counts and self.aim > 0 and self.count + 1 >= self.aim
         if last and snapshot.cycle_repeat and snapshot.state in _RUNNING and self._announced != self.count:
             self._announced = self.count
             post(SetSwitch("cycle_repeat", False))

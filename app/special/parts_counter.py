@@ -31,12 +31,14 @@ class PartsCounterFunction(FigureFunction):
     def sheet(self, snapshot: Snapshot) -> Sheet:
         """Count, target, what is left of it, times."""
         counter, last = self.counter, snapshot.last_cycle
-        left = max(0, counter.target - counter.count)
-        to_come = formats.duration(left * last) if counter.target and last else formats.NOTHING
+        aim = counter.aim
+        left = max(0, aim - counter.count)
+        to_come = formats.duration(left * last) if aim and last else formats.NOTHING
+        stop = tr("{count}, BY ITS JOB").format(count=aim) if counter.of_job else str(aim or tr("NO TARGET"))
         rows = (
             Row(("PARTS MADE", str(counter.count)), counter.reached or None),
-            Row(("STOP AT", str(counter.target) if counter.target else "NO TARGET")),
-            Row(("PARTS TO GO", str(left) if counter.target else formats.NOTHING)),
+            Row(("STOP AT", stop)),
+            Row(("PARTS TO GO", str(left) if aim else formats.NOTHING)),
             Row(("LAST CYCLE", formats.duration(last) if last else formats.NOTHING)),
             Row(("TIME FOR THE PARTS TO GO", to_come)),
         )
@@ -68,7 +70,7 @@ class PartsCounterFunction(FigureFunction):
         if not self.counter.program:
             self.desk.say(NO_PROGRAM)
         elif self.counter.count + by < 0:
-            self.desk.say("THE COUNT IS AT NOUGHT")
+            self.desk.done("THE COUNT IS AT NOUGHT")
         else:
             self.desk.clear()
             self.desk.keep(lambda: self.counter.correct(by))
@@ -78,7 +80,7 @@ class PartsCounterFunction(FigureFunction):
         if not self.counter.program:
             self.desk.say(NO_PROGRAM)
         elif self.counter.count == 0:
-            self.desk.say("THE COUNT IS AT NOUGHT")
+            self.desk.done("THE COUNT IS AT NOUGHT")
         else:
             self.desk.ask(RESET, partial(self.desk.keep, self.counter.reset))
 
@@ -87,7 +89,10 @@ class PartsCounterFunction(FigureFunction):
         if not self.counter.program:
             self.desk.say(NO_PROGRAM)
             return False
-        target = _whole(text)
+        if self.counter.of_job:
+            self.desk.say("REFUSED: A JOB IS UNDER WAY AND HAS ITS OWN COUNT; CHANGE THAT IN JOBS (SHIFT+F6)")
+            return False
+        target = whole_number(text)
         if 0 < target <= self.counter.count:
             made = self.counter.count
             self.desk.say(
@@ -102,7 +107,8 @@ class PartsCounterFunction(FigureFunction):
         return "TYPE HOW MANY PARTS AND PRESS RETURN; ESC GOES BACK TO THE LIST"
 
 
-def _whole(text: str) -> int:
+def whole_number(text: str) -> int:
+    """A number of parts as it was typed. Raises EntryError."""
     value = value_of(text)
     if value != int(value) or not 0 <= value <= MOST:
         raise EntryError(f"{value:g} is no number of parts; type a whole number from 0 to {MOST}")

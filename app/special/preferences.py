@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from app.desk.first_job import FirstJob
 from app.desk.sheet import Row, Sheet
+from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot
 
@@ -12,6 +14,15 @@ WORDS = {
     "language": "LANGUAGE",
     "theme": "COLOURS",
     "dock": "OPERATOR STATION ON THE SCREEN",
+    "latched": "PALM BUTTONS ON THE SCREEN",
+    "full_screen": "WINDOW",
+    "first_job": "CARD OF THE FIRST JOB",
+}
+YES_NO = {
+    "dock": ("SHOWN", "HIDDEN"),
+    "latched": ("ONE AFTER THE OTHER", "BOTH HELD"),
+    "full_screen": ("FULL SCREEN", "WINDOW"),
+    "first_job": ("SHOWN", "HIDDEN"),
 }
 VALUES = {"en": "ENGLISH", "es": "ESPAÑOL", "dark": "DARK", "light": "LIGHT"}
 
@@ -20,7 +31,7 @@ class ScreenPreferences(SpecialFunction):
     """Return, or a finger, goes on to the next choice."""
 
     name = "SCREEN"
-    use = "units, language, colours, station"
+    use = "units, language, station, window"
 
     @property
     def count(self) -> int:
@@ -30,7 +41,7 @@ class ScreenPreferences(SpecialFunction):
     def sheet(self, snapshot: Snapshot) -> Sheet:
         """One row for each setting: what is chosen now."""
         now = self.desk.settings.now
-        rows = tuple(Row((words, _in_words(getattr(now, name)))) for name, words in WORDS.items())
+        rows = tuple(Row((words, _in_words(name, getattr(now, name)))) for name, words in WORDS.items())
         control = "MM" if snapshot.modal.metric else "INCH"
         return Sheet(
             "SCREEN",
@@ -63,6 +74,14 @@ class ScreenPreferences(SpecialFunction):
         if name == "dock" and settings.now.dock and self.desk.hands.estop_pressed:
             self.desk.say("RELEASE THE E-STOP OF THE STATION BEFORE HIDING IT (U)")
             return
+        if name == "latched" and not self.desk.one_hand:
+            self.desk.say(
+                tr("PALMS LATCH WHERE EVERYTHING IS SIMULATED ALONE: HERE SOMETHING REAL WOULD TURN")
+            )
+            return
+        if name == "first_job":
+            self.desk.first_job = FirstJob()
+        self.desk.hands.let_go()
         self.desk.clear()
         self.desk.choose_setting(name, settings.following(name))
 
@@ -71,7 +90,7 @@ class ScreenPreferences(SpecialFunction):
         return "ARROWS MARK, RETURN GOES ON TO THE NEXT CHOICE; ESC GOES BACK TO THE LIST"
 
 
-def _in_words(value: object) -> str:
+def _in_words(name: str, value: object) -> str:
     if isinstance(value, bool):
-        return "SHOWN" if value else "HIDDEN"
+        return YES_NO[name][not value]
     return VALUES.get(str(value), str(value))

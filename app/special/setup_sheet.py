@@ -8,9 +8,11 @@ from dataclasses import dataclass
 from app.desk.program_loading import at_a_machine
 from app.desk.translation import tr
 from app.report.run_record import RunRecord, Stop, ToolTime
+from app.special.mill_setup import MillSetup, mill_setup
+from app.special.mill_setup import offset_words as mill_offset_words
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
-from core.language.diagnostics import Severity
+from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
 from core.machine.machine_model import Machine
 from core.part.clamping import Clamping
@@ -40,8 +42,7 @@ class SetupSheet:
 
     metric: bool
     cycle: float
-    errors: int
-    warnings: int
+    found: tuple[Diagnostic, ...]  # of the proof, each with the weight that it has at a machine
     stock: Stock | None
     part: Piece | None
     milled: bool
@@ -50,6 +51,18 @@ class SetupSheet:
     secondary: tuple[tuple[int, SecondaryOffset], ...]
     zero: tuple[tuple[int, ZeroOffset], ...]
     stops: tuple[Stop, ...]
+    mill: MillSetup | None = None
+    omniturn: bool = True  # the program is one of OmniTurn: it writes M00 where others write M0
+
+    @property
+    def errors(self) -> int:
+        """How many keep the program from running."""
+        return sum(each.severity is Severity.ERROR for each in self.found)
+
+    @property
+    def warnings(self) -> int:
+        """How many are only to be looked at."""
+        return sum(each.severity is Severity.WARNING for each in self.found)
 
     @property
     def verdict(self) -> str:
@@ -67,6 +80,8 @@ class SetupSheet:
     @property
     def stock_words(self) -> str:
         """What the part is made of."""
+        if self.mill is not None:
+            return self.mill.stock_words(self.length)
         stock = self.stock
         if stock is None:
             return tr("not known")
@@ -79,7 +94,9 @@ class SetupSheet:
 
     @property
     def held_words(self) -> tuple[tuple[str, str], ...]:
-        """Stick-out and chuck or collet, each with its name."""
+        """Stick-out and chuck or collet, each with its name; of a mill the preset."""
+        if self.mill is not None:
+            return ((tr("PRESET"), self.mill.preset_words(self.length)),)
         held = self.clamping
         if held is None or not held.diameter:
             return ((tr("STICK-OUT"), tr("not known: the machine file says nothing under [clamping]")),)
@@ -97,6 +114,8 @@ class SetupSheet:
 
     def shape_words(self, tool: SheetTool) -> str:
         """What the tool is."""
+        if self.mill is not None:
+            return self.mill.tool_words(tool.number)
         shape = tool.shape
         if shape is None:
             return tr("not known")
@@ -117,11 +136,17 @@ class SetupSheet:
         yield f"{tr('TIP')} {shape.tip}" if shape.tip else ""
 
     def offset_words(self, tool: SheetTool) -> str:
-        """Its offset: X a radius."""
+        """Its offset: X a radius; of a mill length and radius."""
         if tool.offset is None:
             return tr("NOT SET")
+        if self.mill is not None:
+            return mill_offset_words(tool.offset, self.length)
         x, z, r = (self.length(mm) for mm in (tool.offset.x, tool.offset.z, tool.offset.nose_radius))
         return tr("X (radius) {x}   Z {z}   R {r}").format(x=x, z=z, r=r)
+
+    def stop_word(self, stop: Stop) -> str:
+        """The stop as the program's language writes it."""
+        return f"M{'0' if self.omniturn else ''}{int(stop.optional)}"
 
 
 def setup_sheet(
@@ -130,14 +155,12 @@ def setup_sheet(
     """Prove the program once more and put together what its setup asks for. ``watch`` may raise."""
     record = RunRecord(setting)
     report, part = prove_with_part(program, setup, machine, setting, watch, seen=record.see)
-    found = [at_a_machine(each).severity for each in report.diagnostics]
     shapes = part.shapes if part is not None else {}
     numbers = sorted({*report.tools, *(n for n, time in record.times.items() if n and time.total)})
     return SetupSheet(
         metric=report.metric or report.dialect is not Dialect.OMNITURN,
         cycle=report.times.cycle,
-        errors=found.count(Severity.ERROR),
-        warnings=found.count(Severity.WARNING),
+        found=tuple(map(at_a_machine, report.diagnostics)),
         stock=part.stock if part is not None else None,
         part=part.last if part is not None else None,
         milled=part is not None and part.milled,
@@ -155,6 +178,8 @@ def setup_sheet(
         secondary=tuple((n, setup.secondary.get(n, SecondaryOffset())) for n in sorted(record.secondary)),
         zero=tuple((n, setup.zero.get(n, ZeroOffset())) for n in sorted(record.settable)),
         stops=tuple(record.stops),
+        mill=mill_setup(setup, record.blank),
+        omniturn=report.dialect is Dialect.OMNITURN,
     )
 
 

@@ -12,7 +12,7 @@ from app.desk.latest import Latest
 from app.desk.persistence import Persistence
 from app.desk.sheet import Entry, Key, Row, Sheet
 from app.desk.translation import tr
-from app.programs.folder_chooser import Stick, sticks
+from app.programs.removable_media import Stick, sticks
 from app.report.pdf_file import Paper
 from app.special.backup_and_restore import Place
 from app.special.special_functions import SpecialFunction
@@ -135,6 +135,8 @@ class SetupSheetFunction(SpecialFunction):
             yield Row((f"{tr('NOTE')} {number}", text, ""))
 
     def _remarks(self) -> dict[int, str]:
+        if self.machine.kind == "mill":  # its tools have names, and stand with them
+            return {}
         return {number: row.remark for number, row in self.desk.book.tools.items() if row.remark}
 
     def _sheet_of_places(self) -> Sheet:
@@ -315,7 +317,7 @@ class SetupSheetFunction(SpecialFunction):
 
     def _done(self, name: str) -> None:
         self.busy, self.places = "", ()
-        self.desk.say(tr("{name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED").format(name=name))
+        self.desk.done(tr("{name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED").format(name=name))
 
     def _not_written(self, why: str) -> None:
         self.busy = ""

@@ -81,8 +81,7 @@ def _offsets(sheet: SetupSheet) -> str:
 
 def _stops(sheet: SetupSheet) -> str:
     rows = [
-        (f"M0{int(stop.optional)}", str(stop.line), clock(stop.at), escape(stop.message))
-        for stop in sheet.stops
+        (sheet.stop_word(stop), str(stop.line), clock(stop.at), escape(stop.message)) for stop in sheet.stops
     ]
     head = (tr("STOP"), tr("LINE"), tr("AFTER"), tr("WHAT THE OPERATOR READS"))
     found = table(head, rows) if rows else f"<p>{escape(tr('None.'))}</p>"

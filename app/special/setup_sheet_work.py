@@ -56,7 +56,7 @@ def rows_of(made: MadeSheet, remarks: Mapping[int, str]) -> Iterator[Row]:
         yield Row((f"G{n}", f"X {length(zero.x)}   Z {length(zero.z)}   C {zero.c:g}°", ""))
     for stop in sheet.stops:
         at = tr("LINE {line}").format(line=stop.line)
-        yield Row((f"M0{int(stop.optional)}", f"{stop.message}\n{at}, {clock(stop.at)}", ""))
+        yield Row((sheet.stop_word(stop), f"{stop.message}\n{at}, {clock(stop.at)}", ""))
 
 
 def made_of(job: Job, machine: Machine, setting: PartSetting | None, watch: Request) -> MadeSheet:

@@ -76,7 +76,7 @@ class SpindleSpeedLimit(FigureFunction):
                 f"{rpm:g} rpm is not between {low:g} and {high:g} rpm, which this spindle can turn"
             )
         self.desk.post(SpindleLimit(rpm))
-        self.desk.say(tr("SPINDLE LIMITED TO {rpm} RPM UNTIL RESTART").format(rpm=formats.rpm(rpm)))
+        self.desk.done(tr("SPINDLE LIMITED TO {rpm} RPM UNTIL RESTART").format(rpm=formats.rpm(rpm)))
         return True
 
     def prompt(self) -> str:

@@ -1,0 +1,72 @@
+"""The desktop entry, its icon and the autostart of the session, where XDG looks for them."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import sys
+from importlib.resources import files
+from pathlib import Path
+
+from app.desk.command_errors import CommandError
+
+NAME = "turndesk"
+_ENTRY = """[Desktop Entry]
+Type=Application
+Name=TurnDesk
+GenericName=CNC lathe control
+Comment=The operator desk for OmniTurn-style lathes
+Comment[es]=El puesto de mando para tornos tipo OmniTurn
+Exec={command}
+Icon=turndesk
+Categories=Engineering;Science;
+StartupWMClass=turndesk
+Terminal=false
+"""
+
+
+def _under(variable: str, otherwise: str) -> Path:
+    named = os.environ.get(variable, "")
+    return Path(named) if named else Path.home() / otherwise
+
+
+def _places() -> tuple[Path, Path, Path]:
+    """The menu entry, the icon, the autostart."""
+    data, config = _under("XDG_DATA_HOME", ".local/share"), _under("XDG_CONFIG_HOME", ".config")
+    return (
+        data / "applications" / f"{NAME}.desktop",
+        data / "icons" / "hicolor" / "scalable" / "apps" / f"{NAME}.svg",
+        config / "autostart" / f"{NAME}.desktop",
+    )
+
+
+def _command() -> str:
+    """How this very installation is started again."""
+    beside = Path(sys.executable).with_name(NAME)
+    if beside.exists():
+        return shlex.quote(str(beside))
+    return f"{shlex.quote(sys.executable)} -m app.cli.main"
+
+
+def install(*, autostart: bool) -> list[Path]:
+    """Write them; the answer is what was written. Raises CommandError where that is not possible."""
+    entry, icon, start = _places()
+    try:
+        for path in (entry, icon, *((start,) if autostart else ())):
+            path.parent.mkdir(parents=True, exist_ok=True)
+        entry.write_text(_ENTRY.format(command=_command()), encoding="utf-8")
+        shutil.copyfile(str(files("resources") / "desktop" / f"{NAME}.svg"), icon)
+        if autostart:
+            start.write_text(_ENTRY.format(command=f"{_command()} --kiosk"), encoding="utf-8")
+    except OSError as error:
+        raise CommandError(f"{error.filename} cannot be written: {error.strerror}") from error
+    return [entry, icon, *([start] if autostart else [])]
+
+
+def remove() -> list[Path]:
+    """Take away what is there; the answer is what was."""
+    there = [path for path in _places() if path.exists()]
+    for path in there:
+        path.unlink()
+    return there

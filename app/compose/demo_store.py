@@ -1,0 +1,52 @@
+"""The demo: a store of its own beside the user's, with the offsets of the samples, to be changed and kept."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from app.compose.backend_entry import played
+from app.compose.inverter_backend import has_inverter
+from app.compose.machine_setup import read_machine
+from app.compose.workshop import samples
+from app.desk.command_errors import CommandError
+from app.desk.data_folder import HOME, data_folder
+from app.desk.screen_settings import KEY as SCREEN
+from app.offsets.offsets_file import read_rows
+from core.store.database import FILE_NAME
+from core.store.store import Store
+from core.store.store_errors import StoreError
+
+FOLDER = "demo"  # within the data folder
+_WHY = "offsets of the sample programs"
+
+
+def open_demo(machine_file: str | None) -> Path:
+    """From here on this process keeps everything in the demo's folder; the answer is that folder.
+
+    The first time it gets the offsets of the sample programs; what is changed later is kept.
+    Raises CommandError for a machine that is real, and where the store cannot be written.
+    """
+    machine = read_machine(machine_file)
+    if not played(machine) or has_inverter(machine):
+        raise CommandError(f"--demo is for simulated machines, and {machine.source} drives a real one")
+    folder = data_folder() / FOLDER
+    if not (folder / FILE_NAME).exists():
+        _seed(folder)
+    os.environ[HOME] = str(folder)
+    return folder
+
+
+def demo_program() -> str:
+    """What the demo has on the desk where nobody names a program."""
+    return str(samples() / "bushing.nc")
+
+
+def _seed(folder: Path) -> None:
+    tools, secondary, zero = read_rows(samples() / "offsets.toml")
+    try:
+        with Store.open(folder) as store:
+            store.import_all({}, tools, secondary, _WHY, zero).result()
+            store.set_setting(SCREEN, {"first_job": True}).result()
+    except StoreError as error:
+        raise CommandError(f"the demo has no store: {error}") from error

@@ -1,0 +1,71 @@
+"""The generated part of ``docs/dialects.md``: languages, their code books and the shipped machines.
+
+``python -m app.compose.dialects_page docs/dialects.md`` writes it anew between its two marks.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from app.compose.machine_files import shipped_machine
+from core.interpreter.dialects import NAMES, code_book
+from core.language.source import Dialect, dialect_of
+from core.machine.machine_model import Machine
+
+BEGIN = "<!-- generated: python -m app.compose.dialects_page docs/dialects.md -->"
+END = "<!-- end of what is generated -->"
+_ENDINGS = (".nc", ".txt", ".h", ".mpf", ".spf")
+_PAGES = {
+    Dialect.OMNITURN: "language",
+    Dialect.KLARTEXT: "klartext-codes",
+    Dialect.SINUMERIK: "sinumerik-codes",
+}
+_MACHINES = Path(__file__).parents[2] / "resources" / "machines"
+
+
+def machines() -> dict[str, Machine]:
+    """Every shipped machine by the name that ``--machine`` takes."""
+    names = sorted(path.stem for path in _MACHINES.glob("*.toml"))
+    return {name: shipped_machine(name) for name in names}
+
+
+def generated() -> str:
+    """The text between the marks, with them."""
+    found = machines()
+    return "\n".join([BEGIN, *_languages(found), "", *_shipped(found), END])
+
+
+def with_generated(text: str) -> str:
+    """The page with its generated part made anew. Raises ValueError where it has no marks."""
+    before, mark, rest = text.partition(BEGIN)
+    _, last, after = rest.partition(END)
+    if not (mark and last):
+        raise ValueError(f"the page needs the lines {BEGIN!r} and {END!r}")
+    return before + generated() + after
+
+
+def _languages(found: dict[str, Machine]) -> Iterator[str]:
+    yield "| language | files | codes in its book | MDI and SEARCHTO on |"
+    yield "|---|---|---|---|"
+    for dialect in Dialect:
+        endings = " ".join(f"`{each}`" for each in _ENDINGS if dialect_of(f"a{each}") is dialect)
+        book = code_book(dialect)
+        count = sum(len(entries) for _, entries in book.chapters)
+        speak = [name for name, machine in found.items() if machine.language == str(dialect)]
+        codes = f"[{count} in {len(book.chapters)} chapters]({_PAGES[dialect]}.md)"
+        yield f"| {NAMES[dialect]} | {endings} | {codes} | {', '.join(speak)} |"
+
+
+def _shipped(found: dict[str, Machine]) -> Iterator[str]:
+    yield "| `--machine` | kind | backend | axes |"
+    yield "|---|---|---|---|"
+    for name, machine in found.items():
+        axes = " ".join(f"{axis.name}{'°' if axis.rotary else ''}" for axis in machine.axes)
+        yield f"| {name} | {machine.kind} | {machine.backend} | {axes} |"
+
+
+if __name__ == "__main__":
+    page = Path(sys.argv[1])
+    page.write_text(with_generated(page.read_text("utf-8")), "utf-8")

@@ -1,0 +1,85 @@
+"""The events of one run in a file of the log folder, and how many such files are kept there."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import NamedTuple, TextIO
+
+from app.desk.command_errors import CommandError
+from app.desk.data_folder import data_folder
+from core.executor.snapshot import Event
+
+MOST = 500  # files of runs and failures
+MOST_BYTES = 64_000_000  # of them together
+OLDEST = 366 * 86_400.0  # s
+
+
+class _Kept(NamedTuple):
+    """A file of the log folder: its age in seconds, its size in bytes."""
+
+    path: Path
+    age: float
+    size: int
+
+
+class EventLog:
+    """The events of one run, a JSON object a line."""
+
+    def __init__(self, path: Path, file: TextIO) -> None:
+        self.path = path
+        self._file = file
+
+    @classmethod
+    @contextmanager
+    def new(cls, program: str) -> Iterator[EventLog]:
+        """A log in the product's folder, named after the time and the program."""
+        folder = data_folder() / "logs"
+        stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%f")
+        path = folder / f"{stamp}-{Path(program).stem}.jsonl"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            file = path.open("x", encoding="utf-8")
+        except OSError as error:
+            raise CommandError(f"{path}: the event log cannot be written: {error.strerror}") from error
+        forget_oldest(folder, path)
+        with file:
+            yield cls(path, file)
+
+    def add(self, event: Event) -> None:
+        """One more line."""
+        line = {"t": round(event.t, 4), "kind": event.kind, "text": event.text, "line": event.line}
+        if event.record:
+            line["record"] = event.record
+        self._file.write(json.dumps(line) + "\n")
+
+
+def forget_oldest(folder: Path, newest: Path) -> None:
+    """Delete the files of runs and failures beyond ``MOST``, ``MOST_BYTES`` and ``OLDEST``, the oldest first.
+
+    ``newest`` is being written. What cannot be deleted stays: nobody's run waits for that.
+    """
+    with suppress(OSError):
+        kept = [_kept(path) for what in ("*.jsonl", "crash-*.txt") for path in folder.glob(what)]
+        for each in _superfluous([one for one in kept if one.path != newest]):
+            with suppress(OSError):
+                each.path.unlink()
+
+
+def _kept(path: Path) -> _Kept:
+    found = path.stat()
+    return _Kept(path, time.time() - found.st_mtime, found.st_size)
+
+
+def _superfluous(files: Sequence[_Kept]) -> list[_Kept]:
+    """Those that go, of files beside the one that is being written."""
+    gone, size = [], 0
+    for place, each in enumerate(sorted(files, key=lambda one: (one.age, one.path.name)), start=1):
+        size += each.size
+        if place >= MOST or size > MOST_BYTES or each.age > OLDEST:
+            gone.append(each)
+    return gone

@@ -1,0 +1,71 @@
+"""The first job, step by step: a card that follows what is done, from choosing a program to a part."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from app.desk.interrupted_notice import NoticeRow
+from app.desk.program_loading import Loaded, Phase
+from app.desk.prompt_line import missing_tools
+from app.desk.translation import tr
+from core.executor.snapshot import CYCLE, Snapshot
+
+CLOSE = "×"  # what the card's key presses, and shows
+
+
+class Step(NamedTuple):
+    """What is to be done, and where."""
+
+    title: str
+    how: str
+
+
+STEPS = (
+    Step("CHOOSE A PROGRAM", "F2 AND A NAME, OR F1, F6 FOR THE LIST"),
+    Step(
+        "SET ITS TOOLS",
+        "F8 NAMES THOSE THAT NOBODY HAS SET; F1, F5: T AND ITS NUMBER, THEN X AND Z, OR C FOR A SKIM CUT",
+    ),
+    Step("PROVE IT", "WITH THE NEW OFFSET IT IS PROVED BY ITSELF; WHAT IS FOUND STANDS ON B (PART)"),
+    Step("DRY RUN", "P (NO COUNT), D, THEN BOTH PALMS; H HOLDS. LOOK AT EVERY MOVE, WITHOUT STOCK"),
+    Step("FIRST PART", "P AGAIN, PUT STOCK IN, BOTH PALMS; THEN MEASURE IT: F9 CORRECTS WEAR"),
+)
+
+
+@dataclass(slots=True)
+class FirstJob:
+    """Which step is the next one; a step that is done stays done until the card is asked for anew."""
+
+    at: int = 0
+    _dry: bool = False  # a cycle runs that counts no part
+    _parts: int | None = None
+
+    def see(self, snapshot: Snapshot, loaded: Loaded, parts: int) -> None:
+        """Once a frame: go on as far as has been done. ``parts`` that were made."""
+        while self.at < len(STEPS) and self._done(snapshot, loaded, parts):
+            self.at += 1
+
+    def _done(self, snapshot: Snapshot, loaded: Loaded, parts: int) -> bool:
+        good = loaded.phase is Phase.READY and loaded.proof is not None
+        if self.at == 0:
+            return loaded.path is not None and loaded.proof is not None
+        if self.at == 1:
+            return loaded.proof is not None and not missing_tools(loaded)
+        if self.at == 2:
+            return good and not missing_tools(loaded)
+        if self.at == 3:
+            ran, self._dry = self._dry, snapshot.state in CYCLE and snapshot.no_count
+            return ran and not self._dry
+        made = self._parts = parts if self._parts is None else self._parts
+        return parts > made
+
+    @property
+    def row(self) -> NoticeRow:
+        """The card of now."""
+        keys = ((CLOSE, tr("CLOSE")),)
+        if self.at >= len(STEPS):
+            return NoticeRow(tr("FIRST JOB: DONE"), tr("F10, 7 SHOWS THIS CARD AGAIN"), keys, "run")
+        step = STEPS[self.at]
+        head = tr("FIRST JOB, STEP {number} OF {count}").format(number=self.at + 1, count=len(STEPS))
+        return NoticeRow(f"{head}: {tr(step.title)}", tr(step.how), keys, "wait")

@@ -1,0 +1,145 @@
+"""Response of the spindle to the last speed it was brought to: rise, overshoot, time until at speed, swing.
+
+Read off the record of a run-up that was made anyway: the spindle is turned by programs and MDI alone.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from app.desk import formats
+from app.desk.sheet import Row, Sheet
+from app.desk.translation import tr
+from app.scope.drawing import Drawing
+from core.machine.machine_model import SpindleModel
+from core.records.record import Record
+from core.records.record_errors import AnalysisError
+from core.records.step_response import StepResponse, step_response
+
+FloatArray = npt.NDArray[np.float64]
+_CHANGE = 1.0  # rpm by which a command differs from the one before
+_ONE = 0.15  # s between two changes of one run-up: a pot that is turned, a surface speed
+_BEFORE, _BEHIND, _MOST = 0.2, 2.0, 15.0  # s that belong to it; once it is there, and where it never is
+WINDOWS = (0.02, 0.01)  # of the speed
+_SHARES = (0.62, 0.38)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SpindleResponse:
+    """One change of speed; ``times`` (n,) s from it on, ``asked`` and ``turned`` (n,) rpm.
+
+    ``steps`` by the machine file's window of at speed, then by each of ``WINDOWS``. ``swing`` rpm from least
+    to greatest and ``off`` rpm of the mean, over the last second.
+    """
+
+    times: FloatArray
+    asked: FloatArray
+    turned: FloatArray
+    steps: tuple[StepResponse, ...]
+    swing: float
+    off: float
+    model: SpindleModel
+
+    @property
+    def acceleration(self) -> float:
+        """From 10 to 90 % of the way, rpm/s; inf where both lie in one sample."""
+        step = self.steps[0]
+        return 0.8 * abs(step.way) / step.rise if step.rise > 0.0 else np.inf
+
+
+def last_run_up(record: Record, model: SpindleModel | None) -> SpindleResponse:
+    """The last change to a speed that is not 0. Raises AnalysisError."""
+    if model is None:
+        raise AnalysisError(tr("this machine has no spindle"))
+    nothing = np.full(len(record.times), np.nan)
+    asked, turned = (record.columns.get(f"spindle {name}", nothing) for name in ("command", "speed"))
+    if not np.isfinite(turned).any():
+        raise AnalysisError(tr("nobody tells the spindle's measured speed here"))
+    known = np.isfinite(asked) & np.isfinite(turned)
+    times, asked, turned = record.times[known], asked[known], turned[known]
+    changes = np.flatnonzero(np.abs(np.diff(asked)) > _CHANGE)
+    groups = np.split(changes, np.flatnonzero(np.diff(times[changes]) > _ONE) + 1) if len(changes) else []
+    for number in reversed(range(len(groups))):
+        first, last = int(groups[number][0]), int(groups[number][-1]) + 1
+        way, band = abs(asked[last] - asked[first]), model.at_speed * abs(asked[last])
+        if abs(asked[last]) <= _CHANGE or way <= 2.0 * band:
+            continue
+        end = float(times[groups[number + 1][0]]) if number + 1 < len(groups) else np.inf
+        return _response(times, asked, turned, first, last, min(end, times[last] + _MOST), model)
+    raise AnalysisError(
+        tr("the spindle was not brought to another speed in this time: start it by a program or in MDI")
+    )
+
+
+def _response(
+    times: FloatArray,
+    asked: FloatArray,
+    turned: FloatArray,
+    first: int,
+    last: int,
+    end: float,
+    model: SpindleModel,
+) -> SpindleResponse:
+    target = asked[last]
+    there = np.flatnonzero((np.abs(turned - target) <= model.at_speed * abs(target)) & (times >= times[last]))
+    if len(there):
+        end = min(end, float(times[there[0]]) + _BEHIND)
+    cut = slice(
+        int(np.searchsorted(times, times[first] - _BEFORE)), int(np.searchsorted(times, end, "right"))
+    )
+    t, a, b = times[cut] - times[last], asked[cut], turned[cut]
+    steps = tuple(_stayed(step_response(t, a, b, share * abs(target)), t, model) for share in _shares(model))
+    steady = b[t >= t[-1] - 1.0]
+    return SpindleResponse(t, a, b, steps, float(np.ptp(steady)), float(steady.mean() - target), model)
+
+
+def _shares(model: SpindleModel) -> tuple[float, ...]:
+    return model.at_speed, *WINDOWS
+
+
+def _stayed(step: StepResponse, times: FloatArray, model: SpindleModel) -> StepResponse:
+    """A speed that only passes through a window at the end of the record has not settled in it."""
+    if times[-1] - step.settling >= model.at_speed_time:
+        return step
+    return replace(step, settling=math.nan)
+
+
+def spindle_drawing(found: SpindleResponse) -> Drawing:
+    """Asked and turned over seconds."""
+    asked, turned = (np.column_stack([found.times, each]) for each in (found.asked, found.turned))
+    names = tr("SPINDLE") + "  rpm", "", "s"
+    return Drawing(asked, (turned,), equal=False, lengths=False, names=names)
+
+
+def spindle_sheet(title: str, found: SpindleResponse) -> Sheet:
+    """Its figures, and when narrower windows would call it at speed."""
+    step, model = found.steps[0], found.model
+    target = float(found.asked[-1])
+    rows = (
+        (tr("SPEED"), f"{formats.fixed(target - step.way, 0)} → {formats.fixed(target, 0)} rpm"),
+        (tr("RISE, 10 TO 90 %"), _seconds(step.rise)),
+        (tr("ACCELERATION"), f"{formats.fixed(found.acceleration, 0)} rpm/s"),
+        (tr("OVERSHOOT"), f"{formats.fixed(100.0 * step.overshoot, 2)} %"),
+        *(
+            (tr("WITHIN {share} AFTER").format(share=formats.percent(share)), _seconds(each.settling))
+            for share, each in zip(_shares(model), found.steps, strict=True)
+        ),
+        (tr("OFF IN THE MEAN"), f"{formats.fixed(found.off, 1)} rpm"),
+        (tr("SWING"), f"{formats.fixed(found.swing, 1)} rpm"),
+    )
+    notes = (
+        tr("The machine file counts on {accel} rpm/s and calls {share} at speed.").format(
+            accel=formats.fixed(model.accel, 0), share=formats.percent(model.at_speed)
+        ),
+        tr("Mean and swing are of the last second. A dash: it did not stay there."),
+        tr("Of the last run-up; worked out, nothing was changed."),
+    )
+    return Sheet(title, ("", ""), _SHARES, tuple(map(Row, rows)), notes=notes, figures=frozenset({1}))
+
+
+def _seconds(value: float) -> str:
+    return f"{formats.fixed(value, 3)} s" if np.isfinite(value) else formats.NOTHING

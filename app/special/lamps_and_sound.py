@@ -1,0 +1,172 @@
+"""Lamps and sound: what lights and sounds for what, in one table; volume, a try, the test of the lamps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from app.desk.desk import Desk
+from app.desk.persistence import Persistence
+from app.desk.sheet import Key, Row, Sheet
+from app.desk.sounds import Sounds
+from app.desk.translation import tr
+from app.special.special_functions import SpecialFunction
+from core.executor.commands import ForceOutput
+from core.executor.signal_kinds import SignalKinds
+from core.executor.snapshot import Snapshot
+from core.machine.machine_model import Machine
+from core.machine.signal_table import SIGNALS, Signal
+from core.store.store_errors import StoreError
+
+_SETTING = "sound"
+_STEP = 20
+_LAMPS = {"lamp_red": "RED", "lamp_amber": "AMBER", "lamp_green": "GREEN"}
+KINDS = tuple(SIGNALS)
+
+
+@dataclass(slots=True)
+class DeskSounds:
+    """Plays what has begun since the last frame; ``volume`` 0 until somebody wants it; not for ``silent``."""
+
+    desk: Desk
+    persistence: Persistence
+    sounds: Sounds = field(default_factory=Sounds)
+    volume: int = 0
+    silent: frozenset[str] = frozenset()
+    _signals: SignalKinds = field(default_factory=SignalKinds)
+    _before: tuple[str, ...] | None = None
+    _told: str = ""
+    _read: bool = False
+
+    def see(self, snapshot: Snapshot) -> None:
+        """One frame; the first one sounds for nothing."""
+        self.recall()
+        kinds = self._signals.see(snapshot.state, snapshot.ends, barred=bool(snapshot.next_barred))
+        before, self._before = self._before, kinds
+        new = [] if before is None else [kind for kind in kinds if kind not in before and self._heard(kind)]
+        if self.volume and new:
+            self.sounds.play(SIGNALS[min(new, key=KINDS.index)].tones, self.volume)
+        self._tell()
+
+    def _heard(self, kind: str) -> bool:
+        return kind not in self.silent and bool(SIGNALS[kind].tones)
+
+    def _tell(self) -> None:
+        """Once for each reason."""
+        why = self.sounds.trouble
+        if why and why != self._told:
+            self.desk.say(tr("NO SOUND: {why}").format(why=why))
+        self._told = why or self._told
+
+    def tried(self) -> None:
+        """A reason that was told before is told again."""
+        self._told = self.sounds.trouble = ""
+        self.sounds.play(SIGNALS["part"].tones, self.volume)
+
+    def recall(self) -> None:
+        """As it was chosen last; read once."""
+        if self._read:
+            return
+        self._read = True
+        try:
+            kept = self.persistence.setting(_SETTING)
+        except StoreError:
+            return
+        match kept:
+            case {"volume": int(volume), "silent": list(silent)}:
+                self.volume, self.silent = max(0, min(100, volume)), frozenset(map(str, silent))
+
+    def choose(self, volume: int, silent: frozenset[str]) -> None:
+        """Keep it. Raises StoreError."""
+        self.volume, self.silent = max(0, min(100, volume)), silent
+        self.persistence.save_setting(_SETTING, {"volume": self.volume, "silent": sorted(silent)})
+
+    def close(self) -> None:
+        """No sound any more."""
+        self.sounds.close()
+
+
+class LampsAndSound(SpecialFunction):
+    """A row a kind: its lamp, where the machine has one, and whether it sounds."""
+
+    name = "LAMPS AND SOUND"
+    use = "what lights and sounds, volume, lamp test"
+
+    def __init__(self, desk: Desk, machine: Machine, sounds: DeskSounds) -> None:
+        super().__init__(desk)
+        self.machine, self.sounds = machine, sounds
+
+    @property
+    def count(self) -> int:
+        """The kinds."""
+        return len(KINDS)
+
+    def sheet(self, _snapshot: Snapshot) -> Sheet:
+        """One table: what lights and what sounds for what."""
+        self.sounds.recall()
+        rows = tuple(
+            Row((tr(signal.use), self._lamp(signal), self._sound(kind, signal)))
+            for kind, signal in SIGNALS.items()
+        )
+        volume = f"{self.sounds.volume} %" if self.sounds.volume else tr("OFF")
+        lamps = ", ".join(self.machine.lamps) or tr(
+            "none in the machine file: lamp_red, lamp_amber, lamp_green, lamp_buzzer under [io.out]"
+        )
+        notes = (tr("VOLUME: {volume}").format(volume=volume), tr("LAMPS: {names}").format(names=lamps))
+        heads = ("WHAT", "LAMP", "SOUND")
+        return Sheet("LAMPS AND SOUND", heads, (0.5, 0.32, 0.18), rows, self.marked, notes=notes,
+                     raw=frozenset({0, 1, 2}))  # fmt: skip
+
+    def _lamp(self, signal: Signal) -> str:
+        words = tr(_LAMPS[signal.lamp]) + (f" {tr('BLINKING')}" if signal.blinks else "")
+        buzz = f" + {tr('BUZZER')} {signal.buzz:g} s" if signal.buzz else ""
+        return words + buzz
+
+    def _sound(self, kind: str, signal: Signal) -> str:
+        if not signal.tones:
+            return ""
+        return tr("OFF") if kind in self.sounds.silent else tr("ON")
+
+    def keys(self) -> Mapping[str, Key]:
+        """Volume, a try, the lamps."""
+        return {
+            "F2": Key("SOFTER", lambda: self._louder(-_STEP)),
+            "F3": Key("LOUDER", lambda: self._louder(_STEP)),
+            "F4": Key("TRY", self.try_out),
+            "F5": Key("LAMPTEST", self.test),
+        }
+
+    def act(self) -> bool:
+        """Return on a row: it sounds, or it does not."""
+        kind = KINDS[self.marked]
+        if SIGNALS[kind].tones:
+            silent = self.sounds.silent ^ {kind}
+            self.desk.clear()
+            self.desk.keep(lambda: self.sounds.choose(self.sounds.volume, silent))
+        else:
+            self.desk.say("A CYCLE THAT RUNS IS HEARD ANYWAY: IT HAS A LAMP ALONE")
+        return True
+
+    def _louder(self, by: int) -> None:
+        self.desk.clear()
+        self.desk.keep(lambda: self.sounds.choose(self.sounds.volume + by, self.sounds.silent))
+
+    def try_out(self) -> None:
+        """The sound of a part that is done, as loud as they are."""
+        if not self.sounds.volume:
+            self.desk.say("THE VOLUME IS NOUGHT: F3 MAKES IT LOUDER")
+        else:
+            self.desk.clear()
+            self.sounds.tried()
+
+    def test(self) -> None:
+        """All lamps for two seconds, at rest."""
+        if not self.machine.lamps:
+            self.desk.say("THIS MACHINE HAS NO LAMPS: NAME THEM UNDER [io.out] OF ITS FILE")
+        else:
+            self.desk.clear()
+            self.desk.post(ForceOutput(self.machine.lamps[0], True))
+
+    def prompt(self) -> str:
+        """What the keys do."""
+        return "RETURN SWITCHES THE SOUND OF THE MARKED ROW; F3 LOUDER, F4 TRIES; ESC GOES BACK TO THE LIST"
