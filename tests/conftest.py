@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from tests import late_computer
 from tests.named import SAFETY, not_run
 
 HERE = Path(__file__).parent
@@ -52,13 +53,26 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def _spread(items: list[pytest.Item], folder: Path) -> list[pytest.Item]:
-    """The same items, those of a folder at even distances among the others; each kind in its order."""
+    """The same items, those of a folder at even distances among the others; each kind in its order.
+
+    None is among the last, where the other workers would wait for whoever has it.
+    """
     few = [item for item in items if folder in item.path.parents]
     many = [item for item in items if folder not in item.path.parents]
     if not few or not many:
         return items
-    place = {item: (k + 0.5) / len(kind) for kind in (few, many) for k, item in enumerate(kind)}
+    place = {item: (k + 0.5) / len(many) for k, item in enumerate(many)}
+    place |= {item: 0.95 * (k + 0.5) / len(few) for k, item in enumerate(few)}
     return sorted(items, key=lambda item: place[item])
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
+    """What is marked ``real_time`` is played again when it has failed because this computer was late."""
+    late_computer.forget()
+    if item.get_closest_marker("real_time") is None:
+        return None
+    return late_computer.run_again(item, nextitem, lambda _tries, _reports: late_computer.told_late())
 
 
 def pytest_configure(config: pytest.Config) -> None:

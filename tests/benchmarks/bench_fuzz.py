@@ -10,38 +10,48 @@ import resource
 import sys
 import time
 
-from app.compose.machine_files import load_machine
+from app.compose.machine_files import shipped_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
-from core.language.source import Source
+from core.language.source import Dialect, Source
+from core.machine.machine_model import Machine
 from core.proving.prove_program import prove
 from tests.interpreter.mutation import mutated
 
 OFFSETS = {n: ToolOffset() for n in range(1, 9)}
+MACHINES = {
+    Dialect.OMNITURN: ("gt75", "fuzz"),
+    Dialect.KLARTEXT: ("ac-table-mill", "fuzz.h"),
+    Dialect.SINUMERIK: ("sinumerik-modulo", "fuzz.mpf"),
+}
 SECONDARY = {1: SecondaryOffset(-0.381, -0.381, 0.381), 3: SecondaryOffset(r=0.2)}
 
 
 def main() -> None:
-    """Fuzz for as long as asked."""
+    """Fuzz each language for its share of the time."""
     minutes = float(sys.argv[1]) if len(sys.argv) > 1 else 10.0
-    machine = load_machine(None)
+    for dialect, (machine, name) in MACHINES.items():
+        _fuzz(dialect, shipped_machine(machine), name, minutes * 60 / len(MACHINES))
+
+
+def _fuzz(dialect: Dialect, machine: Machine, name: str, seconds: float) -> None:
     setup = setup_for(machine, tools=OFFSETS, secondary=SECONDARY)
-    seed, end, slowest, accepted = 0, time.monotonic() + minutes * 60, (0.0, 0), 0
+    seed, end, slowest, accepted = 0, time.monotonic() + seconds, (0.0, 0), 0
     while time.monotonic() < end:
         seed += 1
-        text = mutated(random.Random(seed))
+        text = mutated(random.Random(seed), dialect)
         begun = time.perf_counter()
         try:
-            report = prove(Source("fuzz", text), setup, machine)
+            report = prove(Source(name, text), setup, machine)
         except Exception:
-            sys.stdout.write(f"seed {seed}:\n{text}\n")
+            sys.stdout.write(f"{dialect}, seed {seed}:\n{text}\n")
             raise
         slowest = max(slowest, (time.perf_counter() - begun, seed))
         accepted += not report.errors
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
     sys.stdout.write(
-        f"{seed:,} programs, {accepted:,} of them good; slowest {slowest[0]:.2f} s (seed {slowest[1]}); "
-        f"peak memory {peak} MiB\n"
+        f"{dialect}: {seed:,} programs, {accepted:,} of them good; slowest {slowest[0]:.2f} s "
+        f"(seed {slowest[1]}); peak memory {peak} MiB\n"
     )
 
 

@@ -28,7 +28,7 @@ from tests.stories.x11 import Server, server
 
 SIZE = (1920, 1080)
 CASES = ("off", "ready", "keys", "scope", "minimised", "feeder", "canopen")
-ARRIVES, SETTLES, RESTS, PEER = 12.0, 6.0, 3.5, 3.0  # s
+ARRIVES, SETTLES, RESTS, PEER = 20.0, 6.0, 3.5, 3.0  # s
 ROLLS = 12.0  # s; the window of the scope, until nothing of what was before rolls in it
 PRESSES = 30
 LEAST = 0.0001  # of a core

@@ -42,12 +42,35 @@ class Window(MainWindow):
     """Remembers when a frame began: by the clock, and by the processor time of this thread."""
 
     began: tuple[float, float] | None = None
+    over: Callable[[], None] | None = None  # the frame before is, also where the thread had no time to sleep
+
+    def _tick(self) -> None:
+        if self.over is not None:
+            self.over()
+        super()._tick()
 
     def refresh(self) -> None:
         """Once a frame, and after a key."""
+        self._begin()
+        super().refresh()
+
+    def press(self, key: str) -> None:
+        """What a key does is part of its frame: a page that is opened is made there."""
+        self._begin(anew=True)
+        super().press(key)
+
+    def press_to(self, page: str) -> None:
+        """The key of a page, wherever it is a key."""
+        self._begin(anew=True)
+        if self.frame is not None:
+            self.frame.go(page)
+        super().refresh()
+
+    def _begin(self, *, anew: bool = False) -> None:
+        if anew and self.over is not None:
+            self.over()
         if self.began is None:
             self.began = time.perf_counter(), time.thread_time()
-        super().refresh()
 
 
 class Frames:
@@ -57,6 +80,7 @@ class Frames:
         self._window = window
         self.times: list[float] = []
         self.cpu: list[float] = []
+        window.over = self._block
         QAbstractEventDispatcher.instance().aboutToBlock.connect(self._block)
 
     def _block(self) -> None:

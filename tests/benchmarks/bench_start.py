@@ -58,7 +58,7 @@ from core.executor.job import Proof, make_job
 from core.language.source import load_source
 from drivers.clocks import StepClock
 machine = read_machine(None)
-tools, secondary, _ = chosen_offsets(sys.argv[3])()
+tools, secondary, *_ = chosen_offsets(sys.argv[3])()
 clock = StepClock()
 ports = simulated(machine, clock).ports
 executor = Executor(machine, ports, lambda event: None)

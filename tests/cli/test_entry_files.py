@@ -21,7 +21,7 @@ def written(tmp_path: Path, text: str) -> Path:
 
 def test_offsets_become_millimetres(tmp_path: Path) -> None:
     text = "[tool.1]\nx = 1\nz = -0.5\nnose_radius = 0.015\n[secondary.32]\nx = -0.015\n"
-    tools, secondary, _ = read_offsets(written(tmp_path, text))
+    tools, secondary, *_ = read_offsets(written(tmp_path, text))
     assert tools == {1: ToolOffset(25.4, -12.7, 0.015 * 25.4)}
     assert secondary == {32: SecondaryOffset(-0.015 * 25.4, 0.0, 0.0)}
 

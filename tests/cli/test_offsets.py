@@ -137,7 +137,7 @@ def test_refusal_is_one_line_and_changes_nothing(capsys: Captured, argv: tuple[s
     assert shown(capsys) == {"tool": {}, "secondary": {}}
 
 
-@pytest.mark.parametrize("argv", [(), ("set", "T1"), ("clear",), ("clear", "T"), ("nonsense",)])
+@pytest.mark.parametrize("argv", [(), ("set", "T1"), ("clear",), ("nonsense",)])
 def test_wrong_usage_is_one_line(capsys: Captured, argv: tuple[str, ...]) -> None:
     with pytest.raises(SystemExit) as caught:
         main(["offsets", *argv])
@@ -179,3 +179,37 @@ def test_every_field_of_a_tool_is_set_shown_and_told(capsys: Captured) -> None:
     newest = json.loads(capsys.readouterr().out)[0]
     assert (newest["old"]["wear_x"], newest["new"]["wear_x"]) == (0.0, -0.0005)
     assert newest["who"] == "command line"
+
+
+def test_undo_and_history_go_over_all_tables(capsys: Captured) -> None:
+    """The youngest change of any table first: a zero offset is no longer passed by for a tool."""
+    main(["offsets", "set", "T1", "x=1", "z=2"])
+    main(["offsets", "set", "G54", "z=-120"])
+    capsys.readouterr()
+    assert main(["offsets", "history", "--json"]) == 0
+    kinds = [row["kind"] for row in json.loads(capsys.readouterr().out)]
+    assert sorted(kinds) == ["tool", "zero"]
+    main(["offsets", "undo"])
+    main(["offsets", "undo"])
+    capsys.readouterr()
+    assert shown(capsys)["tool"] == {}
+    refused(capsys, "undo")
+
+
+def test_a_tool_is_cleared_and_comes_back(capsys: Captured) -> None:
+    main(["offsets", "set", "T1", "x=1", "z=2"])
+    main(["offsets", "set", "T1D2", "x=1", "z=3"])
+    capsys.readouterr()
+    assert "clear T1 D2 first" in refused(capsys, "clear", "T1")
+    assert main(["offsets", "clear", "T1D2"]) == 0
+    assert main(["offsets", "clear", "T1"]) == 0
+    capsys.readouterr()
+    assert shown(capsys) == {"tool": {}, "secondary": {}}
+    assert main(["offsets", "undo"]) == 0
+    capsys.readouterr()
+    assert shown(capsys)["tool"] == {"1": tool(x=1.0, z=2.0)}
+    assert main(["offsets", "clear", "T9"]) == 0
+    assert "nothing to clear" in capsys.readouterr().out
+    assert main(["offsets", "clear", "T"]) == 0
+    capsys.readouterr()
+    assert shown(capsys)["tool"] == {}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Iterator
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 
 import pytest
@@ -93,12 +94,25 @@ COVERED = {
     ("machine hal", "--json"): "tests/cli/test_machine_hal.py",
     ("alarms", "--json"): "tests/cli/test_alarms.py",
     ("parts", "--csv"): "tests/cli/test_parts.py",
+    ("jobs list", "--json"): "tests/cli/test_jobs.py",
+    **{("shift", option): "tests/quality/test_shift_figures.py"
+       for option in ("--back", "--from", "--to", "--report", "--json", "--metric")},
+    ("jobs add", "--note"): "tests/cli/test_jobs.py",
+    ("jobs clear", "--all"): "tests/cli/test_jobs.py",
     ("parts", "--json"): "tests/cli/test_parts.py",
     ("scope", "--csv"): "tests/cli/test_scope.py",
     ("scope", "--json"): "tests/cli/test_scope.py",
     **{(f"serial {way}", option): "tests/drivers/transfer" for way in ("send", "receive")
        for option in ("--machine", "--port", "--baud", "--bits", "--parity", "--stop", "--flow", "--wrap",
                       "--dc-codes")},
+    **{("profile", option): "tests/cli/test_profile.py"
+       for option in ("--list", "--unit", "--layer", "--axis", "--contour", "--front", "--zero", "--shift",
+                      "--side", "--gap", "--metric", "--material", "--bar", "--face", "--hole", "--rough",
+                      "--tool", "--groove-tool", "--comp", "--tools", "--machine", "--out", "--json")},
+    ("setup save", "--machine"): "tests/cli/test_setup.py",
+    ("setup load", "--check"): "tests/cli/test_setup.py",
+    ("setup desktop", "--autostart"): "tests/cli/test_setup.py",
+    ("setup desktop", "--remove"): "tests/cli/test_setup.py",
     ("serial receive", "--out"): "tests/drivers/transfer",
     ("serial send", "--eol"): "tests/drivers/transfer",
     ("serial send", "--wait"): "tests/drivers/transfer",
@@ -117,9 +131,29 @@ def test_an_option_before_a_command_acts_or_is_refused(
 ) -> None:
     """With a file that is not there: whoever takes the option says so, everybody else refuses the option."""
     has = {each for command, each in options() if command == name}
-    rest = {"offsets set": ["T1", "x=1"], "offsets clear": ["D"], "machine peer": ["gt75-bench"]}
-    words = rest.get(name, [str(tmp_path / "part.nc")] if name.rpartition(' ')[2] not in
-                     {"show", "history", "undo", "verify", "ports", "receive", "alarms"} else [])  # fmt: skip
+    rest = {
+        "offsets set": ["T1", "x=1"],
+        "offsets clear": ["D"],
+        "machine peer": ["gt75-bench"],
+        "setup completion": ["bash"],
+        "jobs add": ["pin", "2"],
+        "jobs move": ["1", "2"],
+        "jobs remove": ["1"],
+    }
+    bare = {
+        "show",
+        "history",
+        "undo",
+        "verify",
+        "ports",
+        "receive",
+        "alarms",
+        "desktop",
+        "list",
+        "clear",
+        "shift",
+    }
+    words = rest.get(name, [] if name.rpartition(" ")[2] in bare else [str(tmp_path / "part.nc")])
     (tmp_path / "part.nc").write_text(PART)
     headless = ["--headless"] if name == "run" else []
     status = main([f"--{option}", str(tmp_path / "missing"), *name.split(), *words, *headless])
@@ -282,3 +316,28 @@ def test_a_home_that_is_a_file_is_told(
     said = capsys.readouterr().err
     assert "TURNDESK_HOME" in said
     assert "no folder" in said
+
+
+@pytest.mark.parametrize(("words", "meant"), [
+    (["prov", "a.nc"], "did you mean prove?"), (["offsets", "sho"], "did you mean show?"),
+    (["prove", "a.nc", "--ofsets", "b"], "did you mean --offsets?"),
+])  # fmt: skip
+def test_a_slip_is_told_with_what_is_meant(
+    words: list[str], meant: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(words)
+    assert ended.value.code == 2
+    assert meant in capsys.readouterr().err
+
+
+def test_a_program_from_stdin_is_proved_as_from_a_file(
+    turndesk: Turndesk, part: Path, offsets: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from_file = turndesk("prove", part, "--offsets", offsets, "--json").lines[0]
+    monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(PART.encode())))
+    (told,) = turndesk("prove", "-", "--offsets", offsets, "--json").lines
+    assert told["cycle_time_s"] == from_file["cycle_time_s"]
+    assert turndesk("prove", "-", part).status == 2
+    monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(b"")))
+    assert turndesk("prove", "-").status == 2  # nothing came

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.desk.translation import Catalogue, speak, tr
+from app.desk.translation import Catalogue, data, speak, tr
 
 KNOWN = {
     "READY": "LISTO",
@@ -77,3 +77,26 @@ def test_a_hole_does_not_reach_into_the_next_part(spanish: Catalogue) -> None:
 def test_two_holes_and_a_preposition_are_not_found_in_a_name(spanish: Catalogue) -> None:
     assert spanish.translate("BUSH OF BRASS") == "BUSH OF BRASS"
     assert spanish.translate("{number} OF {count}") == "{number} DE {count}"
+
+
+def test_what_a_program_says_is_never_translated() -> None:
+    known = {
+        "STEP": "PASO",
+        "WILL NOT RUN: %1": "NO CORRERÁ: %1",
+        "%1 is not defined.": "%1 no está definido.",
+        "CONTROL IN %1": "CONTROL EN %1",
+        "{name} SAVED": "{name} GUARDADO",
+    }
+    spanish = Catalogue(lambda text: known.get(text, ""), [t for t in known if "%" in t or "{" in t])
+    assert spanish.translate("STEP is not defined.") == "STEP no está definido."
+    assert spanish.translate("WILL NOT RUN: STEP is not defined.") == "NO CORRERÁ: STEP no está definido."
+    assert spanish.translate("STEP SAVED") == "STEP GUARDADO"  # a program of that name
+    assert spanish.translate("CONTROL IN STEP") == "CONTROL EN PASO"  # the screen's own word
+    speak(spanish.translate, "es")
+    try:
+        assert tr("STEP") == "PASO"
+        assert tr(f"CONTROL IN {data('STEP')}") == "CONTROL EN STEP"
+        assert tr(data("STEP")) == "STEP"
+    finally:
+        speak(None)
+    assert tr(data("STEP")) == "STEP"

@@ -53,9 +53,9 @@ def test_figures_have_the_places_of_their_unit(mm: float) -> None:
     [
         (127.0, False, False, "300.00"),  # 300 in/min = 127 mm/s
         (0.127, False, True, "0.00500"),
-        (2.0, True, False, "MM120.0"),
-        (0.15, True, True, "MM0.1500"),
-        (0.0, True, False, "MM0.0"),
+        (2.0, True, False, "120.0"),
+        (0.15, True, True, "0.1500"),
+        (0.0, True, False, "0.0"),
     ],
 )
 def test_feed(value: float, metric: bool, per_rev: bool, shown: str) -> None:

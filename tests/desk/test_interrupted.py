@@ -16,6 +16,7 @@ from app.desk.screen_settings import Units
 from app.programs.copy_rename_delete import RENAME
 from app.programs.program_list import ProgramList
 from core.executor.commands import ConfirmStart, LoadJob
+from core.executor.interrupted_job import CONTROL_LOST
 from core.executor.snapshot import Snapshot, Starts, State
 from core.language.source import Dialect, Source
 from tests.interrupted import broken_off
@@ -59,6 +60,12 @@ def test_where_it_stood_and_where_it_stands_now() -> None:
     dia = replace(STOOD, modal=STOOD.modal._replace(diameter=True))
     assert figures(dia) == "STANDS AT X Ø0.75000 Z −2.30000 FROM HOME"
     assert figures(STOOD, Units.METRIC) == "STANDS AT X R9.5250 Z −58.4200 FROM HOME"
+
+
+def test_after_a_power_cut_it_says_what_nobody_knows() -> None:
+    cut = replace(STOOD, interrupted=broken_off(why=CONTROL_LOST))
+    assert figures(cut).startswith("STANDS AT X R0.37500 Z −2.30000 FROM HOME. NOT CERTAIN: THE LAST SECOND")
+    assert "NOT CERTAIN" not in figures(STOOD)  # an E-stop is noted where the tool has come to rest
 
 
 def test_without_a_home_nobody_knows_where_it_stands() -> None:

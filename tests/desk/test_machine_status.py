@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from app.desk.machine_status import Tone, status_of
-from app.desk.readouts import Readout, coordinates
+from app.desk.readouts import Lamp, Readout, coordinates, drives_lamp
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal_state import Modal
@@ -102,7 +102,7 @@ def test_a_rapid_is_told_per_minute_even_under_g95() -> None:
 
 def test_metric_feeds_carry_the_prefix() -> None:
     view = status_of(replace(AT, modal=Modal(metric=True), feed=2.0, velocity=1.9), Readout.POSITION, True)
-    assert (view.feed.value, view.feed.actual) == ("MM120.0", "MM114.0")
+    assert (view.feed.value, view.feed.actual) == ("120.0", "114.0")
 
 
 def test_surface_speed_of_a_reversed_spindle_and_a_tool_behind_the_centre() -> None:
@@ -228,8 +228,21 @@ def test_what_nothing_is_heard_of_is_not_shown_as_standing_or_off() -> None:
     assert told == [(word, True, True) for word in words]
 
 
+def test_drives_are_on_where_they_say_so_whatever_the_state_is() -> None:
+    """An alarm that takes the power leaves FAULT, not DRIVES OFF; what is not heard is neither."""
+    assert drives_lamp(replace(AT, state=State.FAULT, powered=False), "D") == Lamp("DRIVES ON", False, "D")
+    assert drives_lamp(replace(AT, state=State.FAULT, powered=True)) == Lamp("DRIVES ON", True)
+    unheard = replace(AT, powered=True, unknown=ALL_UNKNOWN)
+    assert drives_lamp(unheard) == Lamp("DRIVES ?", True, warn=True)
+
+
 def test_only_the_part_that_is_silent_is_unknown() -> None:
     view = status_of(replace(AT, unknown=frozenset({Unknown.SPINDLE})), Readout.POSITION, True)
     assert all(axis.known for axis in view.position.axes)
     assert view.lamps[0].word == "SPINDLE UNKNOWN"
     assert view.lamps[1].word == "COOLANT"
+
+
+def test_a_hold_that_waits_for_a_tap_is_in_the_title() -> None:
+    held = replace(AT, state=State.RUN, waiting_for="FEED HOLD BEHIND THE TAP")
+    assert status_of(held, Readout.POSITION, True).state == "FEED HOLD BEHIND THE TAP"

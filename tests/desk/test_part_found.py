@@ -11,6 +11,7 @@ import pytest
 
 from app.compose.desk_part import NO_STOCK, NOT_MADE
 from app.compose.machine_files import load_machine
+from app.compose.stored_offsets import Offsets
 from app.compose.workshop import workshop
 from app.desk.kept_part import KeptPart
 from app.desk.latest import Watch
@@ -43,7 +44,7 @@ class Desk:
         self.folder, self.posted = folder, list[Command]()
         steps = workshop(
             machine or load_machine(None),
-            lambda: (TOOLS, {}, {}),
+            lambda: Offsets(TOOLS, {}, {}),
             shapes=lambda: shapes,
             kept=lambda _program: kept,
         )

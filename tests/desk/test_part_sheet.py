@@ -10,6 +10,7 @@ import pytest
 
 import resources
 from app.compose.machine_files import load_machine, parse_machine
+from app.compose.stored_offsets import Offsets
 from app.compose.workshop import workshop
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
@@ -37,7 +38,7 @@ class Bench:
         self.keep, posted = Persistence(), list[Command]()
         steps = workshop(
             load_machine(None),
-            lambda: (TOOLS, {}, {}),
+            lambda: Offsets(TOOLS, {}, {}),
             shapes=lambda: {1: TURNING},
             kept=partial(kept_part, self.keep.setting),
         )

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine_files import load_machine, shipped_machine
 from app.compose.machine_setup import setup_for
 from app.special.setup_sheet import SetupSheet, setup_sheet
+from core.geometry.rotary_axes import DatumPreset
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.job_setup import MillTool, ToolOffset
 from core.language.source import Source
 from core.part.stock import Stock, bar
 from core.part.tool_shape import ToolKind, ToolShape
@@ -50,3 +53,40 @@ def test_a_groove_tool_without_a_width_is_assumed_and_so_is_its_width() -> None:
     assert tool.shape.width == 2.0
     (said,) = sheet_of(grooved, ROD, {1: ToolShape(ToolKind.GROOVING, tip=3, width=3.0)}).tools
     assert not said.assumed
+
+
+MILLED = """BEGIN PGM P MM
+BLK FORM 0.1 Z X-2 Y-2 Z-20
+BLK FORM 0.2 X+102 Y+72 Z+0
+TOOL CALL 8 Z S2000 F100
+L X+5 Y+5 Z+5 R0 FMAX M3
+L Z-1
+L Z+5 FMAX M1
+M30
+END PGM P MM
+"""
+
+
+def milled(preset: int = 0) -> SetupSheet:
+    machine = shipped_machine("ac-table-mill")
+    setup = replace(
+        setup_for(machine, tools={8: ToolOffset(z=101.6, nose_radius=4.25)}, secondary={}),
+        tool_names={"DRILL 8.5": 8}, mill_tools={8: MillTool(teeth=2, point=118.0)}, preset=preset,
+        presets={3: DatumPreset((10.0, -20.0, -81.5), 2.5, (("C", 30.0),))},
+    )  # fmt: skip
+    return setup_sheet(ReadProgram(Source("P.h", MILLED)), setup, machine, PartSetting(None, {}))
+
+
+def test_a_mill_has_blank_preset_length_and_radius_and_no_bar_nor_chuck() -> None:
+    sheet = milled()
+    assert sheet.stock_words == "BLK FORM  104.000 mm × 74.000 mm × 20.000 mm"
+    assert sheet.held_words == (("PRESET", "0   of the machine file"),)
+    (tool,) = sheet.tools
+    assert sheet.shape_words(tool) == "DRILL 8.5, POINT ANGLE 118°, 2 teeth"
+    assert sheet.offset_words(tool) == "L 101.600 mm   R 4.250 mm"
+    assert [sheet.stop_word(stop) for stop in sheet.stops if stop.optional] == ["M1"]
+
+
+def test_the_preset_in_force_says_where_it_lies() -> None:
+    wanted = "3   X 10.000 mm   Y -20.000 mm   Z -81.500 mm   C 30.000°   ROT 2.500°"
+    assert milled(preset=3).held_words == (("PRESET", wanted),)

@@ -10,8 +10,9 @@ import pytest
 from app.desk.persistence import Persistence
 from app.programs import import_export
 from app.programs.copy_rename_delete import checked_name, delete_program, rename_program
-from app.programs.folder_chooser import UP, FolderChooser, Stick
+from app.programs.folder_chooser import UP, FolderChooser
 from app.programs.import_export import Carried, export_programs, import_programs
+from app.programs.removable_media import Stick
 from app.programs.whole_file import FileError
 from tests.programs_page.test_run_history import Kept
 
@@ -96,7 +97,7 @@ def test_a_full_stick_leaves_no_half_file(tmp_path: Path, monkeypatch: pytest.Mo
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(FileError, match="No space left"):
+    with pytest.raises(FileError, match="0 OF 1 COPIED: stick IS FULL"):
         export_programs(sources, stick, replace=False)
     assert list(stick.iterdir()) == []
 

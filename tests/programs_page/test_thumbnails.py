@@ -11,6 +11,7 @@ import pytest
 import resources
 from app.compose.desk_part import PartDesk
 from app.compose.machine_files import load_machine, parse_machine
+from app.compose.stored_offsets import Offsets
 from app.compose.thumbnails import HIGH, WIDE, Thumbnails
 from app.compose.workshop import workshop
 from app.desk.kept_part import NOTHING_KEPT, KeptPart
@@ -26,7 +27,7 @@ from tests.desk.test_part_found import LIMIT, SHAFT, TOOLS
 
 
 def job(text: str, machine: Machine | None = None, name: str = "part.nc") -> Job:
-    steps = workshop(machine or load_machine(None), lambda: (TOOLS, {}, {}))
+    steps = workshop(machine or load_machine(None), lambda: Offsets(TOOLS, {}, {}))
     return steps.make_job(Source(name, text), False)
 
 
@@ -91,7 +92,7 @@ def test_without_a_part_there_is_none(tmp_path: Path, monkeypatch: pytest.Monkey
 
 @pytest.fixture
 def preview(tmp_path: Path) -> Iterator[Preview]:
-    steps = workshop(load_machine(None), lambda: (TOOLS, {}, {}))
+    steps = workshop(load_machine(None), lambda: Offsets(TOOLS, {}, {}))
     made = Preview(steps, thumbnails(tmp_path / "thumbnails").of)
     yield made
     made.close()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Collection
 from dataclasses import dataclass, field
 
@@ -51,9 +52,12 @@ CHANNELS: tuple[Channel, ...] = channels_of(
 
 def record_of(times: FloatArray, names: Collection[str] | None = None, **other: FloatArray) -> Record:
     """A record at these times; ``other`` figures take the place of computed ones: names with _ for space."""
-    known = figures(times) | {name.replace("_", " "): column for name, column in other.items()}
+    named = {name.replace("_", " "): column for name, column in other.items()}
+    known = figures(times) | named
     nothing = np.full(len(times), np.nan)
-    wanted = [each for each in CHANNELS if names is None or each.name in names]
+    of_mill = channels_of({"Y": False}, (), ()) if "Y demand" in named else ()
+    channels = (*CHANNELS, *(each for each in of_mill if each not in CHANNELS))
+    wanted = [each for each in channels if names is None or each.name in names]
     columns = {each.name: known.get(each.name, nothing) for each in wanted}
     about = {"machine": "GT-75", "states": "|".join(STATES)}
     return Record(tuple(wanted), times, columns, 1_700_000_000.0, RATE, about)
@@ -73,10 +77,20 @@ class PlayedSamples:
     channels: tuple[Channel, ...] = CHANNELS
     asked: list[tuple[float, float]] = field(default_factory=list)
     other: dict[str, FloatArray] = field(default_factory=dict)
+    lets: threading.Event = field(
+        default_factory=threading.Event
+    )  # cleared: whoever works beside the screen waits
+    waits: bool = False
+
+    def __post_init__(self) -> None:
+        self.lets.set()
 
     @property
     def last(self) -> float:
         """The newest sample."""
+        if threading.current_thread() is not threading.main_thread():
+            self.waits = not self.lets.is_set()
+            self.lets.wait()
         return float(np.floor(self.now * RATE + 1e-6) / RATE)
 
     def between(self, begin: float, end: float, names: Collection[str] | None = None) -> Record:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from app.scope.analyses import Kind, analysed, last_run
+from app.scope.analyses import Analyses, Kind, analysed, last_run, scaled
 from tests.scope.played_record import record_of, seconds
 
 
@@ -33,6 +34,72 @@ def test_the_path_error_of_its_line() -> None:
     found = analysed(Kind.PATH, turned_arc(), 0, {})  # type: ignore[arg-type]
     assert [each.line for each in found.worst] == [4]
     assert abs(found.worst[0].distance) == pytest.approx(0.01, abs=1e-4)  # the play where X goes radially
+
+
+def test_the_table_of_the_path_error_says_where_the_slides_stood() -> None:
+    page = Analyses(SimpleNamespace(metric=True))  # type: ignore[arg-type]
+    page.found = analysed(Kind.PATH, turned_arc(), 0, {})  # type: ignore[arg-type]
+    sheet = page.sheet()
+    (line, _off, z, x), heads = sheet.rows[0].cells, sheet.heads
+    assert (line, heads[2:]) == ("4", ("Z", "X"))
+    assert float(z.replace("\u2212", "-")) == pytest.approx(
+        -50.0, abs=0.3
+    )  # X is radial there: at 40 or at 20
+    assert abs(float(x) - 30.0) == pytest.approx(10.0, abs=0.1)
+    page.close()
+
+
+def milled_arc() -> object:
+    """Of a mill: line 4 is a circle of 10 mm in X and Y at Z -8. Y has a play of .02 mm, Z is .004 low."""
+    times = seconds(0.0, 6.0)
+    angle = 2.0 * np.pi * np.clip((times - 1.0) / 4.0, 0.0, 1.0)
+    x, y, z = 30.0 + 10.0 * np.cos(angle), 50.0 + 10.0 * np.sin(angle), np.full(len(times), -8.0)
+    play = 0.01 * np.sign(np.gradient(y))
+    line = np.where((times >= 1.0) & (times <= 5.0), 4.0, 0.0)
+    return record_of(
+        times,
+        X_demand=x,
+        X_actual=x,
+        Y_demand=y,
+        Y_actual=y - play,
+        Z_demand=z,
+        Z_actual=z - 0.004,
+        line=line,
+    )
+
+
+def test_a_mill_finds_its_arc_in_the_plane_of_x_and_y() -> None:
+    found = analysed(Kind.BALL_BAR, milled_arc(), 0, {})  # type: ignore[arg-type]
+    assert found.ball is not None
+    assert (found.axes, found.arc) == (("X", "Y"), (0, 1, 4))
+    assert found.ball.radius == pytest.approx(10.0, abs=1e-3)
+    assert found.ball.backlash == pytest.approx((0.0, 0.02), abs=3e-4)
+
+
+def test_the_path_error_of_a_mill_is_one_in_space() -> None:
+    """Where Y goes radially its play of .01 and the .004 of Z are at right angles: √(.01² + .004²)."""
+    page = Analyses(SimpleNamespace(metric=True))  # type: ignore[arg-type]
+    page.found = found = analysed(Kind.PATH, milled_arc(), 0, {})  # type: ignore[arg-type]
+    assert [each.line for each in found.worst] == [4]
+    assert found.worst[0].distance == pytest.approx(np.hypot(0.01, 0.004), abs=1e-4)
+    sheet = page.sheet()
+    assert sheet.heads[2:] == ("X", "Y", "Z")
+    assert not any("radius" in note or "left" in note for note in sheet.notes)
+    drawing = page.drawing()
+    assert drawing.names == ("Y  {unit}", "", "X  {unit}")  # seen along Z, which stands
+    assert not drawing.downwards
+    assert drawing.soft.shape[1] == 2
+    page.close()
+
+
+def test_a_drawing_names_its_axes_with_the_unit_that_is_shown() -> None:
+    page = Analyses(SimpleNamespace(metric=True))  # type: ignore[arg-type]
+    page.found = analysed(Kind.BALL_BAR, turned_arc(), 0, {})  # type: ignore[arg-type]
+    drawing = page.drawing()
+    assert scaled(drawing, 1.0).names == ("X  mm", "", "Z  mm")
+    assert scaled(drawing, 1.0).downwards
+    assert scaled(drawing, 1.0 / 25.4).names == ("X  in", "", "Z  in")
+    page.close()
 
 
 def test_what_is_not_there_is_told() -> None:

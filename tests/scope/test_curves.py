@@ -12,6 +12,7 @@ from app.scope.scope_curves import LiveCurves, RecordCurves, Wanted
 from app.scope.scope_trigger import Trigger, When
 from app.scope.signals import Quantity, first_chosen, signals_of
 from core.executor.snapshot import State
+from core.records.record import channels_of
 from tests.scope.played_record import CHANNELS, STATES, PlayedSamples, record_of, seconds
 
 SIGNALS = {each.key: each for each in signals_of(CHANNELS)}
@@ -282,3 +283,16 @@ def test_channels_that_are_not_recorded_are_not_offered() -> None:
     there = {each.key for each in signals_of([each for each in CHANNELS if "load" not in each.name])}
     assert "X load" not in there
     assert first_chosen(signals_of(CHANNELS))[0] == "X following error"
+
+
+def test_a_mill_shows_three_slides_and_a_lathe_two() -> None:
+    rotary = dict.fromkeys("XYZ", False) | dict.fromkeys("AC", True)
+    shown = first_chosen(signals_of(channels_of(rotary, (), ())))
+    assert shown == (
+        *(f"{letter} following error" for letter in "XYZ"),
+        *(f"{letter} velocity" for letter in "XYZ"),
+        "spindle speed",
+    )
+    lathe = first_chosen(signals_of(CHANNELS))
+    assert "spindle command" in lathe
+    assert not any(key.startswith("C ") for key in lathe)

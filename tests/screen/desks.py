@@ -19,10 +19,12 @@ from app.desk.program_folder import ProgramFolders
 from app.desk.program_loading import LoadingSteps, ProgramLoader, Proved
 from app.editor.editor import Editor
 from app.editor.versions import Archive, NoArchive
+from app.jog.hand_functions import HandFunctions
 from app.offsets.offset_effect import Effect
 from app.path.path_picture import Picture, picture_of
 from app.scope.scope_curves import LiveSamples
 from core.executor.job import Job
+from core.executor.snapshot import Snapshot
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source, load_source
@@ -79,11 +81,19 @@ def desk_on(
     desk.attach(Effect(drawer(lathe)))
     desk.attach(Editor(work, archive, folders[0] if folders else Path("/dev/null"), SAMPLES))
     furnish(desk, lathe, keep or Persistence(), work, folders[0] if folders else None)
+    hand = HandFunctions(desk, lathe, unproved)
+    desk.attach(hand)
+    desk.own_starts.append(hand)
     give_scope(desk, live)
     give_quality(desk, lathe, keep if isinstance(keep, Journal) else None)
     built.append(desk)
     machine.hear = desk.hear
     return desk
+
+
+def unproved(text: str, _snapshot: Snapshot, _watch: Watch) -> tuple[Job, Proved]:
+    """No line is chosen by hand on this desk."""
+    raise AssertionError(f"{text} was to be proved")
 
 
 def _secondary(desk: Desk) -> dict[int, SecondaryOffset]:

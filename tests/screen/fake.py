@@ -14,6 +14,7 @@ from core.executor.commands import (
     ForceOutput,
     GiveProof,
     LoadJob,
+    Prepare,
     Reset,
     SetSwitch,
     SpindleLimit,
@@ -60,6 +61,8 @@ class FakeMachine:
                 self.now = replace(
                     self.now, program=job.source.name, block_delete=job.setup.block_delete, line=0, block=0
                 )
+            case Prepare(starts):
+                self.now = replace(self.now, starts=starts)
             case GiveProof(proof):
                 self.proof = proof
             case SetSwitch(name, on):

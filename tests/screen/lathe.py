@@ -80,12 +80,12 @@ class Operator:
         """Type a line of MDI and have it proved."""
         self.type(text)
         self.key(Key.Key_Return)
-        self.mdi.worker.settle(5.0)
+        self.mdi.line.worker.settle(5.0)
         self.pause(0.02)
 
     def run(self, text: str) -> None:
         """Type a line, start it, and wait for its end."""
         self.line(text)
-        assert self.mdi.ready is not None, self.mdi.found
+        assert self.mdi.line.ready is not None, self.mdi.line.found
         self.palms()
         self.reaches(State.IDLE)

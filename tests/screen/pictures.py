@@ -31,7 +31,7 @@ from app.screen.look import Look, dress, load_fonts
 from app.screen.main_window import MainWindow
 from app.screen.theme import PALETTES
 from core.executor.snapshot import State
-from core.store import measured_parts, part_cycles, tool_lives
+from core.store import job_queue, measured_parts, part_cycles, tool_lives
 from core.store.measured_parts import FeatureRow, ReadingRow
 from core.store.part_cycles import CycleRow, StopRow
 from core.store.store import Store
@@ -51,7 +51,7 @@ AT_Z = -0.3 * 25.4
 MILL, TILTED = "ac-table-mill", "roof"
 TILTED_BLOCK = 29  # the way back along the rear slope
 TICK = 0.01
-HEARD = 0.2  # seconds in which the executor obeys whatever was posted
+HEARD = 0.5  # seconds in which the executor obeys whatever was posted, and warnings are read
 LOADING = 60.0  # seconds after which loading has failed
 
 
@@ -111,6 +111,11 @@ class Stage:
         desk.enable()
         self.tick(lambda: desk.snapshot().state is State.IDLE)
 
+    def hears(self) -> None:
+        """The executor obeys what was posted."""
+        heard = self.clock.now() + HEARD
+        self.tick(lambda: self.clock.now() > heard)
+
     def start(self) -> None:
         """Load, drives on, both palms."""
         self.make_ready()
@@ -121,8 +126,7 @@ class Stage:
         desk = self.desk
         desk.look()  # what was changed since is read anew first
         desk.session.settled(LOADING)
-        heard = self.clock.now() + HEARD
-        self.tick(lambda: self.clock.now() > heard)  # what all the scenes have posted without a tick between
+        self.hears()  # what the scenes have posted
         desk.hands.palm("left", down=True)
         desk.hands.palm("right", down=True)
         self.tick(lambda: desk.snapshot().state is not State.IDLE, 5.0)
@@ -153,6 +157,8 @@ SIZES_MEASURED = (
 )  # ten thousandths off, a diameter
 STOPS = (("BETWEEN CYCLES", 900.0), ("FEED HOLD", 95.0), ("PROGRAM STOP (M00)", 410.0), ("E-STOP", 240.0))
 
+JOBS = ((f"{PROGRAM}.nc", 50, "order 4711, brass"), ("grooves.nc", 60, "order 4712"), ("knob.nc", 12, ""))
+
 
 def _fill_parts(store: Store) -> None:
     """Twenty parts whose diameter grows as the insert wears, three stops, two lives."""
@@ -176,6 +182,9 @@ def _fill_parts(store: Store) -> None:
         store.write(lambda c, life=life: tool_lives.set_limits(c, life)).result()
     store.write(lambda c: tool_lives.set_use(c, 1, 184, 4020.0)).result()
     store.write(lambda c: tool_lives.set_use(c, 3, 61, 732.0)).result()
+    for program, wanted, note in JOBS:
+        store.write(lambda c, job=(program, wanted, note): job_queue.add(c, *job)).result()
+    store.write(lambda c: job_queue.begin(c, 1)).result()
     store.correct_parts(name, len(SIZES_MEASURED)).result()
 
 
@@ -201,7 +210,7 @@ def _pictures(out: Path, sizes: tuple[tuple[int, int], ...], themes: tuple[str, 
     journal = Journal.at_home()
     stage = Stage(journal)
     stage.make_ready()
-    yield from taken(stage.desk, out, False, sizes, themes)
+    yield from taken(stage.desk, out, False, sizes, themes, heard=stage.hears)
     stage.press_start()
     stage.tick(lambda: stage.desk.snapshot().line >= AT_LINE)
     stage.tick(lambda: _z(stage.desk) <= AT_Z)
@@ -254,8 +263,11 @@ SCENES = (
     Scene("programs", "F1 F6"),
     Scene("export", "F1 F6 F9"),
     Scene("editor", "F3"),
+    Scene("shapes", 'F3 Shapes R "1/2 Enter Enter Enter ".5'),
+    Scene("calculators", 'F3 Calculators T ".5 Enter "1 Enter "1'),
     Scene("mdi", 'F1 F4 "G90G94F10X.9Z.1'),
     Scene("jog", "F1 F5"),
+    Scene("by-hand", 'F1 F5 T "1 Enter C X B 1 "800 Enter'),
     Scene("searchto", 'F6 "20 Enter'),
     Scene("tools", "F8"),
     Scene("shape", "F8 F8"),
@@ -266,6 +278,7 @@ SCENES = (
     Scene("charts", "F1 W 3"),
     Scene("life", "F1 W 4"),
     Scene("trends", "F1 W 5 Enter Down Down"),
+    Scene("jobs", "Jobs Down"),
     Scene("speed", 'F10 1 "1500'),
     Scene("parts", "F10 2"),
     Scene("outputs", "F10 3 Down"),
@@ -289,8 +302,12 @@ def taken(
     themes: tuple[str, ...],
     *,
     mill: bool = False,
+    heard: Callable[[], None] = lambda: None,
 ) -> Iterator[Path]:
-    """The scenes of a machine that runs or stands, at every size and in every theme."""
+    """The scenes of a machine that runs or stands, at every size and in every theme.
+
+    ``heard`` lets the executor obey what the keys have posted.
+    """
     load_fonts()
     for theme in themes:
         dress(PALETTES[theme])
@@ -305,6 +322,7 @@ def taken(
                 window.open_desk(desk)
                 path = out / f"{scene.name}-{theme}-{width}x{height}.png"
                 press(window, scene.keys)
+                heard()
                 _to_line(window, scene.line)
                 _grab(window, path)
                 _leave(window)
@@ -320,13 +338,13 @@ def _leave(window: MainWindow) -> None:
 
 
 def press(window: MainWindow, keys: str) -> None:
-    """Each key to the page as text first, then as what it does anywhere."""
+    """Each key to the page as text first, then as what it does anywhere; one of two words has a _."""
     for word in keys.split():
         for key in word[1:] if word.startswith('"') else [word]:
             _settle(window, 0.2)
             frame = window.frame
             if frame is not None and not frame.page.typed(key):
-                window.press(key)
+                window.press(key.replace("_", " "))
 
 
 def _to_line(window: MainWindow, line: int) -> None:

@@ -36,13 +36,13 @@ _PATIENCE = 100  # tenths of a second for the worker
 Wear = Callable[[Any], None]  # of the plant's hands
 # Name, program, what is worn, curves of the scope (none: those that are there), keys from the Automatic page.
 PICTURES: tuple[tuple[str, str, Wear, tuple[str, ...], str], ...] = (
-    ("scope-gib", CIRCLE, lambda hands: hands.loose_gib("X", 0.012), (), "Scope F8 F4"),
+    ("scope-gib", CIRCLE, lambda hands: hands.loose_gib("X", 0.006), (), "Scope F8 F4 Zoom_in"),
     (
         "scope-belt",
         THREAD,
         lambda hands: hands.belt_slip(0.04),
         ("Z velocity", "spindle command", "spindle speed"),
-        "Scope F2 F6",
+        "Scope F2 F6 Zoom_in Zoom_in Zoom_in",
     ),
     (
         "scope-encoder",
@@ -99,7 +99,12 @@ def _picture(path: Path, home: Path, program: str, wear: Wear, curves: tuple[str
     window = MainWindow(Look(DARK))
     window.resize(1024, 600)
     window.open_desk(desk)
-    press(window, keys)
+    for key in keys.split():
+        press(window, key)
+        for _ in range(_PATIENCE):
+            if key != "F2" or scope.frozen is not None:
+                break
+            _settle(window, 0.1)
     analyses = desk.attached(Analyses)
     assert analyses is not None
     for _ in range(_PATIENCE):

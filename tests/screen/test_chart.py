@@ -43,8 +43,8 @@ def test_pyqtgraph_is_not_imported_at_the_start() -> None:
 def test_a_curve_is_drawn_in_its_colour(parent: QWidget) -> None:
     chart = chart_of(parent)
     plot = chart.add()
-    plot.setXRange(0.0, 10.0, padding=0)
-    plot.setYRange(-1.0, 1.0, padding=0)
+    plot.vb.setXRange(0.0, 10.0, padding=0)
+    plot.vb.setYRange(-1.0, 1.0, padding=0)
     curve = plot.curve(line_pen(curve_colour(chart.look, 1)))
     set_curve(curve, np.array([0.0, 10.0]), np.array([0.43, 0.43]))
     parent.show()
@@ -59,8 +59,8 @@ def test_a_curve_is_drawn_in_its_colour(parent: QWidget) -> None:
 def test_a_place_is_told_in_the_units_of_the_axes(parent: QWidget) -> None:
     chart = chart_of(parent)
     plot = chart.add()
-    plot.setXRange(2.0, 6.0, padding=0)
-    plot.setYRange(-10.0, 10.0, padding=0)
+    plot.vb.setXRange(2.0, 6.0, padding=0)
+    plot.vb.setYRange(-10.0, 10.0, padding=0)
     parent.show()
     chart.grab()
     room = plot.room()
@@ -94,5 +94,31 @@ def test_wheel_and_fingers_go_to_what_is_behind(parent: QWidget) -> None:
     ("value", "spacing", "text"), [(-0.002, 0.001, "−0.002"), (0.0, 0.5, "0.0"), (-1e-17, 1.0, "0")]
 )
 def test_figures_of_an_axis(parent: QWidget, value: float, spacing: float, text: str) -> None:
-    axis = chart_of(parent).add().getAxis("left")
+    axis = chart_of(parent).add().axis("left")
     assert axis.tickStrings([value], 1.0, spacing) == [text]
+
+
+def test_a_plot_that_was_is_used_again_as_new(parent: QWidget) -> None:
+    chart = chart_of(parent)
+    plot = chart.add()
+    set_curve(plot.curve(line_pen(QColor("red"))), np.array([0.0, 1.0]), np.array([0.0, 1.0]))
+    plot.vb.invertY(True)
+    plot.axis("left").setLabel("parts")
+    plot.axis("bottom").hide()
+    chart.empty()
+    assert chart.plots == []
+    again = chart.add()
+    assert again is plot
+    assert again.vb.addedItems == []
+    assert not again.vb.yInverted()
+    assert again.axis("left").labelText == ""
+    assert again.axis("bottom").isVisible()
+
+
+def test_plots_are_made_one_a_call(parent: QWidget) -> None:
+    chart = chart_of(parent)
+    assert [chart.ready(2) for _ in range(3)] == [False, False, True]
+    chart.add()
+    chart.add()
+    assert chart.ready(2)
+    assert not chart.ready(3)

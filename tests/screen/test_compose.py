@@ -28,8 +28,8 @@ SHIPPED = Path(__file__).parents[2] / "resources" / "machines" / "gt75.toml"
 
 
 def test_an_offsets_file_takes_the_place_of_the_store() -> None:
-    tools, secondary, _ = chosen_offsets(str(SHIPPED.parents[1] / "programs" / "offsets.toml"))()
-    assert sorted(tools) == [1, 2, 3, 4, 20]
+    tools, secondary, *_ = chosen_offsets(str(SHIPPED.parents[1] / "programs" / "offsets.toml"))()
+    assert sorted(tools) == [1, 2, 3, 4, 6, 7, 8, 20]
     assert tools[1].z == pytest.approx(-3.0 * 25.4)
     assert secondary == {}
 
@@ -82,7 +82,7 @@ def test_offsets_of_a_file_are_shown_and_not_changed(home: Path) -> None:
     journal = Journal(home)
     file = str(SHIPPED.parents[1] / "programs" / "offsets.toml")
     book = book_of(chosen_offsets(file), journal)
-    assert sorted(book.tools) == [1, 2, 3, 4, 20]
+    assert sorted(book.tools) == [1, 2, 3, 4, 6, 7, 8, 20]
     assert "READ ONLY" in book.change(Kind.TOOL, 1, {"x": 1.0}, "try")
     assert "READ ONLY" in book.clear(Kind.SECONDARY, "C")
     assert "READ ONLY" in book.undo(Kind.TOOL)

@@ -231,7 +231,7 @@ def mdi(day: Day, line: str) -> None:
     assert isinstance(page, MdiPage)
     day.type(line)
     day.key(Key.Key_Return)
-    day.desk.attached(MdiModel).worker.settle(5.0)
+    day.desk.attached(MdiModel).line.worker.settle(5.0)
     day.run(0.05)
     day.palms()
     day.reaches(State.IDLE)

@@ -13,9 +13,9 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
-from app.programs.folder_chooser import Stick, sticks
 from app.programs.program_list import ProgramList
 from app.programs.programs_view import ProgramsPage
+from app.programs.removable_media import Stick, sticks
 from app.screen import page_table
 from core.executor.commands import LoadJob
 from core.executor.snapshot import State
@@ -280,7 +280,7 @@ def test_media_are_found_on_both_levels_and_only_while_mounted(tmp_path: Path) -
     for path in ("one", "user/two", "user/gone"):
         (tmp_path / path).mkdir(parents=True)
     mounted = {tmp_path / "one", tmp_path / "user" / "two"}
-    found = sticks((tmp_path, tmp_path / "nothing"), mounted.__contains__)
+    found = sticks((tmp_path, tmp_path / "nothing"), mounted.__contains__, tmp_path / "no list")
     assert [stick.label for stick in found] == ["one", "two"]
 
 

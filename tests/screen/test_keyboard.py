@@ -97,6 +97,42 @@ def test_a_press_right_behind_its_release_is_a_repeat(watched: Hands) -> None:
     assert not watched.machine.now.single_block
 
 
+class Server:
+    """An X server that tells repeats as presses, and which keys are down."""
+
+    tells_repeats = True
+    held: frozenset[int] = frozenset({int(Key.Key_S)})
+
+    def keys(self) -> frozenset[int]:
+        return self.held
+
+    def buttons(self) -> bool:
+        return False
+
+
+def test_a_repeat_that_the_release_has_overtaken_is_no_press(
+    watched: Hands, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    server, keyboard = Server(), watched.window.keyboard
+    monkeypatch.setattr("app.screen.keyboard.x_server", lambda: server)
+    keyboard.watch(window_of(watched))
+    now = [keyboard.times.clock()]
+    monkeypatch.setattr(keyboard.times, "clock", lambda: now[0])
+    send(watched, Key.Key_S, text="s", at=10_000)
+    assert watched.machine.now.single_block
+    now[0] += 0.1
+    server.held = frozenset()
+    keyboard.look()  # up, says the server; two repeats and the release are still to come
+    for at in (10_040, 10_080):
+        send(watched, Key.Key_S, text="s", at=at)
+    assert watched.machine.now.single_block
+    now[0] += 0.2
+    send(watched, Key.Key_S, up=True, at=10_090)
+    now[0] += 0.2
+    send(watched, Key.Key_S, text="s", at=10_400)  # and this is a press
+    assert not watched.machine.now.single_block
+
+
 def test_a_repeat_of_a_key_that_nobody_saw_go_down_is_dead(watched: Hands) -> None:
     send(watched, Key.Key_S, text="s", repeat=True)
     send(watched, Key.Key_S, text="s", repeat=True)

@@ -101,7 +101,19 @@ def test_every_alarm_is_told_whole_wherever_it_stands(entry: Entry) -> None:
         ("MIST HAS GONE OFF AND X2 HAS GONE OFF", "SE APAGÓ MIST Y SE APAGÓ X2"),
         (
             "With input 7 on at line 5: G99 is no code of this control. Write T.",
-            "Con la entrada 7 encendida en la línea 5: G99 no es código de este control. Write T.",
+            "Con la entrada 7 encendida en la línea 5: G99 no es código de este control. Escriba T.",
+        ),
+        (
+            "Alarm 61003: channel 1 block in line 5: CYCLE95: FF1 is missing, and no F is in force.",
+            "Alarma 61003: canal 1 bloque en la línea 5: CYCLE95: FF1 falta, y no hay F vigente.",
+        ),
+        (
+            "channel 1 block N30: CYCLE982: this lathe has no probe that a cycle can move to.",
+            "canal 1 bloque N30: CYCLE982: este torno no tiene palpador al que un ciclo pueda ir.",
+        ),
+        (
+            "Syntax error: CR needs R; the line ends here.",
+            "Error de sintaxis: CR necesita R; la línea termina aquí.",
         ),
     ],
 )
@@ -141,7 +153,10 @@ def test_no_value_is_lost() -> None:
 def test_another_window_speaks_its_own_language(spanish: Hands) -> None:
     spanish.desk.settings.choose("language", "en")
     other = MainWindow(Look(DARK))
+    assert spanish.window.ahead is not None
+    earlier = spanish.window.ahead
     other.open_desk(spanish.desk)
+    assert earlier.done  # its thread has ended: one desk, one window that makes its pages
     assert tr("READY") == "READY"
     other.put_away()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -15,10 +16,12 @@ from app.compose.screen_desk import desk_and_executor, step_clock
 from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
 from app.editor.editor_view import EditorPage
+from app.jog.jog_view import JogPage
 from app.offsets.offset_book import OffsetBook
 from app.screen.look import Look
 from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
+from app.searchto.searchto_view import SearchtoPage
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store
 from tests.screen.hands import Key
@@ -31,12 +34,10 @@ LONG = 200.0  # s of machine time
 class Mill:
     """The desk on the simulated mill, on a clock that the test moves, and the window in front of it."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, machine: str = "ac-table-mill") -> None:
         self._clock = step_clock()
         offsets = samples() / "offsets.toml"
-        self.desk, self._executor = desk_and_executor(
-            "ac-table-mill", lambda: read_offsets(offsets), self._clock
-        )
+        self.desk, self._executor = desk_and_executor(machine, lambda: read_offsets(offsets), self._clock)
         self._store = Store.open(folder)
         for number, tool in read_offsets(offsets).tools.items():
             self._store.set_tool(number, "measured", x=tool.x, z=tool.z, nose_radius=tool.nose_radius)
@@ -102,8 +103,12 @@ class Mill:
 
 
 @pytest.fixture
-def mill(qapp: QApplication, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Mill]:
+def mill_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+
+
+@pytest.fixture
+def mill(qapp: QApplication, tmp_path: Path, mill_home: None) -> Iterator[Mill]:
     made = Mill(tmp_path / "store")
     yield made
     made.close()
@@ -188,12 +193,37 @@ def test_the_editor_shows_the_plane_of_the_cursors_line(mill: Mill, qtbot: QtBot
     page = mill.window.frame.page
     assert isinstance(page, EditorPage)
     qtbot.waitUntil(lambda: page.field.blockCount() > 40 and page.space.isVisible(), timeout=20_000)
+    assert not page.head.with_shapes  # they are lines of OmniTurn
     plane = line_of("PLANE POINTS")
     for _ in range(plane - page.field.line):
         mill.key(Key.Key_Down)
     assert page.field.line == plane
     wanted = f"TILTED PLANE OF LINE {plane}:  A+59.999  C+90.000"
     qtbot.waitUntil(lambda: page.space.words.startswith(wanted), timeout=20_000)
+
+
+def test_searchto_shows_table_and_plane_of_the_line(mill: Mill, qtbot: QtBot) -> None:
+    mill.choose("roof")
+    mill.key(Key.Key_F6)
+    assert mill.window.frame is not None
+    page = mill.window.frame.page
+    assert isinstance(page, SearchtoPage)
+    mill.window.refresh()
+    assert page.space.isVisible()
+    line = line_of("PLANE AXIAL A+30 C+180") + 1
+    mill.type(str(line))
+    mill.key(Key.Key_Return)
+
+    def found() -> bool:
+        mill.window.refresh()
+        return page.model.plan is not None
+
+    qtbot.waitUntil(found, timeout=20_000)
+    assert page.space.words.startswith(f"TILTED PLANE OF LINE {line - 1}:  A+30.000  C+180.000")
+    shown = page.space.instant
+    assert shown is not None
+    assert (shown.axes["A"], shown.axes["C"]) == pytest.approx((30.0, 180.0))  # turned, where the line begins
+    assert shown.block == page.model.plan.found.checkpoint.blocks
 
 
 @pytest.mark.parametrize(
@@ -220,10 +250,57 @@ def test_every_axis_is_jogged_while_its_key_is_held(mill: Mill, key: Key, axis: 
     assert all(abs(after[other] - before[other]) < 0.01 for other in range(5) if other != axis)
 
 
-def test_touching_off_is_refused_on_a_mill(mill: Mill) -> None:
+def test_the_jog_page_of_a_mill_sets_no_tool(mill: Mill) -> None:
+    """Tools and presets have pages of their own: no wear Ø, no touch X, no master here."""
     mill.key(Key.Key_F1)
     mill.key(Key.Key_F5)
-    mill.key(Key.Key_F6)
     mill.window.refresh()
-    assert mill.window.frame is not None
-    assert "LENGTH OF THE TOOL" in mill.window.frame.prompt.text
+    frame = mill.window.frame
+    assert frame is not None
+    page = frame.page
+    assert isinstance(page, JogPage)
+    assert page.labels() == (
+        *("MENU", "STEP", "SPEED", "READOUT", "3D-ROT", "", "ALARMS", "TOOLS", "PRESETS", ""),
+    )
+    assert (page.mill.isVisible(), page.tool.isVisible(), page.asked.isVisible()) == (True, False, False)
+    for key in (Key.Key_T, Key.Key_X, Key.Key_W, Key.Key_M, Key.Key_F6):
+        mill.key(key)
+        assert page.model.tool.asked == ""
+    mill.key(Key.Key_F5)
+    mill.window.refresh()
+    assert "NOTHING IS TILTED" in frame.prompt.text
+    mill.key(Key.Key_F8)
+    assert frame.title.page == "TOOL TABLE"
+
+
+def test_a_tool_that_leans_is_drawn_out_along_itself(
+    qapp: QApplication, tmp_path: Path, mill_home: None
+) -> None:
+    """The fork head: A is jogged aside, 3D-ROT on, Z' moves Y and Z as -tan A; turning A again ends it."""
+    mill = Mill(tmp_path / "store", "fork-head-mill")
+    try:
+        mill.goes_on(lambda s: s.state is State.DISABLED)
+        mill.key(Key.Key_D)
+        mill.goes_on(lambda s: s.state is State.IDLE)
+        mill.key(Key.Key_F1)
+        mill.key(Key.Key_F5)
+        frame = mill.window.frame
+        assert frame is not None
+        page = frame.page
+        assert isinstance(page, JogPage)
+        axes = mill.desk.snapshot().axes
+        a, y, z = (axes.index(name) for name in "AYZ")
+        key = next(way.key for way in page.model.directions if (way.axis, way.sign) == ("A", 1))
+        mill.held(getattr(Key, f"Key_{key}"), lambda s: s.actual[a] > 20.0)
+        lean = math.radians(mill.desk.snapshot().actual[a])
+        mill.key(Key.Key_F5)
+        mill.window.refresh()
+        assert page.model.tilt.on
+        before = mill.desk.snapshot().actual
+        after = mill.held(Key.Key_PageDown, lambda s: s.actual[z] - before[z] < -1.0).actual
+        assert after[y] - before[y] == pytest.approx(-math.tan(lean) * (after[z] - before[z]), abs=0.005)
+        mill.key(Key.Key_F1)
+        mill.key(Key.Key_F5)
+        assert not page.model.tilt.on
+    finally:
+        mill.close()

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from PySide6.QtGui import QColor, QImage
 
-from app.path.path_layers_view import SMOOTH_TO, Layers, polygon
+from app.path.path_layers_view import PIXELS, SMOOTH_TO, Ink, Layers, polygon
 from app.path.path_picture import Picture
 from app.path.path_projection import (
     Ends,
@@ -18,7 +20,7 @@ from app.path.path_projection import (
     stepped,
     travelled,
 )
-from app.path.polyline import Stroke
+from app.path.polyline import Polyline, Stroke
 from app.screen.look import Look
 from app.screen.theme import DARK
 
@@ -178,6 +180,24 @@ def test_many_strokes_are_drawn_too() -> None:
     assert colour(layers.image, -5.0, -5.0) == DARK.ghost
     layers.want(many.blocks)
     assert DARK.done in {colour(drawn(layers), z, 5.0) for z in np.linspace(-9, -1, 60)}
+
+
+def test_long_strokes_are_drawn_few_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    there_and_back = [(-30.0 * (k % 2), 4.0, Stroke.TURN) for k in range(2 * SMOOTH_TO)]
+    path = picture(there_and_back, list(range(1, len(there_and_back) + 1)))
+    parts: list[tuple[int, int]] = []
+    draw = Layers._draw_pixels
+
+    def counted(layers: Layers, image: QImage, whole: Polyline, part: tuple[int, int], ink: Ink) -> None:
+        parts.append(part)
+        draw(layers, image, whole, part, ink)
+
+    monkeypatch.setattr(Layers, "_draw_pixels", counted)
+    drawn(Layers(Look(DARK, 12.0), path, FRAME))
+    edges = [0, *(end for _, end in parts)]
+    assert parts == list(pairwise(edges)), "each point once, in its order"
+    assert edges[-1] == len(there_and_back)
+    assert all((end - begin) * 300 < PIXELS + 2 * 300 for begin, end in parts), "30 mm are 300 pixels"
 
 
 def test_lines_are_cut_at_the_edges_of_the_image() -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, QPointF, Qt
-from PySide6.QtGui import QColor, QWheelEvent
+from PySide6.QtGui import QColor, QImage, QWheelEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
@@ -63,6 +63,9 @@ def frozen(hands: Hands) -> ScopePage:
     page = opened(hands)
     hands.key(Key.Key_F2)
     hands.sees(lambda: not page.scope.sight.live and page.scope.frozen is not None)
+    chart = page.curves.chart
+    assert chart is not None
+    hands.sees(lambda: not chart.sight.live and chart.room.height() > 100.0)  # drawn, and laid out
     return page
 
 
@@ -140,7 +143,12 @@ def test_level_curves_that_roll_are_not_drawn_again(hands: Hands, played: Played
     hands.sees(lambda: scope.sight.zero > played.now - 0.1)
     hands.desk.clock = lambda: before  # no second passes any more
     scope.chosen = ("spindle command", "C actual", "Z actual")
-    hands.sees(lambda: chart.sight is not seen and len(chart.sight.curves) == 3)
+
+    def three() -> bool:
+        hands.window.refresh()  # on a clock that stands nothing grows old
+        return chart.sight is not seen and len(chart.sight.curves) == 3
+
+    hands.sees(three)
     assert page.lively()
 
 
@@ -303,6 +311,26 @@ def test_a_ninth_curve_is_refused(hands: Hands) -> None:
     assert len(page.scope.shown) == 8
 
 
+def test_a_level_that_was_typed_meanwhile_is_the_one_that_freezes(
+    hands: Hands, played: PlayedSamples
+) -> None:
+    page = opened(hands)
+    hands.key(Key.Key_F3)
+    played.lets.clear()
+    hands.key(Key.Key_Return)  # rises through 0, by and by
+    hands.sees(lambda: played.waits)
+    hands.key(Key.Key_Down)
+    hands.key(Key.Key_Down)
+    hands.type(".0003")
+    hands.key(Key.Key_Return)
+    played.now += 20.0  # more than the time to the next crossing and half a window
+    played.lets.set()  # it looks at what came, still for a rise through 0
+    hands.sees(lambda: page.scope.frozen is not None)
+    assert page.scope.frozen is not None
+    # .01·cos t = .00762 on the way up, 0 at 105.24: 2πn − arccos(.762)
+    assert page.scope.frozen.zero == pytest.approx(34.0 * np.pi - np.arccos(0.762), abs=0.002)
+
+
 def test_a_trigger_freezes_once(hands: Hands, played: PlayedSamples) -> None:
     page = opened(hands)
     scope = page.scope
@@ -448,10 +476,14 @@ def test_rows_are_large_enough_for_a_finger(hands: Hands) -> None:
 def test_other_colours_at_once(hands: Hands) -> None:
     page = frozen(hands)
     hands.key(Key.Key_T)
-    hands.qtbot.wait(100)
-    image = page.curves.grab().toImage()
-    seen = {image.pixelColor(x, y).name() for x in range(60, image.width(), 3) for y in range(image.height())}
-    assert {QColor(each).name() for each in CURVES["light"][:4]} <= seen
+    inks = {QColor(each).name() for each in CURVES["light"][:4]}
+    hands.sees(lambda: inks <= colours_of(page.curves.grab().toImage()))
+
+
+def colours_of(image: QImage) -> set[str]:
+    """Those of every third column, right of the figures."""
+    across, down = range(60, image.width(), 3), range(image.height())
+    return {image.pixelColor(x, y).name() for x in across for y in down}
 
 
 def test_nothing_is_recorded_on_a_machine_without(hands: Hands) -> None:

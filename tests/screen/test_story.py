@@ -101,7 +101,7 @@ def test_the_list_is_picked_from_by_arrows(hands: Hands) -> None:
     hands.key(Key.Key_Up)
     hands.key(Key.Key_Return)
     hands.sees(lambda: hands.desk.session.now.phase is Phase.READY)
-    assert hands.desk.session.now.name == "grooves.nc"
+    assert hands.desk.session.now.name == "fitting.mpf"
 
 
 @pytest.mark.parametrize("palm", [Key.Key_F11, Key.Key_F12])

@@ -7,7 +7,7 @@ from dataclasses import fields
 import pytest
 from PySide6.QtGui import QFontInfo, QFontMetricsF, QRawFont
 
-from app.screen.look import LEAST, Look, load_fonts
+from app.screen.look import LEAST, Look, load_fonts, width_of
 from app.screen.theme import CURVES, DARK, PALETTES, Palette
 
 TEXT = [
@@ -32,6 +32,13 @@ SHAPES = [
     ("frame", "ground"),
     ("estop", "estop_plate"),
 ]
+
+
+def test_a_colour_that_is_made_faint_stays_as_it_is_elsewhere() -> None:
+    """The part view draws holders through; the state in the title has the same colour."""
+    look = Look(DARK)
+    look.colour("off").setAlphaF(0.12)
+    assert look.colour("off").alphaF() == 1.0
 
 
 def luminance(colour: str) -> float:
@@ -170,3 +177,11 @@ def test_text_that_is_too_long_is_made_smaller_but_never_unreadable() -> None:
     font = look.fit(text, 3.0, 400.0, bold=True)
     assert QFontMetricsF(font).horizontalAdvance(text) <= 400.0
     assert look.fit(text, 3.0, 10.0, bold=True).pixelSize() == round(LEAST * 12.0)
+
+
+@pytest.mark.parametrize("bold", [False, True])
+def test_a_width_is_that_of_the_font_it_is_asked_for(bold: bool) -> None:
+    look = Look(DARK, 12.0)
+    for size in (1.5, 3.0, 1.5):
+        font = look.font(size, bold=bold)
+        assert width_of("X−12.3456", font) == QFontMetricsF(font).horizontalAdvance("X−12.3456")

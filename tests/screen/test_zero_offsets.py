@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from app.offsets.cell_table_view import ZeroOffsetsPage
 from app.offsets.offset_book import OffsetBook
-from app.offsets.zero_offsets_view import ZeroOffsetsPage
 from app.screen import page_table
 from core.executor.snapshot import State
 from core.store.store import Store

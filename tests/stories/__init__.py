@@ -14,6 +14,7 @@ A story in ten lines::
 
 ``story.begins(program, machine=…, changes=…, tools=…)`` starts the process in a folder of its own, under
 a server and a window manager of its own; ``tests.stories.operator`` says what an operator can do and see.
+The process is forked from one that has imported the desk (``tests.stories.fork_server``).
 Nothing sleeps: ``until`` waits for what shall be, ``keeps`` looks for so long that something stays,
 ``during`` is how long a hand holds. What is seen comes from a thread in the process (``tests.stories.eyes``);
 the product knows nothing of them. A story that fails leaves a picture of the screen in ``story-failures``.

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from _pytest.runner import runtestprotocol
 
 import resources
 from core.store.store import Store
+from tests import late_computer
+from tests.stories.fork_server import ForkServer
 from tests.stories.operator import Operator
 from tests.stories.x11 import Server, missing, server
 
 FAILURES = Path(__file__).resolve().parents[2] / "story-failures"
 INCH = 25.4
+_TRIES = 2
 Tools = Mapping[int, tuple[float, float]]
 _REPORTS = pytest.StashKey[list[pytest.TestReport]]()
 
@@ -25,6 +28,7 @@ class Story:
     """Begins as often as the story switches the computer on."""
 
     server: Server
+    forks: ForkServer
     folder: Path
     operators: list[Operator] = field(default_factory=list)
 
@@ -55,7 +59,7 @@ class Story:
             with Store.open(self.home) as store:
                 store.set_tool(number, "before the story", x=x * INCH, z=z * INCH).result()
         self.home.mkdir(exist_ok=True)
-        operator = Operator(self.server, self.home, *words)
+        operator = Operator(self.server, self.forks, self.home, *words)
         self.operators.append(operator)
         operator.arrives()
         return operator
@@ -70,14 +74,21 @@ class Story:
         return path
 
 
-@pytest.fixture
-def story(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Story]:
-    """A story is told with this."""
+@pytest.fixture(scope="session")
+def forks() -> Iterator[ForkServer]:
+    """What starts the processes of all stories."""
     why = missing()
     if why:
         pytest.skip(f"stories need an X server: {why}")
+    with closing(ForkServer()) as made:
+        yield made
+
+
+@pytest.fixture
+def story(request: pytest.FixtureRequest, forks: ForkServer, tmp_path: Path) -> Iterator[Story]:
+    """A story is told with this."""
     with server(tmp_path / "x") as display:
-        told = Story(display, tmp_path)
+        told = Story(display, forks, tmp_path)
         yield told
         if any(report.failed for report in request.node.stash.get(_REPORTS, [])):
             _picture(told, request.node.name)
@@ -106,13 +117,9 @@ def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> 
     """A story that fails is told once more: a computer that stalls shuts real hands out, a fault stays."""
     if "story" not in getattr(item, "fixturenames", ()):
         return None
-    item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
-    reports = runtestprotocol(item, nextitem=nextitem, log=False)
-    if any(report.failed for report in reports):
-        item._initrequest()  # type: ignore[attr-defined]
+
+    def again(tries: int, _reports: list[pytest.TestReport]) -> bool:
         item.stash[_REPORTS] = []
-        reports = runtestprotocol(item, nextitem=nextitem, log=False)
-    for report in reports:
-        item.ihook.pytest_runtest_logreport(report=report)
-    item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
-    return True
+        return tries < _TRIES
+
+    return late_computer.run_again(item, nextitem, again)

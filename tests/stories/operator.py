@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import os
 import signal
-import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -15,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from core.store.store import Store
+from tests.stories.fork_server import ForkServer
 from tests.stories.patience import PATIENCE, throughout, until
 from tests.stories.x11 import MODIFIERS, Server
 
@@ -33,7 +32,7 @@ class Operator:
     ``ctrl``, ``alt``, ``meta`` and ``altgr``.
     """
 
-    def __init__(self, server: Server, home: Path, *arguments: str) -> None:
+    def __init__(self, server: Server, forks: ForkServer, home: Path, *arguments: str) -> None:
         self.server, self.home = server, home
         self._meant = 0.0  # when a key was pressed that answers
         self.once = False  # keys are pressed once, whatever the screen says of them
@@ -44,18 +43,11 @@ class Operator:
         self._told = threading.Condition()
         environment = server.environment | {"TURNDESK_HOME": str(home)}
         self._errors = (home.parent / "stderr.txt").open("wb")
-        self.popen = subprocess.Popen(
-            [sys.executable, "-m", "tests.stories.eyes", *arguments],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=self._errors,
-            env=environment,
-        )
+        self.popen = forks.begins(arguments, environment, self._errors)
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 
     def _read(self) -> None:
-        assert self.popen.stdout is not None
         for line in self.popen.stdout:
             told = json.loads(line)
             with self._told:
@@ -79,7 +71,6 @@ class Operator:
     def post(self, what: str, **more: object) -> int:
         """Ask, and do not wait; the number of the answer."""
         self._asked += 1
-        assert self.popen.stdin is not None
         self.popen.stdin.write(json.dumps({"ask": what, "number": self._asked, **more}).encode() + b"\n")
         self.popen.stdin.flush()
         return self._asked
@@ -388,7 +379,6 @@ class Operator:
         self.popen.wait()
         self._reader.join()
         for each in (self.popen.stdin, self.popen.stdout, self._errors):
-            assert each is not None
             try:
                 each.close()
             except BrokenPipeError:

@@ -76,6 +76,7 @@ def test_by_mouse(story: Story) -> None:
     operator.reaches("READY")
     operator.clicks("TOOLS", on="FunctionKeys")
     operator.opens("TOOL OFFSETS")
+    operator.clicks("T1  X R?", on="EntryPanel")  # the pad of figures comes
     for keys in (("0",), ("−", "1")):
         for key in keys:
             operator.clicks(key, on="KeyPad")
@@ -109,6 +110,7 @@ def test_by_touch(story: Story) -> None:
     operator.reaches("READY")
     operator.touches("TOOLS", on="FunctionKeys")
     operator.opens("TOOL OFFSETS")
+    operator.touches("T1  X R?", on="EntryPanel")
     for keys in (("0",), ("−", "1")):
         for key in keys:
             operator.touches(key, on="KeyPad")

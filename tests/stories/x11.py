@@ -26,6 +26,7 @@ MODIFIERS = {
     "meta": "Super_L",
     "altgr": "ISO_Level3_Shift",
 }
+APART = 2  # ms at least between two strokes of one key: Qt takes an up and a down of one moment for a repeat
 _HEADER = 100  # bytes of an XWD header without the window's name
 
 
@@ -51,6 +52,7 @@ class Server:
         self._display = ctypes.c_void_p(self._x.XOpenDisplay(self.name.encode()))
         assert self._display, f"no answer from the server at {self.name}"
         self._down: list[int] = []
+        self._last = 0  # the key that moved last
         self._buttons: list[int] = []
 
     def _serve(self) -> str:
@@ -127,11 +129,13 @@ class Server:
         self._x.XSync(self._display, 0)
 
     def _key(self, code: int, *, down: bool) -> None:
+        later = int(down and code == self._last) * APART
+        self._last = code
         if down:
             self._down.append(code)
         elif code in self._down:
             self._down.remove(code)
-        self._test.XTestFakeKeyEvent(self._display, code, int(down), 0)
+        self._test.XTestFakeKeyEvent(self._display, code, int(down), later)
 
     def write(self, text: str) -> None:
         """Every character by the key, and the shift, on which it stands in the layout of now."""

@@ -1,0 +1,57 @@
+"""The demo: sample offsets that may be changed, in a store that is nobody's machine."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from app.cli.main import main
+from app.compose.demo_store import open_demo
+from app.compose.journal import Journal
+from app.compose.stored_offsets import book_of, stored_offsets
+from app.desk.command_errors import CommandError
+from core.store.store import Store
+from core.store.store_rows import Kind
+
+INCH = 25.4
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A data folder of its own; the demo's place in the environment ends with the test."""
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    return tmp_path
+
+
+def test_its_offsets_are_those_of_the_samples_and_may_be_changed(home: Path) -> None:
+    folder = open_demo(None)
+    assert folder == home / "demo"
+    journal = Journal.at_home()
+    book = book_of(stored_offsets, journal)
+    assert not book.locked
+    assert book.tools[1].x == pytest.approx(-0.5 * INCH)
+    journal.close()
+    assert not (home / "turndesk.db").exists()  # nothing of it in the store of the machine
+
+
+def test_what_was_changed_in_it_stays(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with Store.open(open_demo(None)) as store:
+        store.set_offset(Kind.TOOL, 1, values={"x": 3.0}, why="test", who="test").result()
+    monkeypatch.setenv("TURNDESK_HOME", str(home))  # the next start
+    with Store.open(open_demo(None), read_only=True) as store:
+        assert store.tools()[1].x == 3.0
+
+
+def test_no_real_machine_gets_offsets_of_samples(home: Path) -> None:
+    with pytest.raises(CommandError, match="drives a real one"):
+        open_demo("gt75-grblhal")
+    assert os.environ["TURNDESK_HOME"] == str(home)
+    assert not (home / "demo").exists()
+
+
+def test_it_is_the_screen_alone(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--demo", "offsets", "show"]) == 2
+    assert "leave it out before offsets" in capsys.readouterr().err
+    assert main(["--version", "--demo"]) == 2

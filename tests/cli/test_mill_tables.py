@@ -1,0 +1,113 @@
+"""Tools and presets of a mill by the command line: set, refused, exported, imported; tool life in a run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from core.store import tool_lives
+from core.store.store import Store
+from core.store.store_rows import Kind, MillRow, PresetRow
+from core.store.tool_lives import LifeRow
+from tests.cli.conftest import Turndesk
+
+TOOL = ("offsets", "set", "TOOL7", "L=60", "R=12/2", "DL=-.02", "name=Mill 12", "time2=90", "stop=1")
+PRESET = ("offsets", "set", "preset3", "x=230", "y=210", "z=-350", "rot=2.5", "c=-30")
+ROWS = (
+    MillRow("Mill 12", 60.0, 6.0, dl=-0.02, life=90.0, stops=True),
+    PresetRow(230.0, 210.0, -350.0, 2.5, c=-30.0),
+)
+
+
+def rows(home: Path) -> tuple[MillRow, PresetRow]:
+    with Store.open(home, read_only=True) as store:
+        return store.mill_tools()[7], store.presets()[3]
+
+
+def test_tools_and_presets_are_set_by_the_words_of_their_columns(turndesk: Turndesk, home: Path) -> None:
+    told = turndesk(*TOOL)
+    assert (told.status, told.out.startswith("TOOL7 NAME Mill 12  L +60.000  R 6.000")) == (0, True), told
+    assert turndesk(*PRESET).status == 0
+    assert rows(home) == ROWS
+    assert turndesk("offsets", "undo", "preset").status == 0
+    with Store.open(home, read_only=True) as store:
+        assert store.presets() == {}
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("TOOL0", "L=1"), "T0 does not exist; they are 1…999"),
+        (("PRESET100", "x=1"), "PRESET 100 does not exist; they are 1…99"),
+        (("TOOL7", "L=1001"), "out of range; enter -1000…1000 mm"),
+        (("TOOL7", "radius=-1"), "out of range; enter 0…1000 mm"),
+        (("TOOL7", "x=1"), "x"),
+        (("PRESET3", "L"), "write KEY=VALUE, such as x=100"),
+        (("TOOL7", "stop=2"), "neither 1 nor 0"),
+    ],
+)
+def test_what_is_no_tool_and_no_preset_is_refused(
+    turndesk: Turndesk, home: Path, words: tuple[str, ...], told: str
+) -> None:
+    answer = turndesk("offsets", "set", *words)
+    assert answer.status == 2
+    assert told in answer.err
+    with Store.open(home) as store:
+        assert (store.mill_tools(), store.presets()) == ({}, {})
+
+
+def test_an_export_brings_them_to_another_store(
+    turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    turndesk(*TOOL)
+    turndesk(*PRESET)
+    out, second = tmp_path / "out", tmp_path / "second"
+    assert turndesk("store", "export", out).status == 0
+    monkeypatch.setenv("TURNDESK_HOME", str(second))
+    told = turndesk("store", "import", out)
+    assert "tools of a mill: 1, presets: 1" in told.out
+    assert rows(second) == ROWS
+
+
+def test_of_a_spoilt_table_nothing_is_imported(turndesk: Turndesk, home: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    turndesk(*PRESET)
+    assert turndesk("store", "export", out).status == 0
+    (out / "mill_tools.csv").write_text("number,name,length\n7,A,60\n8,B,sixty\n")
+    told = turndesk("store", "import", out)
+    assert told.status == 2
+    assert "mill_tools.csv line 3" in told.err
+    (out / "mill_tools.csv").write_text("number,name,length\n1000,A,60\n")
+    assert "T1000 does not exist" in turndesk("store", "import", out).err
+    with Store.open(home) as store:
+        assert store.mill_tools() == {}
+
+
+def test_a_part_with_a_tool_whose_life_is_gone_is_refused(
+    turndesk: Turndesk, home: Path, tmp_path: Path
+) -> None:
+    """.1 mm at 60 mm/min is .1 s at feed; the life of T7 is .06 s."""
+    part = tmp_path / "part.h"
+    part.write_text("BEGIN PGM P MM\nTOOL CALL 7 Z S500\nL IZ-0.1 R0 F60\nEND PGM P MM\n")
+    turndesk("offsets", "set", "TOOL7", "L=60", "time2=.001", "stop=1")
+    run = ("run", part, "--headless", "--realtime", "--machine", "ac-table-mill")
+    first = turndesk(*run)
+    assert first.status == 0, first.err
+    assert "T7: ITS LIFE IS GONE" in first.err
+    second = turndesk(*run)
+    assert second.status == 1
+    assert "the life of T7 is gone" in second.err
+    assert "set its CUR.TIME to 0 in the tool table" in second.err
+    with Store.open(home) as store:
+        with store.read() as connection:
+            life = tool_lives.lives(connection, Kind.MILL_TOOL)[7]
+            assert tool_lives.lives(connection) == {}  # nothing of it goes to a lathe's T7
+        assert (life.parts, life.limit_seconds, life.stops) == (1, pytest.approx(0.06), True)
+        assert life.seconds >= 0.09
+        store.write(lambda c: tool_lives.change_insert(c, 7, "fresh", Kind.MILL_TOOL)).result(5.0)
+        with store.read() as connection:
+            fresh = tool_lives.lives(connection, Kind.MILL_TOOL)[7]
+            (kept,) = tool_lives.insert_changes(connection, 9)
+    assert fresh == LifeRow(7, 0, pytest.approx(0.06), 0.9, True)
+    assert (kept.number, kept.parts, kept.kind) == (7, 1, "mill tool")

@@ -1,0 +1,178 @@
+"""``turndesk profile``: each choice about a drawing acts; what stays of it is told."""
+
+from __future__ import annotations
+
+import json
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.cli.conftest import Turndesk
+from tests.drawings.hand import chain, dxf
+
+SHEET = """
+[tool.1]
+kind = "turning"
+insert = "DNMG150404"
+nose_radius = .0157
+tip = 3
+[tool.5]
+kind = "grooving"
+width = .0787
+length = .3
+tip = 3
+[tool.6]
+kind = "boring"
+insert = "CCMT060204"
+nose_radius = .0157
+tip = 2
+diameter = .3
+"""
+
+
+@pytest.fixture
+def part(tmp_path: Path) -> Path:
+    """A shoulder of 8 and 12 mm with a groove; a second contour, a ring, on its own layer."""
+
+    def draw(space: Any) -> None:
+        chain((0, 0), (0, 4), (-5, 4), (-5, 3), (-8, 3), (-8, 4), (-10, 4), (-10, 6), (-20, 6), (-20, 0))(
+            space
+        )
+        ring = [(0, 10), (0, 15), (-6, 15), (-6, 10)]
+        space.add_lwpolyline(ring, close=True, dxfattribs={"layer": "RING"})
+
+    return dxf(tmp_path / "part.dxf", draw)
+
+
+@pytest.fixture
+def sheet(tmp_path: Path) -> Path:
+    path = tmp_path / "tools.toml"
+    path.write_text(SHEET)
+    return path
+
+
+def told(turndesk: Turndesk, *words: object) -> dict[str, Any]:
+    done = turndesk("profile", *words, "--json")
+    assert done.status == 0, done.err
+    found: dict[str, Any] = json.loads(done.out)
+    return found
+
+
+def test_list_says_what_there_is(turndesk: Turndesk, part: Path) -> None:
+    told_ = turndesk("profile", part, "--list").out
+    assert "unit 1 mm" in told_
+    assert "layers: 0, RING" in told_
+    assert "contour 1 about Y 0: 9 lines, 20 mm long, diameter 12 mm" in told_
+    assert "contour 2 about Y 0: 4 lines, 6 mm long, diameter 30 mm" in told_
+    listed = told(turndesk, part, "--list")
+    assert [each["diameter_mm"] for each in listed["contours"]] == [12.0, 30.0]
+    assert listed["axes"] == ["Y 0", "MIDDLE", "X 0"]
+
+
+def test_a_program_on_stdout_and_what_it_needs_beside_it(turndesk: Turndesk, part: Path, sheet: Path) -> None:
+    done = turndesk("profile", part, "--tools", sheet, "--metric", "--face", 1)
+    assert done.status == 0, done.err
+    assert done.out.startswith("G90G94F7620G71G72(HEAD METRIC")
+    assert "(FACE" in done.out
+    assert "(GROOVE FRONT SIDE 8 TOP 6 BOTTOM 5 AT" in done.out
+    assert "secondary offset 1 has to hold X -.7976 (as a diameter), Z -.3988, R .3988 mm" in done.err
+    assert ".248 mm stays in the corner at Z -9.975, by the nose of the tool" in done.err
+    assert "elsewhere the proved part is the drawing's within" in done.err
+
+
+def test_it_is_written_to_a_file_and_told_as_json(
+    turndesk: Turndesk, part: Path, sheet: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "part.nc"
+    found = told(turndesk, part, "--tools", sheet, "--out", out, "--bar", 0.5, "--material", "BRASS")
+    assert out.read_text() == found["program"]
+    assert "BRASS MATERIAL 0P5 BAR" in found["program"]
+    assert found["secondary_offset"]["z"] == pytest.approx(-0.0157 * 25.4)
+    assert not found["left"]
+    (corner,) = found["deviations"]
+    assert 0.0 < corner["most_mm"] < 0.4
+    assert found["worst_mm"] < 0.02
+
+
+def test_tools_depth_and_compensation(turndesk: Turndesk, part: Path, sheet: Path) -> None:
+    made = told(turndesk, part, "--tools", sheet, "--tool", 1, "--rough", 0.03, "--comp", 7)["program"]
+    assert "I.03" in made
+    assert "D7" in made
+    assert "G41" not in told(turndesk, part, "--tools", sheet, "--comp", 0)["program"]
+    assert "G75" not in told(turndesk, part, "--tools", sheet, "--rough", 0)["program"]
+    found = told(turndesk, part, "--tools", sheet, "--groove-tool", 1)
+    assert found["left"][0]["why"] == "a groove, and T1 has no width"
+
+
+def test_layer_contour_and_bore(turndesk: Turndesk, part: Path, sheet: Path) -> None:
+    by_layer = told(turndesk, part, "--tools", sheet, "--layer", "RING")["program"]
+    assert by_layer == told(turndesk, part, "--tools", sheet, "--contour", 2)["program"]
+    found = told(turndesk, part, "--tools", sheet, "--contour", 2, "--side", "bore", "--hole", 0.5)
+    assert found["side"] == "BORE"
+    assert "X.7874Z0" in found["program"]  # 20 mm
+
+
+def test_front_zero_and_shift(turndesk: Turndesk, part: Path, sheet: Path) -> None:
+    """From the left the shaft of 12 is in front, and the drawing's origin lies 20 mm behind its face."""
+    made = told(turndesk, part, "--tools", sheet, "--metric", "--front", "left", "--zero", "origin")[
+        "program"
+    ]
+    assert "X12Z20" in made
+    made = told(turndesk, part, "--tools", sheet, "--metric", "--zero", "back", "--shift", -20)["program"]
+    assert "X8Z0" in made
+
+
+def test_axis_and_gap(turndesk: Turndesk, tmp_path: Path, sheet: Path) -> None:
+    path = dxf(tmp_path / "up.dxf", chain((0, 0), (-4, 0), (-4, -10), (0, -10)))
+    made = told(turndesk, path, "--tools", sheet, "--metric", "--axis", "X 0")["program"]
+    assert "X8Z0" in made
+
+    def loose(space: Any) -> None:
+        space.add_line((0, 4), (-10, 4))
+        space.add_line((-10.1, 4), (-20, 5))
+
+    path = dxf(tmp_path / "loose.dxf", loose)
+    assert len(told(turndesk, path, "--axis", "Y 0", "--list")["contours"]) == 2
+    assert len(told(turndesk, path, "--axis", "Y 0", "--gap", 0.2, "--list")["contours"]) == 1
+    assert "up to 1 mm" in turndesk("profile", path, "--gap", 5).err
+
+
+def test_the_unit_of_a_drawing_that_does_not_say_it(turndesk: Turndesk, tmp_path: Path, sheet: Path) -> None:
+    path = dxf(tmp_path / "none.dxf", chain((0, 0), (0, 0.25), (-1, 0.25), (-1, 0)), unit=0)
+    assert "does not say its unit: say --unit mm or --unit inch" in turndesk("profile", path).err
+    assert "X.5Z0" in told(turndesk, path, "--tools", sheet, "--unit", "inch")["program"]
+
+
+def test_a_metric_machine_makes_a_metric_program(turndesk: Turndesk, part: Path, tmp_path: Path) -> None:
+    text = files("resources").joinpath("machines/gt75.toml").read_text()
+    metric = tmp_path / "metric.toml"
+    metric.write_text(
+        text.replace('units = "inch"', 'units = "mm"').replace("travel = [-4.0, 4.0]", "travel = [-100, 100]")
+    )
+    done = turndesk("profile", part, "--machine", metric)
+    assert "G71" in done.out, done.err
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["--layer", "NONE"], "has no layer NONE: say 0, RING"),
+        (["--contour", "3"], "has 2 contours: say --contour 1 to 2"),
+        (["--axis", "Q"], "has no axis Q: choose Y 0"),
+        (["--side", "bore"], "say its diameter with --hole"),
+        (["--bar", "0.3", "--contour", "1"], "type a smaller X"),
+        (["--out", "/nowhere/x.nc"], "cannot be written"),
+    ],
+)
+def test_what_cannot_be(turndesk: Turndesk, part: Path, words: list[str], says: str) -> None:
+    done = turndesk("profile", part, *words)
+    assert done.status == 2
+    assert says in done.err
+    assert done.err.count("\n") == 1
+
+
+def test_no_drawing(turndesk: Turndesk, tmp_path: Path) -> None:
+    assert "cannot be read" in turndesk("profile", tmp_path / "none.dxf").err
+    assert turndesk("profile", tmp_path / "none.step").status == 2

@@ -1,0 +1,72 @@
+"""The log folder: a file for each run without a screen, and none kept for ever."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+
+import pytest
+
+from app.compose import run_log
+from app.compose.run_log import EventLog
+
+DAY = 86_400.0
+
+
+def a_file(folder: Path, name: str, days: float, size: int = 10) -> Path:
+    """A file of the log folder that was written so many days ago."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / name
+    path.write_bytes(bytes(size))
+    at = time.time() - days * DAY
+    os.utime(path, (at, at))
+    return path
+
+
+def begun(home: Path) -> set[str]:
+    """The files that are left once another run has begun its own, without that."""
+    with EventLog.new("PIN.nc") as log:
+        return {path.name for path in (home / "logs").iterdir() if path != log.path}
+
+
+def test_files_of_more_than_a_year_go(home: Path) -> None:
+    a_file(home / "logs", "old.jsonl", 367.0)
+    a_file(home / "logs", "crash-old.txt", 367.0)
+    a_file(home / "logs", "young.jsonl", 365.0)
+    assert begun(home) == {"young.jsonl"}
+
+
+def test_no_more_files_are_kept_than_may_be(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run_log, "MOST", 3)
+    for days in (1, 2, 3, 4):
+        a_file(home / "logs", f"{days}.jsonl", days)
+    assert begun(home) == {"1.jsonl", "2.jsonl"}  # three with the new one
+
+
+def test_no_more_bytes_are_kept_than_may_be(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run_log, "MOST_BYTES", 250)
+    for days in (1, 2, 3):
+        a_file(home / "logs", f"{days}.jsonl", days, size=100)
+    assert begun(home) == {"1.jsonl", "2.jsonl"}
+
+
+def test_what_is_not_of_a_run_stays(home: Path) -> None:
+    for name in ("turndesk.log", "turndesk.log.1", "notes.txt"):
+        a_file(home / "logs", name, 1000.0)
+    assert begun(home) == {"turndesk.log", "turndesk.log.1", "notes.txt"}
+
+
+def test_a_clock_that_was_set_back_deletes_nothing(home: Path) -> None:
+    a_file(home / "logs", "tomorrow.jsonl", -30.0)
+    assert begun(home) == {"tomorrow.jsonl"}
+
+
+def test_what_cannot_be_deleted_stops_no_run(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    a_file(home / "logs", "old.jsonl", 400.0)
+
+    def refused(_path: Path) -> None:
+        raise PermissionError
+
+    monkeypatch.setattr(Path, "unlink", refused)
+    assert begun(home) == {"old.jsonl"}

@@ -1,0 +1,132 @@
+"""``turndesk setup``: a machine's setup from desk to desk, whole or not at all; desktop entry, completion."""
+
+from __future__ import annotations
+
+import subprocess
+import zipfile
+from pathlib import Path
+
+import pytest
+
+import resources
+from app.cli.setup_command import SHELLS
+from tests.cli.conftest import Turndesk
+
+
+@pytest.fixture
+def saved(turndesk: Turndesk, home: Path, tmp_path: Path) -> Path:
+    """A setup with an offset, a program and a machine file."""
+    assert turndesk("offsets", "set", "T3", "x=1", "z=2").status == 0
+    (home / "programs").mkdir()
+    (home / "programs" / "part.nc").write_text("G90\nM30\n")
+    lathe = tmp_path / "mine.toml"
+    lathe.write_text(resources.machine_file("gt75.toml"))
+    told = turndesk("setup", "save", tmp_path / "a.setup", "--machine", lathe)
+    assert told.status == 0, told.err
+    assert "programs: 1, machine file mine.toml" in told.out
+    return tmp_path / "a.setup"
+
+
+def test_another_desk_has_it_all(
+    saved: Path, turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other = tmp_path / "other"
+    monkeypatch.setenv("TURNDESK_HOME", str(other))
+    (other / "programs").mkdir(parents=True)
+    (other / "programs" / "part.nc").write_text("(MINE)\n")
+    told = turndesk("setup", "load", saved)
+    assert told.status == 0, told.err
+    assert "T3  X +1.00000" in turndesk("offsets", "show").out
+    assert (other / "programs" / "part.nc").read_text() == "G90\nM30\n"
+    (kept,) = (other / "programs").glob("part.nc.replaced-*")
+    assert kept.read_text() == "(MINE)\n"
+    assert turndesk("prove", other / "programs" / "part.nc", "--machine", other / "machines" / "mine.toml")
+    assert f"--machine {other / 'machines' / 'mine.toml'}" in told.out
+
+
+def test_a_check_changes_nothing(
+    saved: Path, turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "other"))
+    assert "is whole" in turndesk("setup", "load", saved, "--check").out
+    assert not (tmp_path / "other").exists()
+
+
+@pytest.mark.parametrize("what", ["cut", "changed", "foreign", "outside", "nothing"])
+def test_what_is_not_whole_is_refused_and_changes_nothing(
+    what: str, saved: Path, turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bad = tmp_path / "bad.setup"
+    if what == "cut":
+        bad.write_bytes(saved.read_bytes()[:-200])
+    elif what in {"changed", "outside"}:
+        with zipfile.ZipFile(saved) as old, zipfile.ZipFile(bad, "w") as new:
+            for name in old.namelist():
+                data = old.read(name)
+                if what == "changed" and name.endswith("part.nc"):
+                    data = b"G90\nX1\n"
+                if what == "outside" and name == "manifest.json":
+                    data = data.replace(b"programs/part.nc", b"programs/../../p")
+                new.writestr(name, data)
+    elif what == "foreign":
+        bad.write_text("[tool.1]\n")
+    other = tmp_path / "other"
+    monkeypatch.setenv("TURNDESK_HOME", str(other))
+    told = turndesk("setup", "load", bad)
+    assert told.status == 2
+    assert told.err.count("\n") == 1
+    assert str(bad) in told.err
+    assert not other.exists()
+
+
+def test_a_bad_machine_file_makes_no_setup(turndesk: Turndesk, tmp_path: Path) -> None:
+    turndesk("offsets", "set", "T3", "x=1", "z=2")
+    bad = tmp_path / "bad.toml"
+    bad.write_text("[axes]\n")
+    assert turndesk("setup", "save", tmp_path / "a.setup", "--machine", bad).status == 2
+    assert not (tmp_path / "a.setup").exists()
+
+
+def test_without_a_store_there_is_nothing_to_save(turndesk: Turndesk, tmp_path: Path) -> None:
+    told = turndesk("setup", "save", tmp_path / "a.setup")
+    assert (told.status, "no store" in told.err) == (2, True)
+
+
+def test_a_desktop_entry_is_written_and_taken_away(
+    turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
+    assert turndesk("setup", "desktop", "--autostart").status == 0
+    entry = (tmp_path / "data" / "applications" / "turndesk.desktop").read_text()
+    start = (tmp_path / "config" / "autostart" / "turndesk.desktop").read_text()
+    assert "--kiosk" not in entry
+    assert "--kiosk" in start
+    assert (tmp_path / "data" / "icons" / "hicolor" / "scalable" / "apps" / "turndesk.svg").exists()
+    assert turndesk("setup", "desktop", "--remove").out.count("removed") == 3
+    assert "no entry" in turndesk("setup", "desktop", "--remove").out
+    assert turndesk("setup", "desktop", "--remove", "--autostart").status == 2
+
+
+def test_every_shell_gets_its_completion(turndesk: Turndesk) -> None:
+    for shell in SHELLS:
+        told = turndesk("setup", "completion", shell).out
+        assert "--keep-stock" in told
+        assert "completion" in told
+
+
+def test_bash_completes_commands_actions_and_options(turndesk: Turndesk, tmp_path: Path) -> None:
+    script = tmp_path / "c.bash"
+    script.write_text(turndesk("setup", "completion", "bash").out)
+
+    def completed(*words: str) -> set[str]:
+        line = " ".join(f"'{word}'" for word in words)
+        typed = f"COMP_WORDS=({line}); COMP_CWORD={len(words) - 1}"
+        ask = f"source {script}; {typed}; _turndesk; echo ${{COMPREPLY[@]}}"
+        told = subprocess.run(["bash", "-c", ask], capture_output=True, text=True, check=True, cwd=tmp_path)
+        return set(told.stdout.split())
+
+    assert {"prove"} == completed("turndesk", "prov") - {"c.bash"}
+    assert completed("turndesk", "offsets", "cl") == {"clear"}
+    assert "--json" in completed("turndesk", "prove", "--")
+    assert completed("turndesk", "offsets", "set", "--w") == {"--why"}

@@ -1,0 +1,127 @@
+"""The backup of the day: when it is due, verified, rotated; a disk that takes nothing loses no older one."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from datetime import datetime, timedelta
+from pathlib import Path
+
+import pytest
+
+from app.desk.daily_backup import ENDING, DailyBackup
+from core.store import backup
+from core.store.store import Store
+from core.store.store_errors import StoreError
+
+
+class Days:
+    """A clock on the wall that is set by hand, and what is told."""
+
+    def __init__(self) -> None:
+        self.now = datetime(2026, 11, 23, 6, 0)
+        self.runs = False
+        self.told: list[str] = []
+
+    def daily(self, folder: Path, copy: Callable[[Path], None], keep: int = 3) -> DailyBackup:
+        def stamped(target: Path) -> None:
+            copy(target)
+            at = self.now.timestamp()
+            os.utime(target, (at, at))
+
+        return DailyBackup(
+            folder, keep, stamped, backup.problems, lambda: not self.runs, self.told.append, lambda: self.now
+        )
+
+
+@pytest.fixture
+def home(tmp_path: Path) -> Path:
+    with Store.open(tmp_path / "home") as store:
+        store.set_tool(3, "touched", x=1.0, z=2.0).result()
+    return tmp_path / "home"
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_one_a_day_and_the_newest_stay(home: Path, tmp_path: Path) -> None:
+    days, folder = Days(), tmp_path / "nas" / "lathe3"
+    daily = days.daily(folder, lambda target: backup.backup(home, target))
+    for _ in range(5 * 24):
+        daily.look()
+        days.now += timedelta(hours=1)
+    assert names(folder) == [f"daily-2026-11-{day}-060000{ENDING}" for day in (25, 26, 27)]
+    assert days.told == []
+    backup.restore(tmp_path / "other", folder / names(folder)[-1])
+    with Store.open(tmp_path / "other") as store:
+        assert store.tools()[3].x == 1.0
+
+
+def test_it_waits_for_a_standstill_but_not_for_ever(home: Path, tmp_path: Path) -> None:
+    days, folder = Days(), tmp_path / "b"
+    daily = days.daily(folder, lambda target: backup.backup(home, target))
+    daily.look()
+    days.runs = True
+    days.now += timedelta(hours=35)
+    assert daily.look() is None
+    days.now += timedelta(hours=2)
+    assert daily.look() is not None
+
+
+def test_a_clock_that_was_set_back_keeps_nothing_from_being_backed_up(home: Path, tmp_path: Path) -> None:
+    days, folder = Days(), tmp_path / "b"
+    daily = days.daily(folder, lambda target: backup.backup(home, target))
+    daily.look()
+    days.now -= timedelta(days=400)
+    assert daily.look() is not None
+
+
+def test_a_backup_that_is_no_good_is_told_once_a_day_and_leaves_the_others(
+    home: Path, tmp_path: Path
+) -> None:
+    days, folder = Days(), tmp_path / "b"
+
+    def copy(target: Path) -> None:
+        backup.backup(home, target)
+        if days.now.day > 23:
+            with target.open("r+b") as file:
+                file.seek(8192)
+                file.write(b"\xff" * 4096)
+
+    daily = days.daily(folder, copy)
+    daily.look()
+    for _ in range(3):
+        days.now += timedelta(hours=30)
+        assert daily.look() is None
+    assert names(folder) == [f"daily-2026-11-23-060000{ENDING}"]
+    assert len(days.told) == 3  # once a day
+    assert "it was written, but the file is damaged" in days.told[0]
+    daily.look()
+    assert len(days.told) == 3
+
+
+def test_a_folder_that_is_not_there_and_cannot_be_made_is_told(home: Path, tmp_path: Path) -> None:
+    days = Days()
+    (tmp_path / "nas").write_text("a file")
+    daily = days.daily(tmp_path / "nas" / "lathe3", lambda target: backup.backup(home, target))
+    assert daily.look() is None
+    assert "lathe3" in days.told[0]
+
+
+def test_a_damaged_store_is_not_backed_up_over_good_ones(tmp_path: Path) -> None:
+    days = Days()
+
+    def copy(_target: Path) -> None:
+        raise StoreError("T3 is not as it was saved")
+
+    daily = days.daily(tmp_path / "b", copy, keep=2)
+    daily.look()
+    assert days.told == [f"{tmp_path / 'b'}: T3 is not as it was saved"]
+
+
+def test_it_ends_with_the_desk(home: Path, tmp_path: Path) -> None:
+    daily = Days().daily(tmp_path / "b", lambda target: backup.backup(home, target))
+    daily.start()
+    daily.close()
+    assert not (tmp_path / "b").exists()  # the first look is a minute later

@@ -1,0 +1,74 @@
+"""Latched palms: where everything is simulated, one finger or the mouse starts a cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import cast
+
+from app.desk.station_hands import LATCHED, StationHands, StationPanel
+
+
+class Station:
+    """Notes every button by its name."""
+
+    def __init__(self, note: Callable[[str], None]) -> None:
+        self._note = note
+
+    def __getattr__(self, name: str) -> Callable[[], None]:
+        return lambda: self._note(name)
+
+
+@dataclass
+class Bench:
+    """Hands on a station that notes what is pressed, and a clock that is moved by hand."""
+
+    now: float = 100.0
+    barred: str = ""
+    said: list[str] = field(default_factory=list)
+    pressed: list[str] = field(default_factory=list)
+
+    def hands(self) -> StationHands:
+        station = cast("StationPanel", Station(self.pressed.append))
+        return StationHands(
+            station, lambda: self.now, self.said.append, lambda: None, lambda: None, lambda: self.barred
+        )
+
+
+def test_one_after_the_other_presses_both_at_once_and_lets_both_go() -> None:
+    bench = Bench()
+    hands = bench.hands()
+    hands.latch("left")
+    hands.latch_up()
+    assert (bench.pressed, hands.latch_now()) == ([], "left")
+    bench.now += LATCHED - 0.1
+    hands.latch("right")
+    assert bench.pressed == ["press_left", "press_right"]
+    hands.latch_up()
+    assert bench.pressed[2:] == ["release_left", "release_right"]
+    assert not hands.latch_now()
+
+
+def test_a_latched_palm_waits_only_for_a_while_and_the_same_again_lets_it_go() -> None:
+    bench = Bench()
+    hands = bench.hands()
+    hands.latch("left")
+    bench.now += LATCHED + 0.1
+    hands.latch("right")
+    assert (bench.pressed, hands.latch_now()) == ([], "right")
+    hands.latch("right")
+    assert (bench.pressed, hands.latch_now()) == ([], "")
+
+
+def test_nothing_starts_while_it_is_barred_or_after_hands_off() -> None:
+    bench = Bench(barred="NO START: THE PROGRAM IS BEING READ ANEW")
+    hands = bench.hands()
+    hands.latch("left")
+    assert (hands.latch_now(), bench.said) == ("", [bench.barred])
+    bench.barred = ""
+    hands.latch("left")
+    hands.hold(down=True)  # whoever holds the feed does not want a start
+    hands.latch("right")
+    assert bench.pressed == ["press_hold"]
+    hands.let_go()
+    assert not hands.latch_now()

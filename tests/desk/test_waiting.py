@@ -1,0 +1,66 @@
+"""WAITING: what is waited for and how it ends; NOT HOMED; a success and a refusal look different."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from app.desk.machine_status import NOT_HOMED, Tone, status_of
+from app.desk.prompt_line import PromptAnswers, Sort
+from app.desk.readouts import Readout
+from app.desk.waiting import GIVES_UP, how_it_ends, waits_for
+from core.executor.snapshot import Snapshot, State
+
+WAITS = replace(Snapshot(), state=State.WAIT, homed=(True, True, True))
+
+
+def test_a_wait_for_an_input_names_the_state_it_waits_for() -> None:
+    waits = replace(WAITS, waiting_for="TB2-5")
+    assert waits_for(waits) == "INPUT TB2-5 TO COME ON"
+    assert waits_for(replace(waits, inputs=frozenset({"TB2-5"}))) == "INPUT TB2-5 TO COME OFF"
+    told = how_it_ends(waits)
+    assert told.endswith(GIVES_UP)
+    assert "F10, 3" not in told
+    assert "F10, 3" in how_it_ends(waits, simulated=True)
+
+
+@pytest.mark.parametrize(
+    ("what", "key"),
+    [
+        ("SPINDLE SWITCH OFF", "A TURNS IT"),
+        ("FEED OVERRIDE AT 0", "IT UP (+)"),
+        ("SPINDLE OVERRIDE AT 0", "IT UP (.)"),
+        ("GUARD OPEN", "CLOSE IT"),
+        ("DWELL", "BY ITSELF"),
+    ],
+)
+def test_every_other_wait_says_how_it_ends(what: str, key: str) -> None:
+    waits = replace(WAITS, waiting_for=what)
+    assert waits_for(waits) == what
+    assert key in how_it_ends(waits)
+
+
+def test_a_wait_that_nobody_knows_is_not_made_up() -> None:
+    assert how_it_ends(replace(WAITS, waiting_for="SOMETHING ELSE")) == ""
+    assert how_it_ends(WAITS) == ""
+
+
+def test_not_homed_is_a_state_of_its_own() -> None:
+    lost = replace(Snapshot(), state=State.IDLE, homed=(True, False, True))
+    view = status_of(lost, Readout.POSITION, with_c=True)
+    assert (view.state, view.tone) == (NOT_HOMED, Tone.OFF)
+    known = status_of(replace(lost, homed=(True,) * 3), Readout.POSITION, with_c=True)
+    assert (known.state, known.tone) == (State.IDLE.value, Tone.READY)
+    off = status_of(replace(lost, state=State.DISABLED), Readout.POSITION, with_c=True)
+    assert off.state == State.DISABLED.value  # the drives come first
+
+
+def test_success_question_and_refusal_are_told_apart() -> None:
+    answers = PromptAnswers(Snapshot, str, lambda: 0.0)
+    answers.say("T1 SAVED", done=True)
+    assert answers.sort is Sort.DONE
+    answers.ask("PRESS Y", lambda: None)
+    assert answers.sort is Sort.ASKED
+    answers.say("REFUSED: NO")
+    assert answers.sort is Sort.ANSWER

@@ -1,0 +1,129 @@
+"""Sticks by the kernel's list of mounts, and why nothing can be written on one; nothing is lost."""
+
+from __future__ import annotations
+
+import errno
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.programs.folder_chooser import FolderChooser
+from app.programs.import_export import export_programs
+from app.programs.removable_media import Medium, Stick, sticks, why_not
+from app.programs.whole_file import FileError
+
+LINE = "{n} 28 {device} / {path} {options} shared:1 - vfat /dev/x {super}\n"
+
+
+def listed(tmp_path: Path, *rows: tuple[str, str, str, str]) -> tuple[Stick, ...]:
+    """What is found where the kernel lists these: device, path, options, those of the file system."""
+    mounts, blocks = tmp_path / "mountinfo", tmp_path / "block"
+    text = "".join(
+        LINE.format(n=30 + n, device=device, path=path, options=options, super=of_system)
+        for n, (device, path, options, of_system) in enumerate(rows)
+    )
+    mounts.write_text(text)
+    for device, removable in (("8:1", "0"), ("8:17", "1")):
+        disk = tmp_path / f"disk{device[2:]}"
+        (disk / "part").mkdir(parents=True, exist_ok=True)
+        (disk / "removable").write_text(removable + "\n")
+        blocks.mkdir(exist_ok=True)
+        if not (blocks / device).exists():
+            (blocks / device).symlink_to(disk / "part")
+    return sticks((Path("/media"), Path("/run/media")), lambda _path: True, mounts, blocks)
+
+
+def test_what_is_mounted_under_media_or_can_be_taken_out_is_a_stick(tmp_path: Path) -> None:
+    found = listed(
+        tmp_path,
+        ("8:1", "/", "rw", "rw"),
+        ("8:1", "/home", "rw", "rw"),
+        ("0:40", "/proc", "rw", "rw"),
+        ("0:41", "/media/ann/MY\\040STICK", "rw", "rw"),
+        ("8:17", "/srv/usb", "rw", "rw"),
+        ("0:42", "/media/a/b/c", "rw", "rw"),
+    )
+    assert [(stick.label, str(stick.path)) for stick in found] == [
+        ("MY STICK", "/media/ann/MY STICK"),
+        ("usb", "/srv/usb"),
+    ]
+
+
+@pytest.mark.parametrize(("options", "of_system"), [("ro,nosuid", "rw"), ("rw", "ro")])
+def test_one_that_takes_nothing_is_told_so(tmp_path: Path, options: str, of_system: str) -> None:
+    (stick,) = listed(tmp_path, ("8:17", "/media/S", options, of_system))
+    assert stick.locked
+
+
+def test_lines_that_are_none_are_left_out(tmp_path: Path) -> None:
+    (tmp_path / "mountinfo").write_text("nonsense\n1 2 3\n")
+    assert sticks((Path("/media"),), lambda _path: True, tmp_path / "mountinfo", tmp_path) == ()
+
+
+@pytest.mark.parametrize(
+    ("number", "words"),
+    [
+        (errno.ENOSPC, "STICK IS FULL"),
+        (errno.EROFS, "STICK IS READ-ONLY"),
+        (errno.EIO, "STICK IS NOT THERE ANY MORE: WAS IT PULLED OUT?"),
+        (errno.ENOENT, "STICK IS NOT THERE ANY MORE"),
+        (errno.EACCES, "STICK: Permission denied"),
+    ],
+)
+def test_the_cause_is_told(number: int, words: str) -> None:
+    assert why_not(OSError(number, "Permission denied"), Path("/media/STICK")).startswith(words)
+
+
+def made(folder: Path, *names: str) -> list[Path]:
+    folder.mkdir()
+    for name in names:
+        (folder / name).write_text("M30\n")
+    return [folder / name for name in names]
+
+
+def test_a_folder_that_is_left_of_a_pulled_stick_takes_nothing(tmp_path: Path) -> None:
+    sources, place = made(tmp_path / "own", "a.nc"), tmp_path / "STICK"
+    place.mkdir()
+    there = Medium.of(place)
+    with pytest.raises(FileError, match="PULLED OUT"):
+        export_programs(sources, place, replace=False, medium=replace(there, device=there.device + 1))
+    assert list(place.iterdir()) == []
+
+
+def test_pulled_out_between_two_programs(tmp_path: Path) -> None:
+    sources, place = made(tmp_path / "own", "a.nc", "b.nc"), tmp_path / "STICK"
+    place.mkdir()
+
+    def told(done: int, _of: int) -> None:
+        if done == 1:
+            place.rename(tmp_path / "elsewhere")
+
+    with pytest.raises(FileError, match="1 OF 2 COPIED: STICK IS NOT THERE ANY MORE"):
+        export_programs(sources, place, replace=False, told=told)
+    assert [path.name for path in (tmp_path / "elsewhere").iterdir()] == ["a.nc"]
+    assert all(path.exists() for path in sources)
+
+
+def test_what_does_not_fit_is_told_before_anything_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sources, place = made(tmp_path / "own", "a.nc", "b.nc"), tmp_path / "STICK"
+    place.mkdir()
+    monkeypatch.setattr("app.programs.removable_media._free", lambda _path: 7)
+    with pytest.raises(FileError, match="NOT ENOUGH ROOM ON STICK: 8 B ARE NEEDED, 7 B FREE"):
+        export_programs(sources, place, replace=False)
+    assert list(place.iterdir()) == []
+
+
+def test_the_chooser_says_when_the_stick_has_gone(tmp_path: Path) -> None:
+    place = tmp_path / "STICK"
+    place.mkdir()
+    chooser = FolderChooser(tmp_path, lambda: (Stick("STICK", place, 5, locked=True),))
+    chooser.show_lines(chooser.look())
+    assert chooser.lines[0].locked
+    chooser.go(chooser.lines[0])
+    chooser.look()
+    place.rmdir()
+    with pytest.raises(FileError, match="PULLED OUT"):
+        chooser.look()

@@ -1,0 +1,241 @@
+"""Jobs at the lathe: the queue by keys alone, counted by the store, the next one proved while one runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.jobs.job_setup import ProvedJob
+from app.jobs.jobs_model import JobsModel
+from app.jobs.jobs_watch import JobsWatch
+from app.screen import page_table
+from core.executor.snapshot import State
+from core.store import tool_lives
+from core.store.store_rows import Kind
+from core.store.tool_lives import LifeRow
+from tests.screen.day import SHIFT, Day, Key, begun
+from tests.screen.yes import yes
+
+PEG = "(PEG)\nG90G94F300G72\nT1\nM03S2000\nG00X.7Z.1\nX.5\nG01G94F60Z-.3\nX.7\nG00Z1\nM05\nM30\n"
+CAP = PEG.replace("(PEG)", "(CAP)").replace("T1", "T2")
+
+
+@pytest.fixture
+def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Day]:
+    """PEG on the desk with T1 touched off; CAP in the folder, whose T2 nobody has set."""
+    folder = tmp_path / "home" / "programs"
+    folder.mkdir(parents=True)
+    (folder / "cap.nc").write_text(CAP)
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+    with begun(qtbot, "peg.nc", PEG) as day:
+        day.store.set_tool(1, "test", x=-12.7, z=-50.8, nose_radius=0.4, quadrant=3).result(5)
+        day.desk.book.read()
+        day.run(0.02)
+        day.key(Key.Key_D)
+        assert day.desk.choose("peg")
+        day.sees(lambda: day.prompt.startswith("TO START"))
+        yield day
+
+
+def model(day: Day) -> JobsModel:
+    found = day.desk.attached(JobsModel)
+    assert found is not None
+    return found
+
+
+def watch(day: Day) -> JobsWatch:
+    return model(day).watch
+
+
+def opened(day: Day) -> None:
+    day.key(Key.Key_F6, modifier=SHIFT)
+    day.sees(lambda: day.page == page_table.JOBS)
+
+
+def added(day: Day, program: str, parts: str) -> None:
+    """From the list of programs."""
+    before = len(watch(day).jobs)
+    day.key(Key.Key_F1, Key.Key_F6)
+    day.sees(lambda: day.page == page_table.PROGRAMS)
+    day.type(program[:3])
+    day.sees(lambda: program in "".join(row.cells[0] for row in day.frame.page.model.sheet().rows))
+    day.key(Key.Key_F10)
+    assert day.page == page_table.JOBS
+    assert model(day).sheet(day.shot).question == f"HOW MANY PARTS OF {program}?"
+    day.enter(parts)
+    day.sees(lambda: len(watch(day).jobs) == before + 1)
+
+
+def rows(day: Day) -> list[tuple[str, ...]]:
+    day.window.refresh()
+    return [row.cells[1:3] for row in model(day).sheet(day.shot).rows]
+
+
+def loaded(day: Day, program: str) -> None:
+    """F2 on the marked job: it is on the desk, and nothing has moved."""
+
+    def taken() -> bool:
+        job = watch(day).under_way
+        return job is not None and job.program == program and not day.desk.session.now.busy
+
+    day.key(Key.Key_F2)
+    assert day.page == page_table.AUTOMATIC
+    day.sees(taken)
+    assert day.shot.state is State.IDLE
+
+
+def test_a_queue_is_worked_off_and_nothing_starts_by_itself(day: Day) -> None:
+    added(day, "peg.nc", "2")
+    added(day, "cap.nc", "5")
+    assert rows(day) == [("peg.nc\n", "0/2"), ("cap.nc\n", "0/5")]
+    day.key(Key.Key_Up)
+    loaded(day, "peg.nc")
+    assert day.desk.counter.words == "0/2"
+    day.key(Key.Key_C)  # cycle repeat
+    day.palms()
+    day.reaches(State.RUN)
+    watch(day).proofs.anew()
+    day.run(0.05)
+    watch(day).proofs.worker.settle(
+        60.0
+    )  # the machine stands still in time meanwhile, in the middle of the peg
+    assert isinstance(watch(day).proofs.of("cap.nc", day.desk.book.changes), ProvedJob)
+    assert day.shot.state in {State.RUN, State.WAIT}
+    day.until(lambda: day.shot.parts == 2 and day.shot.state is State.IDLE)  # repeat ends with the last part
+    day.sees(lambda: "JOB DONE" in day.prompt)
+    assert day.prompt == "JOB DONE: 2 OF 2 PARTS OF peg.nc. NEXT: cap.nc, 5 PARTS, 1 MISSING"
+    day.run(3.0)
+    assert (day.shot.state, day.shot.program, day.shot.parts) == (State.IDLE, day.shot.program, 2)
+    assert day.desk.session.now.name == "peg.nc"
+    row = day.desk.offered(day.shot)
+    assert row is not None
+    assert row.figures == "NEXT: cap.nc, 5 PARTS, 1 MISSING"
+    assert [each.made for each in day.store.jobs()] == [2, 0]
+    assert day.store.parts("peg.nc") == 2
+    opened(day)
+    day.key(Key.Key_Down)
+    loaded(day, "cap.nc")
+    assert day.desk.session.now.name == "cap.nc"
+    assert day.desk.counter.words == "0/5"
+    assert day.desk.offered(day.shot) is None
+
+
+def test_what_is_missing_on_the_plate_is_named(day: Day) -> None:
+    added(day, "cap.nc", "50")
+
+    def lacking() -> list[str]:
+        day.window.refresh()
+        return [cells[2] for cells in (r.cells for r in model(day).setup().rows) if cells[0] == "T2"]
+
+    day.sees(lambda: lacking() == ["no offset: touch it off"])
+    day.desk.book.change(
+        Kind.TOOL, 2, {"x": -12.7, "z": -50.8, "nose_radius": 0.4, "quadrant": 3}, "touched off"
+    )
+    day.store.write(lambda c: tool_lives.set_limits(c, LifeRow(2, 40, stops=True))).result(5)
+    day.store.write(lambda c: tool_lives.set_use(c, 2, 28, 100.0)).result(5)
+    watch(day).parts.book.refresh()
+    day.sees(lambda: lacking() == ["life for 12 of 50 parts"])
+    day.key(Key.Key_F4)
+    day.enter("12")
+    day.sees(lambda: lacking() == ["in order"])
+    day.sees(lambda: "TOOLS COMPLETE" in model(day).sheet(day.shot).rows[0].cells)
+
+
+def test_another_tip_than_when_it_ran_last_is_told(day: Day) -> None:
+    day.store.run_started("peg.nc").result(5)
+    day.desk.book.change(Kind.TOOL, 1, {"nose_radius": 0.8, "quadrant": 2}, "another insert")
+    added(day, "peg.nc", "3")
+    day.sees(lambda: len(model(day).setup().rows) > 1)
+    told = next(r.cells[2] for r in model(day).setup().rows if r.cells[0] == "T1").replace("\n", " ")
+    assert told.startswith("another tip: R 0.0315 in, tip 2; ")
+    assert told.endswith("it ran with R 0.0157 in, tip 3")
+
+
+def test_moved_noted_removed_and_cleared(day: Day) -> None:
+    added(day, "peg.nc", "2")
+    added(day, "cap.nc", "5")
+    day.key(Key.Key_F5)
+    day.sees(lambda: rows(day)[0][0].startswith("cap.nc"))
+    day.key(Key.Key_F8)
+    day.enter("order 12")
+    day.sees(lambda: rows(day)[0][0] == "cap.nc\norder 12")
+    day.key(Key.Key_F10)
+    assert day.prompt == "NO JOB IS DONE YET: THERE IS NOTHING TO CLEAR"
+    day.key(Key.Key_F9)
+    assert day.prompt.startswith("PRESS Y TO TAKE cap.nc OUT OF THE QUEUE, 0 OF 5 MADE")
+    day.key(Key.Key_Escape)
+    assert len(rows(day)) == 2
+    day.key(Key.Key_F9)
+    yes(day.window)
+    day.sees(lambda: rows(day) == [("peg.nc\n", "0/2")])
+
+
+def test_while_a_program_runs_no_job_comes_on_the_desk(day: Day) -> None:
+    added(day, "cap.nc", "5")
+    day.key(Key.Key_Escape)
+    day.palms()
+    day.reaches(State.RUN)
+    opened(day)
+    day.key(Key.Key_F2)
+    assert day.page == page_table.JOBS
+    assert day.prompt.startswith("A PROGRAM IS UNDER WAY")
+    day.key(Key.Key_F8)
+    assert day.prompt.startswith("NOTES ARE TYPED BETWEEN CYCLES")
+    day.key(Key.Key_F1, Key.Key_F2)  # the page closes, the part goes on
+    day.until(lambda: day.shot.parts == 1)
+    assert watch(day).under_way is None
+    assert day.store.jobs()[0].made == 0
+
+
+@pytest.mark.parametrize("text", ["0", "1.5", "abc", "99999999"])
+def test_a_count_that_is_none_is_refused_and_asked_again(day: Day, text: str) -> None:
+    opened(day)
+    day.key(Key.Key_F3)
+    day.enter(text)
+    day.sees(lambda: day.desk.notice != "" and "TYPE" not in day.desk.notice)
+    assert watch(day).jobs == ()
+
+
+def test_the_counter_leaves_the_number_to_the_job(day: Day) -> None:
+    added(day, "peg.nc", "3")
+    loaded(day, "peg.nc")
+    day.key(Key.Key_F10)
+    day.type("2")
+    day.enter("7")
+    assert day.prompt == "REFUSED: A JOB IS UNDER WAY AND HAS ITS OWN COUNT; CHANGE THAT IN JOBS (SHIFT+F6)"
+    assert day.desk.counter.aim == 3
+
+
+def test_a_program_that_has_gone_is_said(day: Day, tmp_path: Path) -> None:
+    added(day, "cap.nc", "5")
+    (tmp_path / "home" / "programs" / "cap.nc").unlink()
+    day.key(Key.Key_F2)
+    assert day.prompt == "cap.nc IS NOT AMONG THE PROGRAMS: F1, F6"
+    assert watch(day).under_way is None
+
+
+def test_without_a_store_nothing_is_queued_and_that_is_said(day: Day) -> None:
+    watch(day).parts.book.reopen(None, "THE DISK IS GONE")
+    day.run(0.05)
+    opened(day)
+    day.key(Key.Key_F3)
+    day.enter("4")
+    assert day.prompt == "NOT KEPT: THE DISK IS GONE"
+    assert model(day).sheet(day.shot).notes == ("THE DISK IS GONE",)
+
+
+def test_a_job_whose_program_is_not_on_the_desk_is_proved_and_loaded_like_any_other(day: Day) -> None:
+    added(day, "peg.nc", "3")
+    loaded(day, "peg.nc")
+    opened(day)
+    assert model(day).sheet(day.shot).rows[0].cells[4] == "UNDER WAY"
+    day.key(Key.Key_F1, Key.Key_F2)
+    assert day.desk.choose("cap")
+    day.sees(lambda: not day.desk.session.now.busy)
+    opened(day)
+    day.sees(lambda: model(day).sheet(day.shot).rows[0].cells[4] == "TOOLS COMPLETE")
+    loaded(day, "peg.nc")
+    assert day.desk.counter.words == "0/3"

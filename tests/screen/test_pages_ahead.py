@@ -1,0 +1,172 @@
+"""Pages ahead of their first opening: what is loaded and made, when, and when not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+
+from app.desk.desk import Desk
+from app.desk.program_loading import Phase
+from app.scope.scope_view import ScopePage
+from app.screen import page_table, pages_ahead
+from app.screen.page_base import Page
+from app.screen.page_table import PageEntry
+from app.screen.pages_ahead import APART, PagesAhead
+from tests.screen.desks import desk_on
+from tests.screen.fake import FakeMachine
+from tests.screen.hands import Hands
+
+SLICES = 1000  # more than there can be
+
+
+class Clock:
+    """Time that passes when it is told to."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def idle() -> Iterator[Desk]:
+    """A desk without a window, and time that stands."""
+    found = desk_on(FakeMachine())
+    found.clock = Clock()
+    yield found
+    found.close()
+
+
+class Asked:
+    """Stands for the frame: which pages were made, and a page that has three slices to make."""
+
+    def __init__(self) -> None:
+        self.names: list[str] = []
+        self.slices = 3
+
+    def __call__(self, name: str) -> Page:
+        self.names.append(name)
+        return self  # type: ignore[return-value]  # all that is asked of it is ``ahead``
+
+    def ahead(self) -> bool:
+        """As a page."""
+        self.slices -= 1
+        return self.slices > 0
+
+
+def steps(ahead: PagesAhead, idle: Desk) -> int:
+    """As many slices as there are, each at its time; how many looks it took."""
+    assert isinstance(idle.clock, Clock)
+    for count in range(SLICES):
+        if ahead.done:
+            return count
+        idle.clock.now += 2 * APART
+        ahead.step()
+        ahead._worker.settle(10.0)
+    raise AssertionError("it never ends")
+
+
+ONE = (PageEntry("ONE", "app.scope.scope_view.ScopePage", later=("app.screen.chart.Chart",)),)
+PLAIN = (PageEntry("PLAIN", "app.scope.scope_view.ScopePage"),)
+NO_FILE = (PageEntry("GONE", "app.scope.no_such_file.Page", later=("app.screen.chart.Chart",)),)
+
+
+def entries(monkeypatch: pytest.MonkeyPatch, found: tuple[PageEntry, ...]) -> None:
+    monkeypatch.setattr(pages_ahead, "pages_of", lambda _language: found)
+
+
+def test_a_page_with_charts_is_made_slice_by_slice(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    entries(monkeypatch, ONE)
+    asked = Asked()
+    ahead = PagesAhead(idle, asked)
+    steps(ahead, idle)
+    assert asked.names == ["ONE"]
+    assert asked.slices == 0
+    ahead.close()
+
+
+def test_other_pages_are_only_loaded(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    entries(monkeypatch, PLAIN)
+    asked = Asked()
+    ahead = PagesAhead(idle, asked)
+    steps(ahead, idle)
+    assert not asked.names
+    ahead.close()
+
+
+def test_nothing_is_done_while_a_program_is_loaded(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    entries(monkeypatch, ONE)
+    asked = Asked()
+    ahead = PagesAhead(idle, asked)
+    before = idle.session.now
+    idle.session.adopt(replace(before, phase=Phase.PROVING))
+    with pytest.raises(AssertionError, match="never ends"):
+        steps(ahead, idle)
+    assert not asked.names
+    idle.session.adopt(before)
+    steps(ahead, idle)
+    assert asked.names
+    ahead.close()
+
+
+def test_frames_between_two_slices_have_nothing_of_it(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    entries(monkeypatch, ONE)
+    asked = Asked()
+    ahead = PagesAhead(idle, asked)
+    idle.clock.now += 2 * APART  # type: ignore[attr-defined]
+    for _ in range(SLICES):
+        ahead.step()
+        ahead._worker.settle(10.0)
+    assert asked.slices == 3, "at one instant there is one slice: the modules were asked for"
+    ahead.close()
+
+
+def test_a_page_that_cannot_be_loaded_is_left_to_whoever_opens_it(
+    idle: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    entries(monkeypatch, NO_FILE + PLAIN)
+    asked = Asked()
+    ahead = PagesAhead(idle, asked)
+    steps(ahead, idle)
+    assert not asked.names
+    assert not idle.notice
+    ahead.close()
+
+
+def test_a_page_without_its_model_is_not_made(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    entries(monkeypatch, (replace(ONE[0], model="core.executor.recorder.Recorder"),))
+    asked = Asked()
+    ahead = PagesAhead(idle, asked)
+    steps(ahead, idle)
+    assert not asked.names
+    ahead.close()
+
+
+def test_nothing_begins_once_it_is_closed(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    entries(monkeypatch, ONE)
+    asked = Asked()
+    ahead = PagesAhead(idle, asked)
+    ahead.close()
+    assert steps(ahead, idle) == 0
+    assert not asked.names
+
+
+@pytest.mark.parametrize("language", ["omniturn", "klartext", "sinumerik"])
+def test_everything_that_is_named_can_be_loaded(language: str) -> None:
+    for entry in page_table.pages_of(language):
+        page_table.load(entry)
+
+
+def test_the_scope_opens_with_its_chart(hands: Hands) -> None:
+    hands.sees(lambda: hands.window.ahead is not None and hands.window.ahead.done)
+    assert hands.frame.page is hands.page, "nothing is opened by it"
+    QTest.keyClick(hands.window, Qt.Key.Key_F10, Qt.KeyboardModifier.ShiftModifier)
+    page = hands.frame.page
+    assert isinstance(page, ScopePage)
+    assert page.curves.chart is not None
+    assert len(page.curves.chart._spare) == 4

@@ -1,0 +1,99 @@
+"""Keys and words of a machine's own language: no OmniTurn code on a mill or a SINUMERIK lathe."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from app.compose.machine_files import shipped_machine
+from app.compose.screen_desk import desk_and_executor, step_clock
+from app.compose.stored_offsets import read_offsets
+from app.compose.workshop import samples
+from app.desk.readouts import spindle_figures
+from app.quality.features_section import FeaturesSection
+from app.quality.quality_functions import QualityFunctions
+from app.quality.trends_section import TrendsSection
+from app.screen.page_table import menu_keys
+from app.special.inputs_outputs import InputsOutputs
+from core.executor.snapshot import Snapshot
+from tests.screen.hands import Hands
+
+
+@pytest.mark.parametrize(
+    ("language", "tools", "offsets"),
+    [
+        ("omniturn", "TOOL OFFSETS", "SECONDARY OFFSETS"),
+        ("sinumerik", "TOOL OFFSETS", "ZERO OFFSETS"),
+        ("klartext", "TOOL TABLE", "PRESETS"),
+    ],
+)
+def test_f8_and_f9_of_the_main_menu_open_what_they_open_elsewhere(
+    language: str, tools: str, offsets: str
+) -> None:
+    keys = menu_keys(language)
+    assert (keys["F8"].name, keys["F9"].name) == (tools, offsets)
+
+
+@pytest.mark.parametrize(
+    ("language", "words"),
+    [
+        ("omniturn", ("M05 OFF", "M03 FWD", "M04 REV")),
+        ("sinumerik", ("M5 OFF", "M3 FWD", "M4 REV")),
+        ("klartext", ("M5 OFF", "M3 FWD", "M4 REV")),
+    ],
+)
+def test_the_spindle_is_told_as_the_language_writes_it(language: str, words: tuple[str, ...]) -> None:
+    told = (spindle_figures(Snapshot(rpm_command=rpm), True, language) for rpm in (0.0, 900.0, -900.0))
+    assert tuple(each.direction for each in told) == words
+
+
+@pytest.mark.parametrize(
+    ("name", "switched", "asked"),
+    [
+        ("gt75", {"coolant": "M08 M09", "collet": "M12 M13"}, {"TB2-5": "M91 M92"}),
+        ("sinumerik-live", {"coolant": "M8 M9", "collet": ""}, {"guard": "GUARD"}),
+        ("ac-table-mill", {"coolant": "M8 M9"}, {}),
+    ],
+)
+def test_outputs_are_told_with_the_codes_that_this_machine_reads(
+    hands: Hands, name: str, switched: dict[str, str], asked: dict[str, str]
+) -> None:
+    section = InputsOutputs(hands.desk, shipped_machine(name))
+    outputs = {row.cells[0]: row.cells[3] for row in section.sheet(Snapshot()).rows}
+    assert {name: outputs[name] for name in switched} == switched
+    section.keys()["F4"].action()
+    inputs = {row.cells[0]: row.cells[3] for row in section.sheet(Snapshot()).rows}
+    assert {name: inputs[name] for name in asked} == asked
+    assert name == "gt75" or not any(code.startswith("M9") for code in inputs.values())
+
+
+def test_a_feature_is_corrected_by_what_this_machine_has(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """D offsets are OmniTurn's, wear a lathe's; a mill's tool life is in its tool table."""
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    found = {}
+    for name in ("gt75", "sinumerik-live", "ac-table-mill"):
+        desk, _executor = desk_and_executor(
+            name, lambda: read_offsets(samples() / "offsets.toml"), step_clock()
+        )
+        pages = desk.attached(QualityFunctions)
+        features, readings, *_, trends = pages.functions
+        assert isinstance(features, FeaturesSection)
+        assert isinstance(trends, TrendsSection)
+        names = [each.name for each in pages.functions]
+        found[name] = (
+            "CORRECTED BY" in features.fields,
+            "ITS NUMBER" in features.fields,
+            "F8" in dict(readings.keys()),
+            "TOOL LIFE" in names,
+            "WEAR" in trends.kinds,
+        )
+        desk.close()
+    assert found == {
+        "gt75": (True, True, True, True, True),
+        "sinumerik-live": (False, True, True, True, True),
+        "ac-table-mill": (False, False, False, False, False),
+    }
+    assert "W" in menu_keys("klartext")
