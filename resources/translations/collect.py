@@ -15,7 +15,12 @@ from itertools import count
 from pathlib import Path
 
 from core.alarms import CATALOGUE
+from core.interpreter.dialects import code_book
 from core.interpreter.omniturn.code_table import CHAPTERS
+from core.language.klartext import klartext_faults
+from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE
+from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, OUTSIDE, WORDS
+from core.language.source import Dialect
 from resources.translations.reading import marked, texts_of
 
 HERE = Path(__file__).parent
@@ -39,6 +44,7 @@ ROOMS = (
         "app/automatic",
         "app/desk",
         "app/editor",
+        "app/jobs",
         "app/jog",
         "app/mdi",
         "app/offsets",
@@ -47,10 +53,11 @@ ROOMS = (
         "app/programs",
         "app/quality",
     ),
-    *("app/scope", "app/screen", "app/searchto", "app/special", "app/transfer", "app/working_plane"),
+    *("app/scope", "app/screen", "app/searchto", "app/shapes", "app/special", "app/transfer"),
+    "app/working_plane",
     *("core/alarms", "core/executor", "core/store", "core/interpreter"),
     *("core/language", "core/proving", "core/geometry", "core/motion", "core/part", COMPOSING),
-    *("core/quality", "core/records"),
+    *("core/drawings", "core/quality", "core/records", "core/shapes"),
 )
 # Scripts and tables that no screen shows, and what the console is told where there is no screen.
 APART = frozenset(
@@ -58,6 +65,15 @@ APART = frozenset(
         *("code_entry.py", "code_table.py", "language_page.py", "keys.py", "run_without_screen.py"),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
         "screen/pdf_pages.py",
+        *(
+            "klartext_book.py",
+            "klartext_cycle_book.py",
+            "sinumerik_book.py",
+            "calls_book.py",
+            "cycles_book.py",
+            "sinumerik/cycle_names.py",
+            "word_table.py",
+        ),  # see _of_books
     }
 )
 # Read by somebody, and not to be told from names by their looks.
@@ -76,6 +92,14 @@ ALSO = (
     "in/min",
     "in/rev",
     "IN/OUT",
+    "JOB",
+    "TRY",
+    "RED",
+    # Of the signal tower.
+    "TOOL LIFE GONE, OR PARTS WAIT TO BE MEASURED",
+    "STOP: FEED HOLD, M00, SINGLE BLOCK",
+    "END OF PART, NOTHING RUNS",
+    "A CYCLE RUNS",
     "%1 · SIMULATED",
     # What the screen puts together of parts that are texts of their own.
     "LINE %1",
@@ -88,6 +112,60 @@ ALSO = (
     "%1 HAS GONE OFF AND %2",
     "Line %1 begins in the work, and no sure way leads there.",
     "With input %1 %2 at line %3: %4",
+    "With input %1 %2 at line %3 and input %4 %5 at line %6: %7",
+    # The same with nothing in a hole, which a template does not know.
+    "the arc ends where it starts.",
+    "the arc by %1 ends where it starts.",
+    "%1 takes no parameters, and %2 are handed over.",
+    "%1 takes 1 parameter, and %2 are handed over.",
+    # What a fault of SINUMERIK begins with.
+    "channel %1 block %2: %3",
+    "channel %1 block in line %2: %3",
+    "channel %1 block %2 axis %3: %4",
+    "channel %1 block in line %2 axis %3: %4",
+    "Alarm %1: channel %2 block %3: %4",
+    "Alarm %1: channel %2 block in line %3: %4",
+    "Alarm %1: channel %2 block %3 axis %4: %5",
+    "Alarm %1: channel %2 block in line %3 axis %4: %5",
+    "syntax error: %1",
+    # What Klartext ends with where a line cannot be read on.
+    "%1; '%2' stands here.",
+    "%1; the line ends here.",
+    "%1 needs CCA and R",
+    "%1 are missing",
+    "The formula needs a number or a parameter.",
+    "The formula needs a number or a parameter for %1",
+    "Not supported: %1 is not supported here.",
+    "%1: this lathe has no axis %2.",
+    "CYCLE%1: %2.",
+    "Cycle not defined: Cycle %1 is a machine builder's, and this machine has none of its own.",
+    "%1: The bracket %2.",
+    "syntax error: The bracket of the parameters is not closed.",
+    "%1: an R parameter stands behind = or is set with =, such as R1=10.",
+    "%1: R parameters are R0 to R%2.",
+    "%1: the feed must be over 0.",
+    "%1: the limit of the speed must be over 0.",
+    # Too short, too like a code, or put together where nobody sees a sentence.
+    "Lower %1.",
+    "Raise %1.",
+    "A comment begins with ;.",
+    "Take it out; a comment begins with ;",
+    "M%1 is no code of this machine.",
+    "A vector has no length.",
+    "A projection angle is 90 degrees.",
+    "The first and the second point are the same.",
+    "The first and the third point are the same.",
+    "No position of the rotary axes inside their ranges gives this plane.",
+    "BEGIN PGM and END PGM name different units.",
+    "BEGIN PGM stands twice.",
+    "The stock sticks out so far that it whirls at %1 rpm; it turns at %2.",
+    # Last, for what has no words of its own around it: a code and why, and a sentence by its full stop.
+    "%1: %2.",
+    "%1.",
+    # What stands in a hole, and is a single word or looks like a code.
+    "approach",
+    "departure",
+    "C turns",
 )
 LOUD = ("app", "core/alarms", "core/executor")  # where a single word in capitals is read by somebody
 HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
@@ -95,6 +173,7 @@ _NO_TEXT = re.compile(
     r"^\s*(SELECT|INSERT|UPDATE|DELETE|CREATE|PRAGMA|BEGIN|WHERE|FROM|JOIN|LEFT|GROUP|ORDER|ON|AND|COMMIT) .*"
     r"|^F\d+$|^:memory:$|^[A-Z]{1,3}$|^XYZABC$|^Callable|^finger|^\(?\?|.*[{};]\s*$|^%[YHd]|.*QLineEdit"
     r"|^(Page|Zoom|Pan|Shift) \w+$|^QWERTY|.*\\|^[A-Z]{2}\d"
+    r"|^<(rect|svg|text) |^KeptPass|^'?mill tool'?$|^CYCLE (DEF|CALL)$"
 )
 _WORDS = re.compile(
     r"[^\W\d_]{2,}.*\s+.*[^\W\d_]{2,}|[^\W\d_]{2,}\s*[:.?…]$|[^\W\d_]{3,}[:;,]?\s+%|%\d\s+[^\W\d_]{2,}"
@@ -118,7 +197,7 @@ def texts() -> dict[str, str]:
                 read = {text for text in texts_of(tree) if _is_read(text, loud)}
                 for text in sorted(read | set(marked(tree))):
                     found.setdefault(text, str(path.relative_to(HOUSE)))
-    return {**dict.fromkeys([*ALSO, *_loud_alarms(), *_of_codes()], ""), **found}
+    return {**dict.fromkeys([*ALSO, *_loud_alarms(), *_of_codes(), *_of_books()], ""), **found}
 
 
 def _of_codes() -> list[str]:
@@ -130,6 +209,18 @@ def _of_codes() -> list[str]:
     rules = [rule for code in codes for rule in code.rules.values()]
     said |= {rule.what for rule in rules if any("{what}" in each.text for each in rule.refusals)}
     return sorted(text for text in said if _is_read(text, False))
+
+
+def _of_books() -> list[str]:
+    """Chapters and meanings of the code books, which the editor shows."""
+    books = [code_book(dialect) for dialect in Dialect]
+    chapters = {title for book in books for title, _ in book.chapters}
+    shown = chapters | {entry.what for book in books for entry in book.entries}
+    reasons = {entry.idle for entry in (*FUNCTIONS.values(), *WORDS.values(), *M_FUNCTIONS.values())}
+    refused = {*OUTSIDE.values(), *CYCLES_OUTSIDE.values()} | {f"{name}: %1 %2." for name in CYCLES}
+    refused |= {f"%1: {why}." for why in OUTSIDE.values()}
+    refused |= {f"{name}: %1" for key, name in vars(klartext_faults).items() if key.isupper()}
+    return sorted(shown | refused | {entry.group for entry in FUNCTIONS.values()} | reasons - {""})
 
 
 def _with_numbered_holes(text: str) -> str:

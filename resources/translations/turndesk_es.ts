@@ -25,6 +25,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1 are missing</source>
+      <translation>faltan %1</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1 cannot run while nose compensation is active.</source>
       <translation>%1 no puede correr con la compensación de punta activa.</translation>
     </message>
@@ -65,6 +70,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1 needs CCA and R</source>
+      <translation>%1 necesita CCA y R</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1 needs Z, the bottom of the hole.</source>
       <translation>%1 necesita Z, el fondo del barreno.</translation>
     </message>
@@ -72,6 +82,16 @@
       <location filename="" />
       <source>%1 needs a C axis, and the machine file switches it off.</source>
       <translation>%1 necesita un eje C, y el archivo de máquina lo apaga.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 takes 1 parameter, and %2 are handed over.</source>
+      <translation>%1 toma 1 parámetro, y se pasan %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 takes no parameters, and %2 are handed over.</source>
+      <translation>%1 no toma parámetros, y se pasan %2.</translation>
     </message>
     <message>
       <location filename="" />
@@ -85,6 +105,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1.</source>
+      <translation>%1.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: %2 stands without a number here.</source>
       <translation>%1: aquí %2 está sin número.</translation>
     </message>
@@ -95,8 +120,33 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: %2.</source>
+      <translation>%1: %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: C turns at more than 0 and at most %2 rpm.</source>
       <translation>%1: C gira a más de 0 y a lo más %2 rpm.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: F is the feed of the path; write F, FB or OVR.</source>
+      <translation>%1: F es el avance de la trayectoria; escriba F, FB u OVR.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: G5 is not executed here; write the arc with CIP.</source>
+      <translation>%1: G5 no se ejecuta aquí; escriba el arco con CIP.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: R parameters are R0 to R%2.</source>
+      <translation>%1: Los parámetros R son de R0 a R%2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: The bracket %2.</source>
+      <translation>%1: El paréntesis %2.</translation>
     </message>
     <message>
       <location filename="" />
@@ -110,8 +160,53 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: a helix needs a third axis of the slides.</source>
+      <translation>%1: una hélice necesita un tercer eje de los carros.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: an R parameter stands behind = or is set with =, such as R1=10.</source>
+      <translation>%1: un parámetro R va tras = o se pone con =, como R1=10.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: approach on a curve is not executed here; write KONT or NORM.</source>
+      <translation>%1: la entrada por una curva no se ejecuta aquí; escriba KONT o NORM.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: beside G35 only F2 has a meaning (leads to 2 in/rev).</source>
       <translation>%1: junto a G35 sólo F2 tiene sentido (pasos hasta 2 pulg/rev).</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: feed by the time of the move is not executed here; write G94 or G95 with F.</source>
+      <translation>%1: el avance por el tiempo del movimiento no se ejecuta aquí; escriba G94 o G95 con F.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: inverse time feed is not executed here; write G94 or G95 with F.</source>
+      <translation>%1: el avance por inverso del tiempo no se ejecuta aquí; escriba G94 o G95 con F.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: measuring in the program is not executed here; touch the tool off on the Jog page.</source>
+      <translation>%1: medir en el programa no se ejecuta aquí; toque la herramienta en la página Manual.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: programs from outside are not called; put the file beside the main program and call its name.</source>
+      <translation>%1: los programas de fuera no se llaman; ponga el archivo junto al programa principal y llame su nombre.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: smooth approach and retract is not executed here; write G41 or G42 with NORM or KONT.</source>
+      <translation>%1: la entrada y salida suaves no se ejecutan aquí; escriba G41 o G42 con NORM o KONT.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: synchronized actions are not executed here.</source>
+      <translation>%1: las acciones síncronas no se ejecutan aquí.</translation>
     </message>
     <message>
       <location filename="" />
@@ -120,8 +215,23 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: the feed must be over 0.</source>
+      <translation>%1: el avance debe ser mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: the lead must be above 0 and at most %2.</source>
       <translation>%1: el paso debe ser mayor que 0 y a lo más %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: the limit of the speed must be over 0.</source>
+      <translation>%1: el tope de la velocidad debe ser mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: the other language mode is not read here.</source>
+      <translation>%1: el otro modo de lenguaje no se lee aquí.</translation>
     </message>
     <message>
       <location filename="" />
@@ -132,6 +242,66 @@
       <location filename="" />
       <source>%1: the speed has no sign; M03 and M04 say the direction.</source>
       <translation>%1: la velocidad no lleva signo; M03 y M04 dicen el sentido.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: this control has one channel, and its axes are its own.</source>
+      <translation>%1: este control tiene un solo canal, y sus ejes son suyos.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: this control keeps six settable offsets; write G54 to G59.</source>
+      <translation>%1: este control lleva seis decalajes ajustables; escriba de G54 a G59.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: this lathe has no axis %2.</source>
+      <translation>%1: este torno no tiene eje %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: this lathe has no inclined axis.</source>
+      <translation>%1: este torno no tiene eje inclinado.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: this lathe has no orientation axes.</source>
+      <translation>%1: este torno no tiene ejes de orientación.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: write CYCLE840, which feeds the tap by its lead and turns it back.</source>
+      <translation>%1: escriba CYCLE840, que hace avanzar el macho según su paso y lo gira de vuelta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: write DIAMON, DIAMOF or DIAM90.</source>
+      <translation>%1: escriba DIAMON, DIAMOF o DIAM90.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: write G1 with F a block.</source>
+      <translation>%1: escriba G1 con F por bloque.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: write G450 or G451.</source>
+      <translation>%1: escriba G450 o G451.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: write the curve as lines and arcs.</source>
+      <translation>%1: escriba la curva como rectas y arcos.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1; '%2' stands here.</source>
+      <translation>%1; aquí está '%2'.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1; the line ends here.</source>
+      <translation>%1; la línea termina aquí.</translation>
     </message>
     <message>
       <location filename="" />
@@ -150,13 +320,88 @@
     </message>
     <message>
       <location filename="" />
+      <source>A CYCLE RUNS</source>
+      <translation>UN CICLO EN MARCHA</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>A T stands between G35 and G36.</source>
       <translation>Hay una T entre G35 y G36.</translation>
     </message>
     <message>
       <location filename="" />
+      <source>A circle of NUM holes in TRANSMIT, round X CPA, Y CPO on RAD, the first at STA1, INDA between them; 0: all round.</source>
+      <translation>Un círculo de NUM agujeros en TRANSMIT, alrededor de X CPA, Y CPO con RAD, el primero en STA1, INDA entre ellos; 0: todo alrededor.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>A comment begins with ;.</source>
+      <translation>Un comentario empieza con ;.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>A deep hole in pecks: FDEP or FDPR the first, each less by DAM; VARI 1 leaves the hole each time, 0 draws back by _VRT.</source>
+      <translation>Un agujero profundo por picadas: FDEP o FDPR la primera, cada una menor en DAM; VARI 1 sale del agujero cada vez, 0 retrocede _VRT.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>A dwell of %1 s is out of range: 0.1 s to an hour.</source>
       <translation>Una espera de %1 s está fuera de rango: de 0.1 s a una hora.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>A groove with square flanks from the point SPD (a diameter), SPL: WIDG wide, DIAG deep; VARI 5 towards minus Z, 1 towards plus, 7 and 3 inside. Its width is the way from D to _DN, or to D+1.</source>
+      <translation>Ranura de flancos rectos desde el punto SPD (diámetro), SPL: ancho WIDG, profundidad DIAG; VARI 5 hacia Z negativo, 1 hacia positivo, 7 y 3 por dentro. Su ancho es la distancia de D a _DN, o a D+1.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>A heading: it only structures the program.</source>
+      <translation>Un título: solo ordena el programa.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>A hole along Z under G17: rapid to SDIS before RFP, feed to DP (DPR deep), rapid to RTP.</source>
+      <translation>Un agujero a lo largo de Z con G17: rápido hasta SDIS antes de RFP, avance hasta DP (DPR de profundidad), rápido a RTP.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>A mill on the face: X and Y across it, by X and C.</source>
+      <translation>Fresado en la cara: X e Y sobre ella, con X y C.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>A mill on the side: X along, Y around it, by Z and C.</source>
+      <translation>Fresado en el lado: X a lo largo, Y alrededor, con Z y C.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>A projection angle is 90 degrees.</source>
+      <translation>Un ángulo de proyección es de 90 grados.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>A row of NUM holes in TRANSMIT, from X SPCA, Y SPCO along STA1: the first FDIS away, DBH between.</source>
+      <translation>Una fila de NUM agujeros en TRANSMIT, desde X SPCA, Y SPCO a lo largo de STA1: el primero a FDIS, DBH entre ellos.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>A tap goes in: the spindle, held as C, turns with Z by the lead K (under 0 left-hand).</source>
+      <translation>Un macho entra: el husillo, sostenido como C, gira con Z según el paso K (menor que 0, a izquierdas).</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>A thread from SPL to FPL on the diameters DM1 and DM2, lead PIT or size MPIT: NRC passes to TDEP less FAL, then NID without infeed; NUMT starts; VARI 1 and 2 equal depth, 3 and 4 equal chip, 2 and 4 inside; IANG along a flank.</source>
+      <translation>Una rosca de SPL a FPL sobre los diámetros DM1 y DM2, paso PIT o tamaño MPIT: NRC pasadas hasta TDEP menos FAL, luego NID sin penetración; NUMT entradas; VARI 1 y 2 profundidad igual, 3 y 4 viruta igual, 2 y 4 por dentro; IANG a lo largo de un flanco.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>A thread from SPL, DM1 to FPL, DM2, as CYCLE97. VARI 300101 and 300102: equal depth outside, inside; 300103 and 300104: equal chip; 3002.. on both flanks in turn.</source>
+      <translation>Una rosca desde SPL, DM1 hasta FPL, DM2, como CYCLE97. VARI 300101 y 300102: profundidad igual por fuera, por dentro; 300103 y 300104: viruta igual; 3002.. por ambos flancos, alternando.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>A vector has no length.</source>
+      <translation>Un vector no tiene longitud.</translation>
     </message>
     <message>
       <location filename="" />
@@ -170,8 +415,158 @@
     </message>
     <message>
       <location filename="" />
+      <source>Absolute or incremental</source>
+      <translation>Absoluto o incremental</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Absolute; G90 or G91 must stand on the first line.</source>
+      <translation>Absoluto; G90 o G91 debe estar en la primera línea.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Acceleration</source>
+      <translation>Aceleración</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Activates a preset.</source>
+      <translation>Activa un preset.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Acts in its block</source>
+      <translation>Actúa en su bloque</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Add R, or I and K.</source>
       <translation>Agregue R, o I y K.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Adds to the work shift; acts at the next T.</source>
+      <translation>Suma al decalaje de trabajo; actúa en la T siguiente.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Adds.</source>
+      <translation>Suma.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Alarm %1: channel %2 block %3 axis %4: %5</source>
+      <translation>Alarma %1: canal %2 bloque %3 eje %4: %5</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Alarm %1: channel %2 block %3: %4</source>
+      <translation>Alarma %1: canal %2 bloque %3: %4</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Alarm %1: channel %2 block in line %3 axis %4: %5</source>
+      <translation>Alarma %1: canal %2 bloque en la línea %3 eje %4: %5</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Alarm %1: channel %2 block in line %3: %4</source>
+      <translation>Alarma %1: canal %2 bloque en la línea %3: %4</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Allowance beside the contour of G41 and G42, in TRANSMIT.</source>
+      <translation>Sobremedida junto al contorno de G41 y G42, en TRANSMIT.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>An axis counted the other way.</source>
+      <translation>Un eje contado al revés.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Angle about the pole, from Z towards X.</source>
+      <translation>Ángulo alrededor del polo, de Z hacia X.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Angle of ROT and AROT.</source>
+      <translation>Ángulo de ROT y AROT.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Angle of a line from Z towards X, with one end coordinate.</source>
+      <translation>Ángulo de una recta de Z hacia X, con una coordenada final.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Angle of two sides.</source>
+      <translation>Ángulo de dos lados.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Angle; C=DC( ) short way, C=ACP( ) and C=ACN( ) by direction.</source>
+      <translation>Ángulo; C=DC( ) camino corto, C=ACP( ) y C=ACN( ) por sentido.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Approach and departure</source>
+      <translation>Acercamiento y salida</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Approach and retract</source>
+      <translation>Entrada y salida</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Arc by its radius; R under 0 is the arc over 180 degrees.</source>
+      <translation>Arco por su radio; R menor que 0 es el arco de más de 180 grados.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Arc clockwise: I K, CR=, AR=.</source>
+      <translation>Arco horario: I K, CR=, AR=.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Arc counter-clockwise.</source>
+      <translation>Arco antihorario.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Arc round CC by its angle; with the tool axis a helix.</source>
+      <translation>Arco alrededor de CC por su ángulo; con el eje de la herramienta, una hélice.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Arc round the circle centre CC.</source>
+      <translation>Arco alrededor del centro CC.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Arc that goes on from the path before it.</source>
+      <translation>Arco que sigue a la trayectoria anterior.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Arc that goes on tangentially from the element before.</source>
+      <translation>Arco que sigue tangente al elemento anterior.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Arc through the point I1= K1=.</source>
+      <translation>Arco por el punto I1= K1=.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Arc, clockwise seen from above.</source>
+      <translation>Arco, horario visto desde arriba.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Arc, counter-clockwise.</source>
+      <translation>Arco, antihorario.</translation>
     </message>
     <message>
       <location filename="" />
@@ -180,13 +575,433 @@
     </message>
     <message>
       <location filename="" />
+      <source>Arithmetical error: %1</source>
+      <translation>Error aritmético: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As APPR CT, the point in polar coordinates.</source>
+      <translation>Como APPR CT, el punto en coordenadas polares.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As APPR LCT, the point in polar coordinates.</source>
+      <translation>Como APPR LCT, el punto en coordenadas polares.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As APPR LN, the point in polar coordinates.</source>
+      <translation>Como APPR LN, el punto en coordenadas polares.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As APPR LT, the point in polar coordinates.</source>
+      <translation>Como APPR LT, el punto en coordenadas polares.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As CFC inside arcs. Without effect: F counts on the path of the tip here.</source>
+      <translation>Como CFC dentro de arcos. Sin efecto: aquí F cuenta en el camino de la punta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As CUT2D.</source>
+      <translation>Como CUT2D.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As CYCLE81, with a dwell of DTB seconds at the bottom; under 0 revolutions.</source>
+      <translation>Como CYCLE81, con una espera de DTB segundos en el fondo; menor que 0, vueltas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As CYCLE85, in and out at the feed in force.</source>
+      <translation>Como CYCLE85, entra y sale con el avance vigente.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As CYCLE87, with a dwell before the stop.</source>
+      <translation>Como CYCLE87, con una espera antes de parar.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As DEP LCT, the point in polar coordinates.</source>
+      <translation>Como DEP LCT, el punto en coordenadas polares.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As G33 with a lead that grows by F, mm a revolution each revolution.</source>
+      <translation>Como G33 con un paso que crece F, mm por vuelta en cada vuelta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As G34 with a lead that shrinks.</source>
+      <translation>Como G34 con un paso que disminuye.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As G53.</source>
+      <translation>Como G53.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As G64: no corner is rounded off.</source>
+      <translation>Como G64: ninguna esquina se redondea.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As G96, F as it is.</source>
+      <translation>Como G96, F como está.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As G96, F in mm/min.</source>
+      <translation>Como G96, F en mm/min.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As G97, F as it is.</source>
+      <translation>Como G97, F como está.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As G97, F in mm/min.</source>
+      <translation>Como G97, F en mm/min.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As G97, without LIMS.</source>
+      <translation>Como G97, sin LIMS.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>As SPOS.</source>
+      <translation>Como SPOS.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Assigns a value.</source>
+      <translation>Asigna un valor.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Away from the workpiece along the tool axis.</source>
+      <translation>Lejos de la pieza a lo largo del eje de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>BEGIN PGM and END PGM name different units.</source>
+      <translation>BEGIN PGM y END PGM nombran unidades distintas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>BEGIN PGM stands twice.</source>
+      <translation>BEGIN PGM está dos veces.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Back from a subprogram.</source>
+      <translation>Vuelta de un subprograma.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Back to the feed before the rapid.</source>
+      <translation>De nuevo el avance de antes del rápido.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Begins a subprogram or a part that is repeated; LBL 0 ends a subprogram.</source>
+      <translation>Empieza un subprograma o una parte que se repite; LBL 0 termina un subprograma.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Begins subroutine n, after the end of the program.</source>
+      <translation>Empieza la subrutina n, después del fin del programa.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Begins the program, in millimetres or in inches.</source>
+      <translation>Empieza el programa, en milímetros o en pulgadas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Bores, stops the spindle, frees the edge, out.</source>
+      <translation>Mandrina, para el husillo, libera el filo, sale.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Boring: at the bottom the spindle is held at POSS, the edge lifted by RPA along X and RPAP along Z.</source>
+      <translation>Mandrinado: en el fondo el husillo se sostiene en POSS, el filo se separa RPA a lo largo de X y RPAP a lo largo de Z.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Boring: at the bottom the spindle stops, and the program until Cycle Start.</source>
+      <translation>Mandrinado: en el fondo para el husillo, y el programa hasta el arranque de ciclo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Buffer of blocks</source>
+      <translation>Búfer de bloques</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>C MOVES WHILE THE SPINDLE TURNS</source>
       <translation>C SE MUEVE MIENTRAS EL HUSILLO GIRA</translation>
     </message>
     <message>
       <location filename="" />
+      <source>C turns</source>
+      <translation>C gira</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CC missing: %1</source>
+      <translation>Falta CC: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE%1: %2.</source>
+      <translation>CYCLE%1: %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE81: %1 %2.</source>
+      <translation>CYCLE81: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE82: %1 %2.</source>
+      <translation>CYCLE82: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE83: %1 %2.</source>
+      <translation>CYCLE83: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE840: %1 %2.</source>
+      <translation>CYCLE840: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE84: %1 %2.</source>
+      <translation>CYCLE84: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE85: %1 %2.</source>
+      <translation>CYCLE85: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE86: %1 %2.</source>
+      <translation>CYCLE86: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE87: %1 %2.</source>
+      <translation>CYCLE87: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE88: %1 %2.</source>
+      <translation>CYCLE88: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE89: %1 %2.</source>
+      <translation>CYCLE89: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE93: %1 %2.</source>
+      <translation>CYCLE93: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE94: %1 %2.</source>
+      <translation>CYCLE94: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE95: %1 %2.</source>
+      <translation>CYCLE95: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE96: %1 %2.</source>
+      <translation>CYCLE96: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE97: %1 %2.</source>
+      <translation>CYCLE97: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE98: %1 %2.</source>
+      <translation>CYCLE98: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE99: %1 %2.</source>
+      <translation>CYCLE99: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Calls a subprogram by its name.</source>
+      <translation>Llama a un subprograma por su nombre.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Calls a subprogram or a cycle behind each block that moves; alone it ends that.</source>
+      <translation>Llama a un subprograma o un ciclo tras cada bloque que mueve; solo, lo termina.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Calls a subprogram; with REP it repeats the part since LBL.</source>
+      <translation>Llama a un subprograma; con REP repite la parte desde LBL.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Calls another program as a subprogram.</source>
+      <translation>Llama a otro programa como subprograma.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Cancels Cycle Repeat.</source>
+      <translation>Quita la repetición de ciclo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Centre from the start along X, a radius; I=AC( ). Lead along X beside G33.</source>
+      <translation>Centro desde el inicio a lo largo de X, un radio; I=AC( ). Paso a lo largo de X junto a G33.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Centre from the start along Y, in TRANSMIT and TRACYL.</source>
+      <translation>Centro desde el inicio a lo largo de Y, en TRANSMIT y TRACYL.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Centre from the start along Z; K=AC( ). Lead along Z beside G33.</source>
+      <translation>Centro desde el inicio a lo largo de Z; K=AC( ). Paso a lo largo de Z junto a G33.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Centres to a depth.</source>
+      <translation>Centra hasta una profundidad.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Chamfer to the next straight line, set back n on both.</source>
+      <translation>Chaflán con la recta siguiente, a n de la esquina en ambas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Chamfer, its leg.</source>
+      <translation>Chaflán, su cateto.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Chamfer, its length.</source>
+      <translation>Chaflán, su longitud.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Chamfers the corner between two straight lines.</source>
+      <translation>Achaflana la esquina entre dos rectas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Changes to a replacement tool when the life is over: none is changed to here, which is said.</source>
+      <translation>Cambia a una herramienta gemela al acabar la vida útil: aquí no se cambia a ninguna, y se dice.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Circle centre and pole, from here on.</source>
+      <translation>Centro de círculo y polo, desde aquí.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Circle end point incorrect: %1</source>
+      <translation>Punto final del círculo incorrecto: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Clamps the collet.</source>
+      <translation>Cierra la pinza.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Close it with M12 first.</source>
       <translation>Ciérrela primero con M12.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Comment, shown to the operator from its line on.</source>
+      <translation>Comentario, mostrado al operador desde su línea.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Compressor</source>
+      <translation>Compresor</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Constant surface speed, S in m/min, and F in mm a revolution.</source>
+      <translation>Velocidad de corte constante, S en m/min y F en mm por vuelta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Constant surface speed, ft/min: rpm follows the radius.</source>
+      <translation>Velocidad de corte constante, ft/min: las rpm siguen al radio.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Continuous path: corners by the acceleration of the axes.</source>
+      <translation>Contorneado: esquinas según la aceleración de los ejes.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Contour precision</source>
+      <translation>Precisión de contorno</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Contours of SL cycles</source>
+      <translation>Contornos de los ciclos SL</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Contradictory entry: %1</source>
+      <translation>Entrada contradictoria: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Coolant off.</source>
+      <translation>Refrigerante fuera.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Coolant on.</source>
+      <translation>Refrigerante.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Coordinate transformations</source>
+      <translation>Transformaciones de coordenadas</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Coordinates times a factor an axis.</source>
+      <translation>Coordenadas por un factor en cada eje.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Coordinates turned by RPL=, from Z towards X.</source>
+      <translation>Coordenadas giradas por RPL=, de Z hacia X.</translation>
     </message>
     <message>
       <location filename="" />
@@ -200,8 +1015,123 @@
     </message>
     <message>
       <location filename="" />
+      <source>Cosine of an angle in degrees.</source>
+      <translation>Coseno de un ángulo en grados.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Cuts a thread from where the tool stands; the spindle stops.</source>
+      <translation>Talla una rosca desde donde está la herramienta; el husillo se para.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Cutting edge 1 to 9 of the tool; D0: no tool offset.</source>
+      <translation>Filo 1 a 9 de la herramienta; D0: sin corrector.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Cycle incomplete: %1</source>
+      <translation>Ciclo incompleto: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Cycle not defined: %1</source>
+      <translation>Ciclo no definido: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Cycle not defined: Cycle %1 is a machine builder's, and this machine has none of its own.</source>
+      <translation>Ciclo no definido: el ciclo %1 es de fabricante de máquina, y esta máquina no tiene ninguno propio.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Cycles</source>
+      <translation>Ciclos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Datum table missing: %1</source>
+      <translation>Falta la tabla de puntos cero: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Diameter or radius</source>
+      <translation>Diámetro o radio</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Direction of rotation not defined: %1</source>
+      <translation>Sentido de giro no definido: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Distance from the pole of G110 to G112.</source>
+      <translation>Distancia al polo de G110 a G112.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Distances.</source>
+      <translation>Distancias.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Divides.</source>
+      <translation>Divide.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Drill in pecks of K, clearing to R.</source>
+      <translation>Taladra por picadas de K, descargando hasta R.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Drill to Z, rapid back.</source>
+      <translation>Taladra hasta Z, vuelve en rápido.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Drills deep holes: in slowly to a start, then at speed with coolant.</source>
+      <translation>Taladra agujeros profundos: entra despacio hasta un inicio, luego a velocidad y con refrigerante.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Drills in infeeds that become smaller, with chip breaks.</source>
+      <translation>Taladra por penetraciones que disminuyen, con rotura de viruta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Drills in infeeds.</source>
+      <translation>Taladra por penetraciones.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Dwell</source>
+      <translation>Espera</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Dwell n seconds, .1 at least.</source>
+      <translation>Espera n segundos, .1 como mínimo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Dwell: F seconds, S revolutions.</source>
+      <translation>Espera: F segundos, S vueltas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Dynamics</source>
+      <translation>Dinámica</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>E-STOP AT THE CONTROLLER</source>
       <translation>PARO DE EMERGENCIA EN EL CONTROLADOR</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>END OF PART, NOTHING RUNS</source>
+      <translation>FIN DE PIEZA, NADA EN MARCHA</translation>
     </message>
     <message>
       <location filename="" />
@@ -210,8 +1140,313 @@
     </message>
     <message>
       <location filename="" />
+      <source>End of a subprogram.</source>
+      <translation>Fin de un subprograma.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>End of it.</source>
+      <translation>Fin de él.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>End of the program.</source>
+      <translation>Fin del programa.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends FOR.</source>
+      <translation>Termina FOR.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends G35, where it was begun; alone, then G92.</source>
+      <translation>Termina G35, donde empezó; sola, luego G92.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends IF.</source>
+      <translation>Termina IF.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends LOOP.</source>
+      <translation>Termina LOOP.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends M101.</source>
+      <translation>Termina M101.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends M114, which is not built.</source>
+      <translation>Termina M114, que no está hecho.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends M116: F of rotary axes counts degrees.</source>
+      <translation>Termina M116: F de los ejes giratorios cuenta grados.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends M128.</source>
+      <translation>Termina M128.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends M136; the feed of before is forgotten.</source>
+      <translation>Termina M136; se olvida el avance de antes.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends M144, which is not built.</source>
+      <translation>Termina M144, que no está hecho.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends REPEAT once it is so.</source>
+      <translation>Termina REPEAT cuando es así.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends TCPM.</source>
+      <translation>Termina TCPM.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends WHILE.</source>
+      <translation>Termina WHILE.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends a loop.</source>
+      <translation>Termina un bucle.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends a subroutine.</source>
+      <translation>Termina una subrutina.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends the contour of G75 and G78.</source>
+      <translation>Termina el contorno de G75 y G78.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends the program with an error of its own.</source>
+      <translation>Termina el programa con un error propio.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends the program, as M30 does.</source>
+      <translation>Termina el programa, como M30.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends the tilted plane.</source>
+      <translation>Termina el plano inclinado.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends; M functions off. Repeats under Cycle Repeat.</source>
+      <translation>Termina; funciones M fuera. Se repite con repetición de ciclo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Ends; M functions stay as they are.</source>
+      <translation>Termina; las funciones M quedan como están.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Enlarges or reduces; RESET ends it.</source>
+      <translation>Amplía o reduce; RESET lo termina.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Enlarges or reduces; SCL1 ends it.</source>
+      <translation>Amplía o reduce; SCL1 lo termina.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Entered angle not permitted: %1</source>
+      <translation>Ángulo introducido no permitido: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Error of the program: %1</source>
+      <translation>Error del programa: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Exact stop at the end of every block.</source>
+      <translation>Parada exacta al final de cada bloque.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Exact stop at the end of this block.</source>
+      <translation>Parada exacta al final de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Exact stop of the block</source>
+      <translation>Parada exacta del bloque</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Exact stop or continuous path</source>
+      <translation>Parada exacta o contorneado</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Excessive nesting: %1</source>
+      <translation>Demasiados niveles: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>F counts a revolution of the spindle, by S as programmed; the feed of before is forgotten.</source>
+      <translation>F cuenta por vuelta del husillo, según la S programada; se olvida el avance de antes.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>F counts on the contour. Without effect: F counts on the path of the tip here.</source>
+      <translation>F cuenta en el contorno. Sin efecto: aquí F cuenta en el camino de la punta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>F counts on the path of the tip here</source>
+      <translation>aquí F cuenta en el camino de la punta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>F counts on the path of the tip.</source>
+      <translation>F cuenta en el camino de la punta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>F in mm a revolution.</source>
+      <translation>F en mm por vuelta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>F in mm/min; ends a constant surface speed.</source>
+      <translation>F en mm/min; termina una velocidad de corte constante.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>F is the feed of the path; write F, FB or OVR</source>
+      <translation>F es el avance de la trayectoria; escriba F, FB u OVR</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>F of rotary axes alone counts mm of the tip's way on the workpiece, by its distance from them.</source>
+      <translation>F de los ejes giratorios solos cuenta mm del camino de la punta en la pieza, según su distancia a ellos.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Feed %1 is out of range: %2 to %3.</source>
       <translation>El avance %1 está fuera de rango: de %2 a %3.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Feed in inches a minute.</source>
+      <translation>Avance en pulgadas por minuto.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Feed in inches a revolution; the spindle must turn.</source>
+      <translation>Avance en pulgadas por vuelta; el husillo debe girar.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Feed in per cent of F, 1 to 200.</source>
+      <translation>Avance en por ciento de F, 1 a 200.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Feed of all corners until FRCM=0.</source>
+      <translation>Avance de todas las esquinas hasta FRCM=0.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Feed of the corner of this block.</source>
+      <translation>Avance de la esquina de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Feed of this block alone.</source>
+      <translation>Avance de este bloque solo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Feed on arcs</source>
+      <translation>Avance en arcos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Feed per revolution, FZ per tooth (CUT of the tool table), by S as programmed.</source>
+      <translation>Avance por vuelta, FZ por diente (CUT de la tabla de herramientas), según la S programada.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Feed profile</source>
+      <translation>Perfil de avance</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Feed rate is missing: %1</source>
+      <translation>Falta el avance: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Feed: in/min under G94, in/rev under G95.</source>
+      <translation>Avance: in/min con G94, in/rev con G95.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Feed: mm/min under G94, mm a revolution under G95.</source>
+      <translation>Avance: mm/min con G94, mm por vuelta con G95.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Feedforward</source>
+      <translation>Control anticipativo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>First line of a subprogram: its parameters, VAR writes back, = is what counts where nothing is handed over; SAVE brings G functions and frame back at its end.</source>
+      <translation>Primera línea de un subprograma: sus parámetros, VAR devuelve el valor, = es lo que vale si no se pasa nada; SAVE repone al final las funciones G y el frame.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>First on a line: skipped while Block Delete is on.</source>
+      <translation>Primero en la línea: se salta mientras el borrado de bloque está activo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Flow</source>
+      <translation>Flujo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>From the contour on a straight line at a right angle.</source>
+      <translation>Desde el contorno por una recta en ángulo recto.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>From the contour on a straight line, tangentially.</source>
+      <translation>Desde el contorno por una recta, tangente.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>From the contour on an arc and a line, both tangential.</source>
+      <translation>Desde el contorno por un arco y una recta, ambos tangentes.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>From the contour on an arc, tangentially.</source>
+      <translation>Desde el contorno por un arco, tangente.</translation>
     </message>
     <message>
       <location filename="" />
@@ -260,8 +1495,23 @@
     </message>
     <message>
       <location filename="" />
+      <source>G25 and G26 bound no working area.</source>
+      <translation>G25 y G26 no limitan ninguna zona de trabajo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>G25 and G26 bound the working area.</source>
+      <translation>G25 y G26 limitan la zona de trabajo.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>G35 is in force already.</source>
       <translation>G35 ya está vigente.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>G5 is not executed here; write the arc with CIP</source>
+      <translation>G5 no se ejecuta aquí; escriba el arco con CIP</translation>
     </message>
     <message>
       <location filename="" />
@@ -275,8 +1525,88 @@
     </message>
     <message>
       <location filename="" />
+      <source>Gear step: taken. Without effect: this spindle has one gear step.</source>
+      <translation>Gama: aceptado. Sin efecto: este husillo tiene una sola gama.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Give larger arcs I and K.</source>
       <translation>A los arcos mayores déles I y K.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Gives a Q parameter a value: + - * / % ^, brackets, SIN COS TAN ASIN ACOS ATAN SQRT SQ LN LOG EXP NEG INT ABS FRAC SGN PI.</source>
+      <translation>Da un valor a un parámetro Q: + - * / % ^, paréntesis, SIN COS TAN ASIN ACOS ATAN SQRT SQ LN LOG EXP NEG INT ABS FRAC SGN PI.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Gives a local parameter a value; it ends with its program.</source>
+      <translation>Da un valor a un parámetro local; acaba con su programa.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Gives a parameter a value that outlives the program.</source>
+      <translation>Da un valor a un parámetro que sobrevive al programa.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Gives an R parameter a value: + - * / DIV MOD, brackets, SIN COS TAN ASIN ACOS ATAN2 SQRT POT ABS LN EXP TRUNC ROUND MINVAL MAXVAL.</source>
+      <translation>Da un valor a un parámetro R: + - * / DIV MOD, paréntesis, SIN COS TAN ASIN ACOS ATAN2 SQRT POT ABS LN EXP TRUNC ROUND MINVAL MAXVAL.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Goes to a place and runs the cycle there.</source>
+      <translation>Va a un lugar y ejecuta allí el ciclo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Greatest rpm under G96.</source>
+      <translation>Rpm máximas con G96.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>HAL DOES NOT COME UP</source>
+      <translation>HAL NO ARRANCA</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>HAL'S REAL-TIME THREAD STANDS</source>
+      <translation>EL HILO DE TIEMPO REAL DE HAL ESTÁ PARADO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>HOLES1: %1 %2.</source>
+      <translation>HOLES1: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>HOLES2: %1 %2.</source>
+      <translation>HOLES2: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Has no effect here, which is said.</source>
+      <translation>Aquí no tiene efecto, lo que se dice.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Head of a group of blocks in the control's editor; taken.</source>
+      <translation>Cabecera de un grupo de bloques en el editor del control; aceptada.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Highest speed under G96, G961, G97.</source>
+      <translation>Velocidad máxima con G96, G961, G97.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Highest spindle speed S, or upper end X Z of the working area.</source>
+      <translation>Velocidad máxima de husillo S, o extremo superior X Z de la zona de trabajo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>How far the path may be left; this control keeps to it.</source>
+      <translation>Cuánto puede dejarse la trayectoria; este control se mantiene en ella.</translation>
     </message>
     <message>
       <location filename="" />
@@ -295,6 +1625,136 @@
     </message>
     <message>
       <location filename="" />
+      <source>Inch.</source>
+      <translation>Pulgadas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Inches, F too.</source>
+      <translation>Pulgadas, F también.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Inches; F stays in mm.</source>
+      <translation>Pulgadas; F queda en mm.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Incremental.</source>
+      <translation>Incremental.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Input value incorrect: %1</source>
+      <translation>Valor introducido incorrecto: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Is refused: it is written by a mask of the newer controls, whose digits differ from edition to edition; name the contour in CYCLE95.</source>
+      <translation>Se rechaza: lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; nombre el contorno en CYCLE95.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Is refused: it is written by a mask of the newer controls, whose digits differ from edition to edition; write forms E and F with CYCLE94, A to D with CYCLE96.</source>
+      <translation>Se rechaza: lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba las formas E y F con CYCLE94, A a D con CYCLE96.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Is refused: it is written by a mask of the newer controls, whose digits differ from edition to edition; write the contour with CYCLE95.</source>
+      <translation>Se rechaza: lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba el contorno con CYCLE95.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Is refused: it is written by a mask of the newer controls, whose digits differ from edition to edition; write the groove with CYCLE93.</source>
+      <translation>Se rechaza: lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba la ranura con CYCLE93.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Is refused: it is written by a mask of the newer controls, whose digits differ from edition to edition; write the parting off as G1 blocks, with a slower F near the centre.</source>
+      <translation>Se rechaza: lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba el tronzado como bloques G1, con un F más lento cerca del centro.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Is refused: pockets and slots are not built here; write their path as moves of X, Z and C.</source>
+      <translation>Se rechaza: cajeras y ranuras no están hechas aquí; escriba su trayectoria como movimientos de X, Z y C.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Is refused: this lathe has no head that swivels; take it out.</source>
+      <translation>Se rechaza: este torno no tiene cabezal basculante; quítelo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Is refused: this lathe has no probe that a cycle can move to.</source>
+      <translation>Se rechaza: este torno no tiene palpador al que un ciclo pueda ir.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>It comes out again, the spindle turns back.</source>
+      <translation>Vuelve a salir, el husillo gira de vuelta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>JOB</source>
+      <translation>TRABAJO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Joins contours to what is milled: | in any, &amp; in both, \ without, ^ in one of two.</source>
+      <translation>Une contornos en lo que se fresa: | en alguno, &amp; en ambos, \ sin, ^ en uno de los dos.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Jumps back.</source>
+      <translation>Salta atrás.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Jumps by a value.</source>
+      <translation>Salta según un valor.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Jumps forward, or else back.</source>
+      <translation>Salta adelante, o si no atrás.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Jumps forward.</source>
+      <translation>Salta adelante.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Jumps if equal.</source>
+      <translation>Salta si es igual.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Jumps if greater.</source>
+      <translation>Salta si es mayor.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Jumps if less.</source>
+      <translation>Salta si es menor.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Jumps if not equal.</source>
+      <translation>Salta si no es igual.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Jumps to the first block.</source>
+      <translation>Salta al primer bloque.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Jumps, loops, variables</source>
+      <translation>Saltos, bucles, variables</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>K, the lead, is missing.</source>
       <translation>Falta K, el paso.</translation>
     </message>
@@ -305,8 +1765,108 @@
     </message>
     <message>
       <location filename="" />
+      <source>Kind of feed and spindle speed</source>
+      <translation>Tipo de avance y de velocidad de husillo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Label defined twice: %1</source>
+      <translation>Etiqueta definida dos veces: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Label not found: %1</source>
+      <translation>Etiqueta no encontrada: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Labels and programs</source>
+      <translation>Etiquetas y programas</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Language mode</source>
+      <translation>Modo de lenguaje</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Leads to 1 in, or 2; alone, then G92 of this point.</source>
+      <translation>Pasos hasta 1 in, o 2; sola, luego G92 de este punto.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Least rpm under G96.</source>
+      <translation>Rpm mínimas con G96.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Length and radius of a tool that the program brings along.</source>
+      <translation>Longitud y radio de una herramienta que el programa trae consigo.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Line %1 begins in the work, and no sure way leads there.</source>
       <translation>La línea %1 empieza dentro de la pieza y ningún camino seguro lleva allí.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Line at feed.</source>
+      <translation>Recta con avance.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Lower %1.</source>
+      <translation>Baje %1.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Lowest spindle speed S, or lower end X Z of the working area.</source>
+      <translation>Velocidad mínima de husillo S, o extremo inferior X Z de la zona de trabajo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>M function not defined: %1</source>
+      <translation>Función M no definida: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>M functions</source>
+      <translation>Funciones M</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>M functions: coolant</source>
+      <translation>Funciones M: refrigerante</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>M functions: end</source>
+      <translation>Funciones M: fin</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>M functions: gear</source>
+      <translation>Funciones M: gama</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>M functions: spindle</source>
+      <translation>Funciones M: husillo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>M functions: stop</source>
+      <translation>Funciones M: parada</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>M functions: tool</source>
+      <translation>Funciones M: herramienta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>M%1 is no code of this machine.</source>
+      <translation>M%1 no es código de esta máquina.</translation>
     </message>
     <message>
       <location filename="" />
@@ -325,23 +1885,98 @@
     </message>
     <message>
       <location filename="" />
-      <source>M03 FWD</source>
-      <translation>M03 ADEL</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>M04 REV</source>
-      <translation>M04 REV</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>M05 OFF</source>
-      <translation>M05 ALTO</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>M13 opens the collet while the spindle turns.</source>
       <translation>M13 abre la boquilla con el husillo girando.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Makes a program the cycle that CYCL CALL runs.</source>
+      <translation>Hace de un programa el ciclo que CYCL CALL ejecuta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Metric; stays until G70 or a restart.</source>
+      <translation>Métrico; hasta G70 o un arranque nuevo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Millimetres, F too.</source>
+      <translation>Milímetros, F también.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Millimetres.</source>
+      <translation>Milímetros.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Mills a circular pocket round where the tool stands.</source>
+      <translation>Fresa una cajera circular alrededor de donde está la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Mills a circular pocket, walls and floor last.</source>
+      <translation>Fresa una cajera circular, al final paredes y fondo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Mills a hole by a helix.</source>
+      <translation>Fresa un agujero por una hélice.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Mills a rectangular pocket round where the tool stands.</source>
+      <translation>Fresa una cajera rectangular alrededor de donde está la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Mills a rectangular pocket, walls and floor last.</source>
+      <translation>Fresa una cajera rectangular, al final paredes y fondo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Mills a rectangular stud out of a larger blank.</source>
+      <translation>Fresa una isla rectangular de un bruto mayor.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Mills a round stud out of a larger blank.</source>
+      <translation>Fresa una isla redonda de un bruto mayor.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Mills a slot from where the tool stands.</source>
+      <translation>Fresa una ranura desde donde está la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Mills a slot, walls and floor last.</source>
+      <translation>Fresa una ranura, al final paredes y fondo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Mirrored further.</source>
+      <translation>Más espejo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Mirrors axes; RESET ends it.</source>
+      <translation>Espeja ejes; RESET lo termina.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Mirrors axes; without an axis it ends.</source>
+      <translation>Espeja ejes; sin eje se termina.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Modes</source>
+      <translation>Modos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Motion</source>
+      <translation>Movimiento</translation>
     </message>
     <message>
       <location filename="" />
@@ -355,13 +1990,263 @@
     </message>
     <message>
       <location filename="" />
+      <source>Moves and corners</source>
+      <translation>Movimientos y esquinas</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Multiplies.</source>
+      <translation>Multiplica.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Names a subprogram with parameters that stands in a file of its own.</source>
+      <translation>Nombra un subprograma con parámetros que está en su propio archivo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Names the datum table of CYCL DEF 7.1 #n and TRANS DATUM TABLE TABLINEn.</source>
+      <translation>Nombra la tabla de puntos cero de CYCL DEF 7.1 #n y TRANS DATUM TABLE TABLINEn.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Names the point table of CYCL CALL PAT.</source>
+      <translation>Nombra la tabla de puntos de CYCL CALL PAT.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Names the program that CALL SELECTED PGM calls.</source>
+      <translation>Nombra el programa que llama CALL SELECTED PGM.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>No G35 is in force that G36 could end.</source>
       <translation>No hay G35 vigente que G36 pueda terminar.</translation>
     </message>
     <message>
       <location filename="" />
+      <source>No block is prepared before this one is done.</source>
+      <translation>Ningún bloque se prepara antes de que este esté hecho.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>No position of the rotary axes inside their ranges gives this plane.</source>
+      <translation>Ninguna posición de los ejes giratorios dentro de sus rangos da este plano.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>No settable offset.</source>
+      <translation>Ningún decalaje ajustable.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>No touch probe: %1</source>
+      <translation>Sin palpador: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Nose centre left of the path; the next line approaches, with D.</source>
+      <translation>Centro del radio a la izquierda del camino; la línea siguiente se acerca, con D.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Nose centre right of the path.</source>
+      <translation>Centro del radio a la derecha del camino.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Nose compensation off; the move before it departs.</source>
+      <translation>Compensación de radio fuera; el movimiento de antes se aleja.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Not permitted with M128: %1</source>
+      <translation>No permitido con M128: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Not supported: %1</source>
+      <translation>No se admite: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Not supported: %1 is not supported here.</source>
+      <translation>No se admite: aquí no se admite %1.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Nothing moves; the program turns the axes itself, by Q120 to Q122.</source>
+      <translation>Nada se mueve; el programa gira los ejes, con Q120 a Q122.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Number of the tool in force; $P_TOOL its D, $P_TOOLR its nose radius in mm. Others are refused.</source>
+      <translation>Número de la herramienta activa; $P_TOOL su D, $P_TOOLR su radio de punta en mm. Otras se rechazan.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Of TRANSMIT and TRACYL alone.</source>
+      <translation>Sólo de TRANSMIT y TRACYL.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Offset n, 1 to 32; the next move says X and Z. T0 takes tool and shift away.</source>
+      <translation>Corrector n, 1 a 32; el movimiento siguiente dice X y Z. T0 quita herramienta y decalaje.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>One pass along the contour, U away.</source>
+      <translation>Una pasada a lo largo del contorno, a U de él.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>One thread pass at this X.</source>
+      <translation>Una pasada de rosca en esta X.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Opening angle.</source>
+      <translation>Ángulo de apertura.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Optional stop.</source>
+      <translation>Parada opcional.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Outside corners</source>
+      <translation>Esquinas exteriores</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>P does not say which subroutine describes the contour.</source>
       <translation>P no dice qué subrutina describe el contorno.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>PLANE not permitted with M128: %1</source>
+      <translation>PLANE no permitido con M128: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Path function not possible here: %1</source>
+      <translation>Función de trayectoria imposible aquí: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Paths</source>
+      <translation>Trayectorias</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Pecks deep holes, with chip breaks and a start below the surface.</source>
+      <translation>Taladra agujeros profundos por picadas, con rotura de viruta y un inicio bajo la superficie.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Pecks.</source>
+      <translation>Taladra por picadas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Picture</source>
+      <translation>Imagen</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Plane</source>
+      <translation>Plano</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Plane X Y: no arcs and no radius compensation on this lathe.</source>
+      <translation>Plano X Y: sin arcos ni compensación de radio en este torno.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Plane Y Z: no arcs and no radius compensation on this lathe.</source>
+      <translation>Plano Y Z: sin arcos ni compensación de radio en este torno.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Plane Z X, the turning plane.</source>
+      <translation>Plano Z X, el del torneado.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Plane of the compensation</source>
+      <translation>Plano de la compensación</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Plane switching</source>
+      <translation>Cambio de plano</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Plane wrongly defined: %1</source>
+      <translation>Plano mal definido: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Pole in the workpiece.</source>
+      <translation>Polo en la pieza.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Pole, from the last pole.</source>
+      <translation>Polo, desde el último polo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Pole, from where the tool stands.</source>
+      <translation>Polo, desde donde está la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Position across the axis; X=AC( ) and X=IC( ) for one word.</source>
+      <translation>Posición transversal; X=AC( ) y X=IC( ) para una palabra.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Position along the axis.</source>
+      <translation>Posición longitudinal.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Positions.</source>
+      <translation>Posiciones.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Prints into a file; nothing is printed here, which is said.</source>
+      <translation>Imprime en un archivo; aquí no se imprime nada, lo que se dice.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Prints; nothing is printed here, which is said.</source>
+      <translation>Imprime; aquí no se imprime nada, lo que se dice.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Program</source>
+      <translation>Programa</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Program not found: %1</source>
+      <translation>Programa no encontrado: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Program stop; M functions may stand behind it.</source>
+      <translation>Parada de programa; detrás pueden ir funciones M.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Program stop; the spindle stops and the coolant goes off.</source>
+      <translation>Parada de programa; el husillo para y el refrigerante se apaga.</translation>
     </message>
     <message>
       <location filename="" />
@@ -380,13 +2265,238 @@
     </message>
     <message>
       <location filename="" />
+      <source>Q parameter not defined: %1</source>
+      <translation>Parámetro Q sin definir: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Q parameters</source>
+      <translation>Parámetros Q</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>R must be a number over 0.</source>
       <translation>R debe ser un número mayor que 0.</translation>
     </message>
     <message>
       <location filename="" />
+      <source>RED</source>
+      <translation>ROJO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Radius compensation not permitted here: %1</source>
+      <translation>Corrección de radio no permitida aquí: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Radius compensation off, with the next move.</source>
+      <translation>Compensación de radio fuera, con el movimiento siguiente.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Radius compensation off.</source>
+      <translation>Compensación de radio fuera.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Radius compensation: the tool left of the contour.</source>
+      <translation>Compensación de radio: la herramienta a la izquierda del contorno.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Radius compensation: the tool right of the contour.</source>
+      <translation>Compensación de radio: la herramienta a la derecha del contorno.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Radius n tangent to this and the next straight line.</source>
+      <translation>Radio n tangente a esta recta y a la siguiente.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Radius; under 0 more than half a turn.</source>
+      <translation>Radio; menor que 0, más de media vuelta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Raise %1.</source>
+      <translation>Suba %1.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rapid from here on, at the first line's F.</source>
+      <translation>Rápido desde aquí, con la F de la primera línea.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rapid; all axes end together.</source>
+      <translation>Rápido; todos los ejes terminan juntos.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Reads a figure of the control.</source>
+      <translation>Lee un dato del control.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Reaming and boring: in at FFR, out at RFF.</source>
+      <translation>Escariado y mandrinado: entra a FFR, sale a RFF.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Reams; out at a feed.</source>
+      <translation>Escaria; sale con avance.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Release it with M05 first.</source>
       <translation>Libérelo primero con M05.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Repeats until a jump leads out.</source>
+      <translation>Repite hasta que un salto saca de él.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Repeats up to UNTIL; with a label, from there to here, P=2 times.</source>
+      <translation>Repite hasta UNTIL; con una etiqueta, de ahí hasta aquí, P=2 veces.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Repeats while it is so.</source>
+      <translation>Repite mientras sea así.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Repeats, counting up.</source>
+      <translation>Repite, contando.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rests.</source>
+      <translation>Espera.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Root of the sum of two squares.</source>
+      <translation>Raíz de la suma de dos cuadrados.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rotary axes without end go by their figures: from 350 to 10 all the way back.</source>
+      <translation>Los ejes giratorios sin fin van según sus cifras: de 350 a 10 todo el camino de vuelta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rotary axes without end go the short way, as they do unless M127 stands before.</source>
+      <translation>Los ejes giratorios sin fin van por el camino corto, como hacen si no hay antes M127.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rough a box in passes of I at most, leaving U in X.</source>
+      <translation>Desbasta una caja en pasadas de I como máximo, dejando U en X.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rough to the contour that follows, up to RF.</source>
+      <translation>Desbasta hasta el contorno que sigue, hasta RF.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Round an outside corner by the intersection.</source>
+      <translation>Rodea la esquina exterior por la intersección.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Round an outside corner on an arc.</source>
+      <translation>Rodea la esquina exterior por un arco.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rounding not possible: %1</source>
+      <translation>Redondeo imposible: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rounding of every corner until RNDM=0.</source>
+      <translation>Redondeo de cada esquina hasta RNDM=0.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rounding, its radius.</source>
+      <translation>Redondeo, su radio.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rounds the corner between the elements before and behind it.</source>
+      <translation>Redondea la esquina entre el elemento anterior y el siguiente.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Runs subroutine n.</source>
+      <translation>Ejecuta la subrutina n.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Runs the block of the label again.</source>
+      <translation>Ejecuta otra vez el bloque de la etiqueta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Runs the cycle at every point of PATTERN DEF.</source>
+      <translation>Ejecuta el ciclo en cada punto de PATTERN DEF.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Runs the cycle behind every positioning block, until M99 or another.</source>
+      <translation>Ejecuta el ciclo detrás de cada bloque de posicionado, hasta M99 u otro.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Runs the cycle behind this block.</source>
+      <translation>Ejecuta el ciclo detrás de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Runs the cycle told before it at places in rows.</source>
+      <translation>Ejecuta el ciclo anterior en lugares por filas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Runs the cycle told before it at places on a circle.</source>
+      <translation>Ejecuta el ciclo anterior en lugares de un círculo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Runs the cycle where the tool stands.</source>
+      <translation>Ejecuta el ciclo donde está la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Runs the program of SEL PGM.</source>
+      <translation>Ejecuta el programa de SEL PGM.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>S is rpm again.</source>
+      <translation>S vuelve a ser rpm.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>STOP: FEED HOLD, M00, SINGLE BLOCK</source>
+      <translation>PARO: RETENCIÓN DE AVANCE, M00, BLOQUE A BLOQUE</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Scaled further.</source>
+      <translation>Más factor de escala.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Secondary offset n on this and later end points; D0 ends it.</source>
+      <translation>Corrector secundario n en este punto final y los siguientes; D0 lo termina.</translation>
     </message>
     <message>
       <location filename="" />
@@ -400,8 +2510,248 @@
     </message>
     <message>
       <location filename="" />
+      <source>Settable offset</source>
+      <translation>Decalaje ajustable</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Settable offset 1.</source>
+      <translation>Decalaje ajustable 1.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Settable offset 2.</source>
+      <translation>Decalaje ajustable 2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Settable offset 3.</source>
+      <translation>Decalaje ajustable 3.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Settable offset 4.</source>
+      <translation>Decalaje ajustable 4.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Settable offset 5.</source>
+      <translation>Decalaje ajustable 5.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Settable offset 6.</source>
+      <translation>Decalaje ajustable 6.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Shifts the datum, axis by axis.</source>
+      <translation>Desplaza el punto cero, eje por eje.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Shifts the datum; RESET ends it.</source>
+      <translation>Desplaza el punto cero; RESET lo termina.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Shows a text to the operator; an empty one takes it away.</source>
+      <translation>Muestra un texto al operador; uno vacío lo quita.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Sine of an angle in degrees.</source>
+      <translation>Seno de un ángulo en grados.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Speed: rpm under G97, ft/min under G96.</source>
+      <translation>Velocidad: rpm con G97, ft/min con G96.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Speed: rpm, or m/min under G96.</source>
+      <translation>Velocidad: rpm, o m/min con G96.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Spindle and C axis</source>
+      <translation>Husillo y eje C</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Spindle backward.</source>
+      <translation>Husillo atrás.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Spindle clockwise; also M1=3.</source>
+      <translation>Husillo horario; también M1=3.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Spindle counter-clockwise; also M1=4.</source>
+      <translation>Husillo antihorario; también M1=4.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Spindle forward.</source>
+      <translation>Husillo adelante.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Spindle off; S is kept.</source>
+      <translation>Husillo parado; S se conserva.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Spindle on by n degrees; the sign is the direction.</source>
+      <translation>Husillo n grados más; el signo es el sentido.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Spindle on, clockwise, and coolant on.</source>
+      <translation>Husillo en marcha, horario, y refrigerante.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Spindle on, clockwise.</source>
+      <translation>Husillo en marcha, horario.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Spindle on, counter-clockwise, and coolant on.</source>
+      <translation>Husillo en marcha, antihorario, y refrigerante.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Spindle on, counter-clockwise.</source>
+      <translation>Husillo en marcha, antihorario.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Spindle stop.</source>
+      <translation>Parada de husillo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Spindle stops; also M1=5.</source>
+      <translation>El husillo para; también M1=5.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Spindle to angle 0, locked, until M05.</source>
+      <translation>Husillo al ángulo 0, bloqueado, hasta M05.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Spindle to angle n.</source>
+      <translation>Husillo al ángulo n.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Square root.</source>
+      <translation>Raíz cuadrada.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Standard cycles</source>
+      <translation>Ciclos estándar</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Start angle of a thread: the tool begins so much of the lead further back.</source>
+      <translation>Ángulo de entrada de una rosca: la herramienta empieza esa parte del paso más atrás.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Stop it with M05 first.</source>
       <translation>Párelo primero con M05.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Stop the spindle and lock it where it is, as M89.</source>
+      <translation>Para el husillo y lo bloquea donde está, como M89.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Stop the spindle and lock it where it is.</source>
+      <translation>Para el husillo y lo bloquea donde está.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Stop until Cycle Start.</source>
+      <translation>Para hasta el arranque de ciclo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Stop where the switch for it is on.</source>
+      <translation>Para donde su interruptor está activo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Stops the spindle at an angle.</source>
+      <translation>Para el husillo en un ángulo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Stops when Optional Stop is on.</source>
+      <translation>Para cuando la parada opcional está activa.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Stops; the comment says what the operator must do.</source>
+      <translation>Para; el comentario dice qué debe hacer el operador.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Straight line to a point in polar coordinates round CC.</source>
+      <translation>Recta a un punto en coordenadas polares alrededor de CC.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Straight line.</source>
+      <translation>Recta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Subprograms and repeats</source>
+      <translation>Subprogramas y repeticiones</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Subroutine 1 if TB2-9 is closed.</source>
+      <translation>Subrutina 1 si TB2-9 está cerrada.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Subroutine P if input I is on (C1) or off (C0).</source>
+      <translation>Subrutina P si la entrada I está activa (C1) o no (C0).</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Subtracts.</source>
+      <translation>Resta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Suppression of offsets</source>
+      <translation>Supresión de decalajes</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Syntax error: %1</source>
+      <translation>Error de sintaxis: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>THE BRIDGE TO HAL HAS ENDED</source>
+      <translation>EL PUENTE A HAL TERMINÓ</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>THE BRIDGE TO HAL IS SILENT</source>
+      <translation>EL PUENTE A HAL NO RESPONDE</translation>
     </message>
     <message>
       <location filename="" />
@@ -415,8 +2765,123 @@
     </message>
     <message>
       <location filename="" />
+      <source>TOOL LIFE GONE, OR PARTS WAIT TO BE MEASURED</source>
+      <translation>VIDA DE HERRAMIENTA ACABADA, O HAY QUE MEDIR</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>TRACYL(40): Y is measured round the part on 40 mm, Z along it, X is how far out the tool stands. Arcs and radius compensation lie in G19.</source>
+      <translation>TRACYL(40): Y se mide alrededor de la pieza sobre 40 mm, Z a lo largo de ella, X es qué tan afuera está la herramienta. Los arcos y la compensación de radio están en G19.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>TRANSMIT or TRACYL off.</source>
+      <translation>Apaga TRANSMIT o TRACYL.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>TRY</source>
+      <translation>PROBAR</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Take it out; a comment begins with ;</source>
+      <translation>Quítelo; un comentario empieza con ;</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Take the line out.</source>
       <translation>Quite la línea.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Taken.</source>
+      <translation>Aceptado.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Taken. Without effect: feedforward is the drives'.</source>
+      <translation>Aceptado. Sin efecto: el control anticipativo es de los accionamientos.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Taken. Without effect: nothing is swivelled that it could turn back.</source>
+      <translation>Se acepta. Sin efecto: no hay nada orientado que pueda devolver.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Taken. Without effect: the path is kept exactly, whatever tolerance it names.</source>
+      <translation>Se acepta. Sin efecto: la trayectoria se sigue exactamente, sea cual sea su tolerancia.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Taken. Without effect: the path is never rounded here, so no corner is cut off.</source>
+      <translation>Aceptado. Sin efecto: aquí la trayectoria nunca se redondea, así que ninguna esquina se corta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Taken. Without effect: the time law of this machine keeps to the acceleration of its axes.</source>
+      <translation>Aceptado. Sin efecto: la ley de tiempo de esta máquina respeta la aceleración de sus ejes.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Taken. Without effect: the whole program is read before it begins.</source>
+      <translation>Aceptado. Sin efecto: el programa entero se lee antes de empezar.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Taken: F holds all along a block.</source>
+      <translation>Aceptado: F vale a lo largo de todo el bloque.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Taken: an exact stop always waits for the position.</source>
+      <translation>Aceptado: la parada exacta siempre espera a la posición.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Taken: compensation is in the plane.</source>
+      <translation>Aceptado: la compensación está en el plano.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Taken; the listing shows every block all the same.</source>
+      <translation>Aceptado; el listado muestra todos los bloques igualmente.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tangential arc to a point in polar coordinates.</source>
+      <translation>Arco tangente a un punto en coordenadas polares.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tapping with a compensating chuck: in by PIT or MPIT, with ENC 1 at F; the spindle turns back; out.</source>
+      <translation>Roscado con mandril compensador: entra por PIT o MPIT, con ENC 1 a F; el husillo invierte el giro; sale.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tapping without a compensating chuck: the spindle is held at POSS and turns with Z by PIT (under 0 left-hand) or MPIT, in at SST, out at SST1, rpm; _VARI 1 and 2 in steps of _DAM. SDAC: 3, 4, or 5 for a spindle that stands then.</source>
+      <translation>Roscado con macho sin portamachos con compensación: el husillo se sostiene en POSS y gira con Z según PIT (menor que 0, a izquierdas) o MPIT, entra a SST, sale a SST1, rpm; _VARI 1 y 2 en tramos de _DAM. SDAC: 3, 4, o 5 para un husillo que después queda parado.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Taps by pitch and speed, with chip breaks.</source>
+      <translation>Rosca por paso y velocidad, con rotura de viruta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Taps by pitch and speed.</source>
+      <translation>Rosca por paso y velocidad.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Taps with a floating tap holder.</source>
+      <translation>Rosca con portamachos flotante.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Texts and free tables</source>
+      <translation>Textos y tablas libres</translation>
     </message>
     <message>
       <location filename="" />
@@ -432,6 +2897,56 @@
       <location filename="" />
       <source>The arc has neither R nor I and K.</source>
       <translation>El arco no tiene ni R ni I y K.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The blank of the maker's picture; taken. Without effect: the proof takes its stock from --stock, the page PART or the moves.</source>
+      <translation>La pieza en bruto de la imagen del fabricante; aceptada. Sin efecto: la comprobación toma su material de --stock, de la página PIEZA o de los movimientos.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The coordinates of the block are those of the machine.</source>
+      <translation>Las coordenadas del bloque son las de la máquina.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The current point gets these coordinates; nothing moves.</source>
+      <translation>El punto actual recibe estas coordenadas; nada se mueve.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The fifth settable offset, kept as G58.</source>
+      <translation>El quinto decalaje ajustable, guardado como G58.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The first and the second point are the same.</source>
+      <translation>El primer punto y el segundo son el mismo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The first and the third point are the same.</source>
+      <translation>El primer punto y el tercero son el mismo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The formula needs a number or a parameter for %1</source>
+      <translation>La fórmula necesita un número o un parámetro para %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The formula needs a number or a parameter.</source>
+      <translation>La fórmula necesita un número o un parámetro.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The greatest corner of the blank.</source>
+      <translation>La esquina mayor de la pieza en bruto.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The language of this control: taken.</source>
+      <translation>El lenguaje de este control: se acepta.</translation>
     </message>
     <message>
       <location filename="" />
@@ -455,8 +2970,293 @@
     </message>
     <message>
       <location filename="" />
+      <source>The lines up to LF n times.</source>
+      <translation>Las líneas hasta LF n veces.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The machine</source>
+      <translation>La máquina</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The points of CYCL CALL PAT: singly, in a row, as a grid or a frame, on a circle or its part.</source>
+      <translation>Los puntos de CYCL CALL PAT: sueltos, en fila, en cuadrícula o marco, en círculo o parte de él.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The program raises an alarm: it is refused where it comes to this.</source>
+      <translation>El programa da una alarma: se rechaza si llega a este punto.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The rotary axes turn, and the tool follows its point.</source>
+      <translation>Los ejes giratorios giran y la herramienta sigue a su punto.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The rotary axes turn, the linear axes stand.</source>
+      <translation>Los ejes giratorios giran, los lineales quedan quietos.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The sixth settable offset, kept as G59.</source>
+      <translation>El sexto decalaje ajustable, guardado como G59.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The spindle becomes the axis C.</source>
+      <translation>El husillo se vuelve el eje C.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The spindle keeps its speed, S in rpm, F in mm a revolution.</source>
+      <translation>El husillo conserva su velocidad, S en rpm, F en mm por vuelta.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>The spindle stands, and a thread is cut by its turns.</source>
       <translation>El husillo está parado, y una rosca se corta por sus vueltas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The spindle stops at 0 degrees, as SPOS=0.</source>
+      <translation>El husillo para a 0 grados, como SPOS=0.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The spindle stops at this angle, where it is C.</source>
+      <translation>El husillo se detiene en este ángulo, donde es C.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The stock sticks out so far that it whirls at %1 rpm; it turns at %2.</source>
+      <translation>El material sobresale tanto que cabecea a %1 rpm; gira a %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The tool axis and the least corner of the blank.</source>
+      <translation>El eje de la herramienta y la esquina menor de la pieza en bruto.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The tool stays left of the contour.</source>
+      <translation>La herramienta queda a la izquierda del contorno.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The tool stays right of the contour.</source>
+      <translation>La herramienta queda a la derecha del contorno.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The tool's point keeps its place while rotary axes move.</source>
+      <translation>La punta de la herramienta conserva su lugar mientras se mueven ejes giratorios.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Thread in passes to X, lead K.</source>
+      <translation>Rosca en pasadas hasta X, paso K.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Thread of constant lead: K along Z, I along X; SF= its start angle. Blocks may follow.</source>
+      <translation>Rosca de paso constante: K a lo largo de Z, I a lo largo de X; SF= su ángulo de entrada. Pueden seguir bloques.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Threads</source>
+      <translation>Roscas</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Threads, faces and slots that are milled</source>
+      <translation>Roscas, planeados y ranuras fresados</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Three threads in one sweep: from PO1 DM1 over PO2 DM2 and PO3 DM3 to PO4 DM4, leads PP1 to PP3; the rest as CYCLE97.</source>
+      <translation>Tres roscas de una sola vez: desde PO1 DM1 por PO2 DM2 y PO3 DM3 hasta PO4 DM4, pasos PP1 a PP3; lo demás como CYCLE97.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tilted planes</source>
+      <translation>Planos inclinados</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tilts by Euler angles.</source>
+      <translation>Inclina por ángulos de Euler.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tilts by one angle more, from the plane in force.</source>
+      <translation>Inclina un ángulo más, desde el plano activo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tilts by projected angles.</source>
+      <translation>Inclina por ángulos de proyección.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tilts by spatial or axis angles; the program turns the axes.</source>
+      <translation>Inclina por ángulos espaciales o de ejes; el programa gira los ejes.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tilts by the angles of the rotary axes.</source>
+      <translation>Inclina por los ángulos de los ejes giratorios.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tilts by the normal and a base vector.</source>
+      <translation>Inclina por la normal y un vector base.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tilts by three points.</source>
+      <translation>Inclina por tres puntos.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tilts by three spatial angles.</source>
+      <translation>Inclina por tres ángulos espaciales.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>To a fixed point of the machine file, rapid, in axes named; the value of an axis says nothing.</source>
+      <translation>A un punto fijo del archivo de máquina, en rápido, en los ejes nombrados; el valor de un eje no dice nada.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>To home, rapid, in axes named with 0: X1=0 Z1=0.</source>
+      <translation>A la referencia, en rápido, en los ejes nombrados con 0: X1=0 Z1=0.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>To the contour and off it round its end point.</source>
+      <translation>Al contorno y fuera de él rodeando su punto final.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>To the contour and off it straight, square to its end.</source>
+      <translation>Al contorno y fuera de él en recta, perpendicular a su final.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>To the contour on a line and an arc, both tangential.</source>
+      <translation>Al contorno por una recta y un arco, ambos tangentes.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>To the contour on a straight line at a right angle.</source>
+      <translation>Al contorno por una recta en ángulo recto.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>To the contour on a straight line, tangentially.</source>
+      <translation>Al contorno por una recta, tangente.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>To the contour on an arc, tangentially.</source>
+      <translation>Al contorno por un arco, tangente.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tool axis is missing: %1</source>
+      <translation>Falta el eje de herramienta: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tool by number or name, its axis, speed in rpm, feed, what is added to length and radius.</source>
+      <translation>Herramienta por número o nombre, su eje, velocidad en rpm, avance, lo que se suma a longitud y radio.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tool by number, or by name T="ROUGHER"; D1 becomes active.</source>
+      <translation>Herramienta por número, o por nombre T="ROUGHER"; D1 queda activo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tool change: T has changed the tool before.</source>
+      <translation>Cambio de herramienta: T ya ha cambiado la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tool change: stops and asks for the tool.</source>
+      <translation>Cambio de herramienta: para y pide la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tool not defined: %1</source>
+      <translation>Herramienta no definida: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tool radius compensation</source>
+      <translation>Compensación de radio de herramienta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tool radius too large: %1</source>
+      <translation>Radio de herramienta demasiado grande: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tools</source>
+      <translation>Herramientas</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Tools, offsets, nose compensation</source>
+      <translation>Herramientas, correctores, compensación de radio</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Transformation</source>
+      <translation>Transformación</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Turned further.</source>
+      <translation>Giradas más.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Turns the contour of a subprogram or between two labels ("START:END") out of the stock: passes of MID, allowances FALZ, FALX (radius) or FAL, feeds FF1, FF2 into reliefs, FF3 for the finish. VARI 1 to 4 rough, 5 to 8 finish, 9 to 12 do both: along Z outside, along X, along Z inside, along X. The nose radius is reckoned with.</source>
+      <translation>Tornea el contorno de un subprograma o entre dos etiquetas ("START:END") del material: pasadas de MID, sobremedidas FALZ, FALX (radio) o FAL, avances FF1, FF2 en destalonados, FF3 de acabado. VARI 1 a 4 desbasta, 5 a 8 acaba, 9 a 12 hace ambas cosas: a lo largo de Z por fuera, a lo largo de X, a lo largo de Z por dentro, a lo largo de X. Se tiene en cuenta el radio de punta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Turns the plane; RESET ends it.</source>
+      <translation>Gira el plano; RESET lo termina.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Turns the plane; ROT+0 ends it.</source>
+      <translation>Gira el plano; ROT+0 lo termina.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Unclamps the collet.</source>
+      <translation>Abre la pinza.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Undercut (DIN 76) at the shoulder SPL behind a coarse thread of size DIATH: A, B (short) outside, C and D (short) inside; VARI as CYCLE94.</source>
+      <translation>Garganta (DIN 76) en el hombro SPL tras una rosca gruesa de medida DIATH: A, B (corta) por fuera, C y D (corta) por dentro; VARI como CYCLE94.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Undercut E or F (DIN 509) at the shoulder SPL of the diameter SPD, by the tip quadrant of the tool: 3 outside with the shoulder towards minus Z, 4 towards plus; 2 and 1 inside. VARI 1 to 4 says it in its place.</source>
+      <translation>Garganta E o F (DIN 509) en el hombro SPL del diámetro SPD, según el cuadrante de punta de la herramienta: 3 por fuera con el hombro hacia Z negativo, 4 hacia positivo; 2 y 1 por dentro. VARI 1 a 4 lo dice en su lugar.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Unit of length</source>
+      <translation>Unidad de longitud</translation>
     </message>
     <message>
       <location filename="" />
@@ -465,8 +3265,138 @@
     </message>
     <message>
       <location filename="" />
+      <source>Variables of the program: REAL, INT, BOOL, CHAR, STRING; REAL name[5] is an array.</source>
+      <translation>Variables del programa: REAL, INT, BOOL, CHAR, STRING; REAL nombre[5] es una matriz.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Waits until TB2-5 is closed.</source>
+      <translation>Espera hasta que TB2-5 se cierre.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Waits until TB2-5 is open.</source>
+      <translation>Espera hasta que TB2-5 se abra.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Waits until TB2-7 is closed.</source>
+      <translation>Espera hasta que TB2-7 se cierre.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Waits until TB2-7 is open.</source>
+      <translation>Espera hasta que TB2-7 se abra.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>What follows up to ELSE or ENDIF, or a jump, only if it is so.</source>
+      <translation>Lo que sigue hasta ELSE o ENDIF, o un salto, solo si es así.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>What is done if it is not so.</source>
+      <translation>Lo que se hace si no es así.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>When an exact stop is reached</source>
+      <translation>Cuándo se alcanza la parada exacta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Which fixed point of G75, 1 to 4; 1 without it.</source>
+      <translation>Qué punto fijo de G75, de 1 a 4; sin ella el 1.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Which spindle is the master: only spindle 1.</source>
+      <translation>Qué husillo es el maestro: solo el husillo 1.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>With F and percent: on the way down Z moves with no more than this share of the feed.</source>
+      <translation>Con F y por ciento: al bajar, Z no se mueve a más de esta parte del avance.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>With input %1 %2 at line %3 and input %4 %5 at line %6: %7</source>
+      <translation>Con la entrada %1 %2 en la línea %3 y la entrada %4 %5 en la línea %6: %7</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>With input %1 %2 at line %3: %4</source>
       <translation>Con la entrada %1 %2 en la línea %3: %4</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Without settable and programmed offsets; D stays.</source>
+      <translation>Sin decalajes ajustables ni programados; D queda.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Words of older and newer controls</source>
+      <translation>Palabras de controles antiguos y nuevos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Words: arc</source>
+      <translation>Palabras: arco</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Words: axis</source>
+      <translation>Palabras: eje</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Words: corner</source>
+      <translation>Palabras: esquina</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Words: feed</source>
+      <translation>Palabras: avance</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Words: frame</source>
+      <translation>Palabras: frame</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Words: line</source>
+      <translation>Palabras: recta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Words: path</source>
+      <translation>Palabras: trayectoria</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Words: polar</source>
+      <translation>Palabras: polares</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Words: spindle</source>
+      <translation>Palabras: husillo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Words: thread</source>
+      <translation>Palabras: rosca</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Words: tool</source>
+      <translation>Palabras: herramienta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Working area</source>
+      <translation>Zona de trabajo</translation>
     </message>
     <message>
       <location filename="" />
@@ -565,8 +3495,73 @@
     </message>
     <message>
       <location filename="" />
+      <source>Writes into the tool table: nothing is changed there; what would move something is refused.</source>
+      <translation>Escribe en la tabla de herramientas: allí no se cambia nada; lo que movería algo se rechaza.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Wrong axis programmed: %1</source>
+      <translation>Eje mal programado: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Wrong rpm: %1</source>
+      <translation>RPM incorrectas: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>X and Y mill the face of the part, which C turns under the tool; under DIAMON X is a diameter, Y is none. Arcs and radius compensation lie in G17. TRANS and ROT begin anew.</source>
+      <translation>X e Y fresan la cara de la pieza, que C gira bajo la herramienta; con DIAMON X es un diámetro, Y no. Los arcos y la compensación de radio están en G17. TRANS y ROT empiezan de nuevo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>X is a diameter as a position, a radius as a distance.</source>
+      <translation>X es un diámetro como posición, un radio como distancia.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>X is a diameter.</source>
+      <translation>X es un diámetro.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>X is a radius.</source>
+      <translation>X es un radio.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>X of the last pass is missing.</source>
       <translation>Falta la X de la última pasada.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>X of the machine, beside G74 and G75.</source>
+      <translation>X de la máquina, junto a G74 y G75.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>X of the point on the way of CIP.</source>
+      <translation>X del punto intermedio de CIP.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>X words are diameters.</source>
+      <translation>Las X son diámetros.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>X words are radii; so at the start.</source>
+      <translation>Las X son radios; así al principio.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Z of the machine, beside G74 and G75.</source>
+      <translation>Z de la máquina, junto a G74 y G75.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Z of the point on the way of CIP.</source>
+      <translation>Z del punto intermedio de CIP.</translation>
     </message>
     <message>
       <location filename="" />
@@ -575,8 +3570,23 @@
     </message>
     <message>
       <location filename="" />
+      <source>Zero shifted further.</source>
+      <translation>Cero desplazado más.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Zero shifted; alone: no programmed frame.</source>
+      <translation>Cero desplazado; solo: sin frame programado.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>a drill</source>
       <translation>una broca</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>a helix needs a third axis of the slides</source>
+      <translation>una hélice necesita un tercer eje de los carros</translation>
     </message>
     <message>
       <location filename="" />
@@ -587,6 +3597,31 @@
       <location filename="" />
       <source>a tap</source>
       <translation>un macho</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>absolute or incremental</source>
+      <translation>absoluto o incremental</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>acts in its block</source>
+      <translation>actúa en su bloque</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>approach</source>
+      <translation>entrada</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>approach and retract</source>
+      <translation>entrada y salida</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>approach on a curve is not executed here; write KONT or NORM</source>
+      <translation>la entrada por una curva no se ejecuta aquí; escriba KONT o NORM</translation>
     </message>
     <message>
       <location filename="" />
@@ -610,8 +3645,33 @@
     </message>
     <message>
       <location filename="" />
+      <source>buffer of blocks</source>
+      <translation>búfer de bloques</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>calls a subroutine, and those stand in programs</source>
       <translation>llama una subrutina, y ésas van en programas</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>channel %1 block %2 axis %3: %4</source>
+      <translation>canal %1 bloque %2 eje %3: %4</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>channel %1 block %2: %3</source>
+      <translation>canal %1 bloque %2: %3</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>channel %1 block in line %2 axis %3: %4</source>
+      <translation>canal %1 bloque en la línea %2 eje %3: %4</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>channel %1 block in line %2: %3</source>
+      <translation>canal %1 bloque en la línea %2: %3</translation>
     </message>
     <message>
       <location filename="" />
@@ -620,8 +3680,38 @@
     </message>
     <message>
       <location filename="" />
+      <source>compressor</source>
+      <translation>compresor</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>contour precision</source>
+      <translation>precisión de contorno</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>cuts a contour, and its lines would have to follow</source>
       <translation>corta un contorno, y tendrían que seguir sus líneas</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>departure</source>
+      <translation>salida</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>diameter or radius</source>
+      <translation>diámetro o radio</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>dwell</source>
+      <translation>espera</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>dynamics</source>
+      <translation>dinámica</translation>
     </message>
     <message>
       <location filename="" />
@@ -645,6 +3735,41 @@
     </message>
     <message>
       <location filename="" />
+      <source>exact stop of the block</source>
+      <translation>parada exacta del bloque</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>exact stop or continuous path</source>
+      <translation>parada exacta o contorneado</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>feed by the time of the move is not executed here; write G94 or G95 with F</source>
+      <translation>el avance por el tiempo del movimiento no se ejecuta aquí; escriba G94 o G95 con F</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>feed on arcs</source>
+      <translation>avance en arcos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>feed profile</source>
+      <translation>perfil de avance</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>feedforward</source>
+      <translation>control anticipativo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>feedforward is the drives'</source>
+      <translation>el control anticipativo es de los accionamientos</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>in/min</source>
       <translation>pulg/min</translation>
     </message>
@@ -652,6 +3777,56 @@
       <location filename="" />
       <source>in/rev</source>
       <translation>pulg/rev</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>inverse time feed is not executed here; write G94 or G95 with F</source>
+      <translation>el avance por inverso del tiempo no se ejecuta aquí; escriba G94 o G95 con F</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>it is written by a mask of the newer controls, whose digits differ from edition to edition; name the contour in CYCLE95</source>
+      <translation>lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; nombre el contorno en CYCLE95</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>it is written by a mask of the newer controls, whose digits differ from edition to edition; write forms E and F with CYCLE94, A to D with CYCLE96</source>
+      <translation>lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba las formas E y F con CYCLE94, A a D con CYCLE96</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>it is written by a mask of the newer controls, whose digits differ from edition to edition; write the contour with CYCLE95</source>
+      <translation>lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba el contorno con CYCLE95</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>it is written by a mask of the newer controls, whose digits differ from edition to edition; write the groove with CYCLE93</source>
+      <translation>lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba la ranura con CYCLE93</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>it is written by a mask of the newer controls, whose digits differ from edition to edition; write the parting off as G1 blocks, with a slower F near the centre</source>
+      <translation>lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba el tronzado como bloques G1, con un F más lento cerca del centro</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>kind of feed and spindle speed</source>
+      <translation>tipo de avance y de velocidad de husillo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>language mode</source>
+      <translation>modo de lenguaje</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>measuring in the program is not executed here; touch the tool off on the Jog page</source>
+      <translation>medir en el programa no se ejecuta aquí; toque la herramienta en la página Manual</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>motion</source>
+      <translation>movimiento</translation>
     </message>
     <message>
       <location filename="" />
@@ -675,6 +3850,46 @@
     </message>
     <message>
       <location filename="" />
+      <source>outside corners</source>
+      <translation>esquinas exteriores</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>picture</source>
+      <translation>imagen</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>plane</source>
+      <translation>plano</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>plane of the compensation</source>
+      <translation>plano de la compensación</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>pockets and slots are not built here; write their path as moves of X, Z and C</source>
+      <translation>cajeras y ranuras no están hechas aquí; escriba su camino con movimientos de X, Z y C</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>programs from outside are not called; put the file beside the main program and call its name</source>
+      <translation>los programas de fuera no se llaman; ponga el archivo junto al programa principal y llame su nombre</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>settable offset</source>
+      <translation>cero ajustable</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>smooth approach and retract is not executed here; write G41 or G42 with NORM or KONT</source>
+      <translation>la entrada y salida suaves no se ejecutan aquí; escriba G41 o G42 con NORM o KONT</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>speed limits</source>
       <translation>topes de velocidad</translation>
     </message>
@@ -682,6 +3897,36 @@
       <location filename="" />
       <source>spindle mode</source>
       <translation>modo de husillo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>suppression of offsets</source>
+      <translation>supresión de desplazamientos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>synchronized actions are not executed here</source>
+      <translation>las acciones síncronas no se ejecutan aquí</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>syntax error: %1</source>
+      <translation>error de sintaxis: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>syntax error: The bracket of the parameters is not closed.</source>
+      <translation>error de sintaxis: El paréntesis de los parámetros no está cerrado.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the arc by %1 ends where it starts.</source>
+      <translation>el arco por %1 termina donde empieza.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the arc ends where it starts.</source>
+      <translation>el arco termina donde empieza.</translation>
     </message>
     <message>
       <location filename="" />
@@ -697,6 +3942,116 @@
       <location filename="" />
       <source>the greatest depth of cut</source>
       <translation>la mayor profundidad de corte</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the other language mode is not read here</source>
+      <translation>el otro modo de lenguaje no se lee aquí</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the path is never rounded here, so no corner is cut off</source>
+      <translation>aquí la trayectoria nunca se redondea, así que ninguna esquina se corta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the proof takes its stock from --stock, the page PART or the moves</source>
+      <translation>la comprobación toma su material de --stock, de la página PIEZA o de los movimientos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the time law of this machine keeps to the acceleration of its axes</source>
+      <translation>la ley de tiempo de esta máquina respeta la aceleración de sus ejes</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the whole program is read before it begins</source>
+      <translation>el programa entero se lee antes de empezar</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>this control has one channel, and its axes are its own</source>
+      <translation>este control tiene un solo canal, y sus ejes son suyos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>this control keeps six settable offsets; write G54 to G59</source>
+      <translation>este control lleva seis decalajes ajustables; escriba de G54 a G59</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>this lathe has no head that swivels; take it out</source>
+      <translation>este torno no tiene cabezal basculante; quítelo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>this lathe has no inclined axis</source>
+      <translation>este torno no tiene eje inclinado</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>this lathe has no orientation axes</source>
+      <translation>este torno no tiene ejes de orientación</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>this lathe has no probe that a cycle can move to</source>
+      <translation>este torno no tiene palpador al que un ciclo pueda ir</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>this spindle has one gear step</source>
+      <translation>este husillo tiene una sola gama</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>tool radius compensation</source>
+      <translation>compensación de radio de herramienta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>transformation</source>
+      <translation>transformación</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>unit of length</source>
+      <translation>unidad de longitud</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>when an exact stop is reached</source>
+      <translation>cuándo se alcanza la parada exacta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>working area</source>
+      <translation>zona de trabajo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>write CYCLE840, which feeds the tap by its lead and turns it back</source>
+      <translation>escriba CYCLE840, que hace avanzar el macho según su paso y lo gira de vuelta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>write DIAMON, DIAMOF or DIAM90</source>
+      <translation>escriba DIAMON, DIAMOF o DIAM90</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>write G1 with F a block</source>
+      <translation>escriba G1 con F por bloque</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>write G450 or G451</source>
+      <translation>escriba G450 o G451</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>write the curve as lines and arcs</source>
+      <translation>escriba la curva como rectas y arcos</translation>
     </message>
     <message>
       <location filename="app/automatic/automatic_view.py" />
@@ -825,8 +4180,28 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
+      <source>LOOK: {what}</source>
+      <translation>MIRE: {what}</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>MQTT AND THE WEB HOOK</source>
+      <translation>MQTT Y EL AVISO WEB</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
       <source>MTCONNECT</source>
       <translation>MTCONNECT</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>NO DAILY BACKUP: {why}</source>
+      <translation>SIN COPIA DIARIA: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>NO REAL-TIME PRIORITY: A SYNC THAT IS 10 MS LATE STOPS THE SLIDES</source>
+      <translation>SIN PRIORIDAD DE TIEMPO REAL: UN SYNC 10 MS TARDE DETIENE LOS CARROS</translation>
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -845,8 +4220,18 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
+      <source>THE DAILY BACKUP</source>
+      <translation>LA COPIA DIARIA</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
       <source>THE RECORD OF THE SCOPE</source>
       <translation>EL REGISTRO DEL OSCILOSCOPIO</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>THE STATUS PAGE</source>
+      <translation>LA PÁGINA DE ESTADO</translation>
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -947,6 +4332,11 @@
       <location filename="app/desk/arithmetic.py" />
       <source>the entry is longer than %1 characters; type the result</source>
       <translation>la entrada tiene más de %1 caracteres; escriba el resultado</translation>
+    </message>
+    <message>
+      <location filename="app/desk/daily_backup.py" />
+      <source>it was written, but %1; look at the disk of %2</source>
+      <translation>se escribió, pero %1; revise el disco de %2</translation>
     </message>
     <message>
       <location filename="app/desk/data_folder.py" />
@@ -1094,6 +4484,76 @@
       <translation>{name} NO SE CARGA: HAY UN TRABAJO INTERRUMPIDO</translation>
     </message>
     <message>
+      <location filename="app/desk/first_job.py" />
+      <source>CHOOSE A PROGRAM</source>
+      <translation>ELIJA UN PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/first_job.py" />
+      <source>CLOSE</source>
+      <translation>CERRAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/first_job.py" />
+      <source>DRY RUN</source>
+      <translation>MARCHA EN VACÍO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/first_job.py" />
+      <source>F10, 7 SHOWS THIS CARD AGAIN</source>
+      <translation>F10, 7 MUESTRA ESTA TARJETA OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/first_job.py" />
+      <source>F2 AND A NAME, OR F1, F6 FOR THE LIST</source>
+      <translation>F2 Y UN NOMBRE, O F1, F6 PARA LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/first_job.py" />
+      <source>F8 NAMES THOSE THAT NOBODY HAS SET; F1, F5: T AND ITS NUMBER, THEN X AND Z, OR C FOR A SKIM CUT</source>
+      <translation>F8 NOMBRA LAS QUE NADIE HA REGLADO; F1, F5: T Y SU NÚMERO, LUEGO X Y Z, O C PARA UNA PASADA DE MEDIDA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/first_job.py" />
+      <source>FIRST JOB, STEP {number} OF {count}</source>
+      <translation>PRIMER TRABAJO, PASO {number} DE {count}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/first_job.py" />
+      <source>FIRST JOB: DONE</source>
+      <translation>PRIMER TRABAJO: HECHO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/first_job.py" />
+      <source>FIRST PART</source>
+      <translation>PRIMERA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/first_job.py" />
+      <source>P (NO COUNT), D, THEN BOTH PALMS; H HOLDS. LOOK AT EVERY MOVE, WITHOUT STOCK</source>
+      <translation>P (SIN CONTAR), D, LUEGO LOS DOS BOTONES; H DETIENE. MIRE CADA MOVIMIENTO, SIN MATERIAL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/first_job.py" />
+      <source>P AGAIN, PUT STOCK IN, BOTH PALMS; THEN MEASURE IT: F9 CORRECTS WEAR</source>
+      <translation>P OTRA VEZ, PONGA MATERIAL, LOS DOS BOTONES; LUEGO MIDA: F9 CORRIGE EL DESGASTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/first_job.py" />
+      <source>PROVE IT</source>
+      <translation>VERIFÍQUELO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/first_job.py" />
+      <source>SET ITS TOOLS</source>
+      <translation>REGLAR SUS HERRAMIENTAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/first_job.py" />
+      <source>WITH THE NEW OFFSET IT IS PROVED BY ITSELF; WHAT IS FOUND STANDS ON B (PART)</source>
+      <translation>CON EL NUEVO DECALAJE SE VERIFICA SOLO; LO HALLADO ESTÁ EN B (PIEZA)</translation>
+    </message>
+    <message>
       <location filename="app/desk/formats.py" />
       <source>%1 GB</source>
       <translation>%1 GB</translation>
@@ -1107,6 +4567,11 @@
       <location filename="app/desk/interrupted_notice.py" />
       <source> PASS {now} OF {all}</source>
       <translation> PASADA {now} DE {all}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/interrupted_notice.py" />
+      <source>. NOT CERTAIN: THE LAST SECOND OF ITS WAY, AND IF THE CUT IS WHOLE. LOOK AT TOOL AND PART</source>
+      <translation>. NO ES SEGURO: EL ÚLTIMO SEGUNDO DE SU RECORRIDO, NI SI EL CORTE ESTÁ COMPLETO. MIRE HERRAMIENTA Y PIEZA</translation>
     </message>
     <message>
       <location filename="app/desk/interrupted_notice.py" />
@@ -1170,13 +4635,18 @@
     </message>
     <message>
       <location filename="app/desk/machine_status.py" />
+      <source>NOT HOMED</source>
+      <translation>SIN REF</translation>
+    </message>
+    <message>
+      <location filename="app/desk/machine_status.py" />
       <source>PROGRAM STOP</source>
       <translation>PARO DE PROGRAMA</translation>
     </message>
     <message>
       <location filename="app/desk/machine_status.py" />
-      <source>WAITING: %1</source>
-      <translation>ESPERANDO: %1</translation>
+      <source>WAITING: {what}</source>
+      <translation>ESPERANDO: {what}</translation>
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
@@ -1207,6 +4677,11 @@
       <location filename="app/desk/modal_rows.py" />
       <source>D OFFSET</source>
       <translation>COMPENSACIÓN D</translation>
+    </message>
+    <message>
+      <location filename="app/desk/modal_rows.py" />
+      <source>DATUM SHIFT</source>
+      <translation>DECALAJE DE ORIGEN</translation>
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
@@ -1265,6 +4740,11 @@
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
+      <source>LENGTH, RADIUS</source>
+      <translation>LONGITUD, RADIO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/modal_rows.py" />
       <source>LOCKED</source>
       <translation>BLOQUEADO</translation>
     </message>
@@ -1275,6 +4755,16 @@
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
+      <source>MIRROR, ROT, SCALE</source>
+      <translation>ESPEJO, ROT, ESCALA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/modal_rows.py" />
+      <source>MOTION</source>
+      <translation>MOVIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/modal_rows.py" />
       <source>NOSE COMP</source>
       <translation>COMP DE PUNTA</translation>
     </message>
@@ -1282,6 +4772,11 @@
       <location filename="app/desk/modal_rows.py" />
       <source>OFF</source>
       <translation>APAGADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/modal_rows.py" />
+      <source>PRESET</source>
+      <translation>PRESET</translation>
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
@@ -1310,6 +4805,16 @@
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
+      <source>TCPM</source>
+      <translation>TCPM</translation>
+    </message>
+    <message>
+      <location filename="app/desk/modal_rows.py" />
+      <source>TILTED PLANE</source>
+      <translation>PLANO INCLINADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/modal_rows.py" />
       <source>TOOL</source>
       <translation>HERRAMIENTA</translation>
     </message>
@@ -1320,6 +4825,11 @@
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
+      <source>TRANS</source>
+      <translation>TRANS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/modal_rows.py" />
       <source>UNITS</source>
       <translation>UNIDADES</translation>
     </message>
@@ -1327,6 +4837,11 @@
       <location filename="app/desk/modal_rows.py" />
       <source>X WORDS</source>
       <translation>PALABRAS X</translation>
+    </message>
+    <message>
+      <location filename="app/desk/modal_rows.py" />
+      <source>ZERO OFFSET</source>
+      <translation>DECALAJE DE CERO</translation>
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
@@ -1357,6 +4872,16 @@
       <location filename="app/desk/persistence.py" />
       <source>nothing is kept here; start turndesk with a folder that can be written (TURNDESK_HOME)</source>
       <translation>aquí no se guarda nada; arranque turndesk con una carpeta en la que se pueda escribir (TURNDESK_HOME)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prepared_line.py" />
+      <source>Set it with F8.</source>
+      <translation>Póngala con F8.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prepared_line.py" />
+      <source>Tool {number} was never set.</source>
+      <translation>La herramienta {number} nunca se puso.</translation>
     </message>
     <message>
       <location filename="app/desk/program_folder.py" />
@@ -1620,6 +5145,11 @@
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
+      <source>WILL NOT START: %1 NOT IN THE TOOL TABLE (F8)</source>
+      <translation>NO ARRANCA: %1 NO ESTÁ EN LA TABLA DE HERRAMIENTAS (F8)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompt_line.py" />
       <source>WILL NOT START: NO OFFSET WAS EVER SET FOR %1 (F8 SETS THEM)</source>
       <translation>NO ARRANCARÁ: NUNCA SE PUSO COMPENSACIÓN PARA %1 (F8 LA PONE)</translation>
     </message>
@@ -1637,6 +5167,11 @@
       <location filename="app/desk/readouts.py" />
       <source>COLLET ?</source>
       <translation>PINZA ?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>COLLET BY HAND</source>
+      <translation>PINZA A MANO</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
@@ -1660,6 +5195,16 @@
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
+      <source>DRIVES ?</source>
+      <translation>SERVOS ?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>DRIVES ON</source>
+      <translation>SERVOS ACTIVOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
       <source>INCH</source>
       <translation>PULGADAS</translation>
     </message>
@@ -1667,6 +5212,36 @@
       <location filename="app/desk/readouts.py" />
       <source>LIVE TOOL</source>
       <translation>HERR MOTRIZ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>M03 FWD</source>
+      <translation>M03 ADEL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>M04 REV</source>
+      <translation>M04 REV</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>M05 OFF</source>
+      <translation>M05 ALTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>M3 FWD</source>
+      <translation>M3 ADEL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>M4 REV</source>
+      <translation>M4 REV</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>M5 OFF</source>
+      <translation>M5 ALTO</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
@@ -1725,11 +5300,6 @@
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
-      <source>TILTED PLANE</source>
-      <translation>PLANO INCLINADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
       <source>TILTED PLANE OF LINE {line}</source>
       <translation>PLANO INCLINADO DE LA LÍNEA {line}</translation>
     </message>
@@ -1757,6 +5327,16 @@
       <location filename="app/desk/screen_settings.py" />
       <source>AS THE PROGRAM</source>
       <translation>COMO EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/sounds.py" />
+      <source>%1 does not come to an end</source>
+      <translation>%1 no llega a su fin</translation>
+    </message>
+    <message>
+      <location filename="app/desk/sounds.py" />
+      <source>%1 has failed</source>
+      <translation>%1 ha fallado</translation>
     </message>
     <message>
       <location filename="app/desk/stored_shapes.py" />
@@ -1792,6 +5372,151 @@
       <location filename="app/desk/unheard_notice.py" />
       <source>{what} UNKNOWN: THE MACHINE IS NOT HEARD</source>
       <translation>{what}: DESCONOCIDO, NO SE OYE A LA MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>A DWELL OF THE PROGRAM (G04): IT GOES ON BY ITSELF</source>
+      <translation>UNA PAUSA DEL PROGRAMA (G04): SIGUE SOLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>AT SPEED</source>
+      <translation>A SU VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>DWELL</source>
+      <translation>ESPERA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>F10, 3, F4 SWITCHES THE SIMULATED INPUTS</source>
+      <translation>F10, 3, F4 CONMUTA LAS ENTRADAS SIMULADAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>FEED HOLD BEHIND THE TAP</source>
+      <translation>PARADA DE AVANCE TRAS EL MACHO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>FEED OVERRIDE AT 0</source>
+      <translation>AVANCE EN 0 POR LA PERILLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>GUARD OPEN</source>
+      <translation>GUARDA ABIERTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>INPUT {name} TO COME {state}</source>
+      <translation>QUE LA ENTRADA {name} PASE A {state}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>ON</source>
+      <translation>ENCENDIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>PAUSE HOLDS THE FEED, THEN R GIVES THE PROGRAM UP</source>
+      <translation>PAUSA DETIENE EL AVANCE, LUEGO R ABANDONA EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>SPINDLE OVERRIDE AT 0</source>
+      <translation>PERILLA DEL HUSILLO EN 0</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>SPINDLE STOP</source>
+      <translation>PARO DE HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>SPINDLE STOPPED</source>
+      <translation>HUSILLO PARADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>SPINDLE SWITCH OFF</source>
+      <translation>INTERRUPTOR DEL HUSILLO APAGADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>THE COLLET MOVES: THE PROGRAM GOES ON BY ITSELF</source>
+      <translation>LA PINZA SE MUEVE: EL PROGRAMA SIGUE SOLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>THE FEED POT STANDS AT 0: TURN IT UP (+)</source>
+      <translation>EL POTENCIÓMETRO DE AVANCE ESTÁ EN 0: SÚBALO (+)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>THE GUARD IS OPEN: CLOSE IT</source>
+      <translation>LA PROTECCIÓN ESTÁ ABIERTA: CIÉRRELA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>THE PROGRAM WAITS FOR {what}</source>
+      <translation>EL PROGRAMA ESPERA: {what}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>THE SPINDLE COMES TO ITS SPEED: THE PROGRAM GOES ON BY ITSELF</source>
+      <translation>EL HUSILLO SUBE A SU VELOCIDAD: EL PROGRAMA SIGUE SOLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>THE SPINDLE COMES TO REST: THE PROGRAM GOES ON BY ITSELF</source>
+      <translation>EL HUSILLO SE DETIENE: EL PROGRAMA SIGUE SOLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>THE SPINDLE POT STANDS AT 0: TURN IT UP (.)</source>
+      <translation>EL POTENCIÓMETRO DEL HUSILLO ESTÁ EN 0: SÚBALO (.)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>THE SPINDLE SWITCH STANDS AT OFF: A TURNS IT TO AUTO</source>
+      <translation>EL INTERRUPTOR DEL HUSILLO ESTÁ EN OFF: A LO PONE EN AUTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>THE SPINDLE WAS STOPPED: SWITCH IT OFF AND BACK TO AUTO (A), THEN CYCLE START</source>
+      <translation>SE PARÓ EL HUSILLO: SU INTERRUPTOR A OFF Y DE NUEVO A AUTO (A), LUEGO CYCLE START</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
+      <source>THE TAP FIRST COMES OUT OF ITS HOLE; E-STOP STOPS IT AT ONCE</source>
+      <translation>EL MACHO SALE PRIMERO DEL AGUJERO; LA PARADA DE EMERGENCIA LO DETIENE EN EL ACTO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/code_help.py" />
+      <source>CODES THAT BEGIN SO</source>
+      <translation>CÓDIGOS QUE EMPIEZAN ASÍ</translation>
+    </message>
+    <message>
+      <location filename="app/editor/code_help_view.py" />
+      <source>CODES</source>
+      <translation>CÓDIGOS</translation>
+    </message>
+    <message>
+      <location filename="app/editor/code_help_view.py" />
+      <source>DOWN</source>
+      <translation>ABAJO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/code_help_view.py" />
+      <source>UP</source>
+      <translation>ARRIBA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/code_help_view.py" />
+      <source>WRITE</source>
+      <translation>ESCRIBIR</translation>
     </message>
     <message>
       <location filename="app/editor/document.py" />
@@ -1880,11 +5605,6 @@
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE EDITING</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE EDITAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_messages.py" />
       <source>A SAMPLE IS NOT CHANGED: UNDER WHAT NAME SHALL IT BE SAVED?</source>
       <translation>UNA MUESTRA NO SE CAMBIA: ¿CON QUÉ NOMBRE SE GUARDA?</translation>
     </message>
@@ -1892,6 +5612,11 @@
       <location filename="app/editor/editor_messages.py" />
       <source>AN EMPTY PROGRAM IS NOT SAVED: WRITE SOMETHING, OR LEAVE WITH F10</source>
       <translation>UN PROGRAMA VACÍO NO SE GUARDA: ESCRIBA ALGO, O SALGA CON F10</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>ARROWS MARK A CODE AND TURN TO OTHER CHAPTERS, RETURN WRITES IT INTO THE TEXT; ESC: BACK</source>
+      <translation>LAS FLECHAS MARCAN UN CÓDIGO Y PASAN A OTROS CAPÍTULOS, INTRO LO ESCRIBE EN EL TEXTO; ESC: VOLVER</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -1945,6 +5670,11 @@
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
+      <source>THE SLIDES ARE BEING MOVED BY HAND: LET THEM COME TO REST BEFORE EDITING</source>
+      <translation>LOS CARROS SE MUEVEN A MANO: ESPERE A QUE PAREN ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
       <source>THE SPINDLE IS ON: SWITCH IT OFF (M05, OR R FOR RESET) AND LET IT COME TO REST BEFORE EDITING</source>
       <translation>EL HUSILLO ESTÁ ENCENDIDO: APÁGUELO (M05, O R PARA RESET) Y ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
     </message>
@@ -1952,6 +5682,11 @@
       <location filename="app/editor/editor_messages.py" />
       <source>THE SPINDLE STILL COASTS: WAIT UNTIL IT STANDS BEFORE EDITING</source>
       <translation>EL HUSILLO AÚN GIRA POR INERCIA: ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>THE TEXT IS STILL BEING PROVED FOR THE FIRST TIME: ASK AGAIN</source>
+      <translation>EL TEXTO AÚN SE ESTÁ COMPROBANDO POR PRIMERA VEZ: PREGUNTE OTRA VEZ</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -2159,9 +5894,14 @@
       <translation>TECLADO</translation>
     </message>
     <message>
-      <location filename="app/editor/highlight_view.py" />
-      <source>END</source>
-      <translation>EXTREMO</translation>
+      <location filename="app/editor/heading_view.py" />
+      <source>SHAPES ⇧F3</source>
+      <translation>FORMAS ⇧F3</translation>
+    </message>
+    <message>
+      <location filename="app/editor/heading_view.py" />
+      <source>SUMS ⇧F4</source>
+      <translation>CÁLCULO ⇧F4</translation>
     </message>
     <message>
       <location filename="app/editor/live_proof.py" />
@@ -2245,11 +5985,6 @@
     </message>
     <message>
       <location filename="app/editor/versions_view.py" />
-      <source>DOWN</source>
-      <translation>ABAJO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/versions_view.py" />
       <source>NEWER</source>
       <translation>MÁS NVA</translation>
     </message>
@@ -2259,9 +5994,249 @@
       <translation>MÁS ANT</translation>
     </message>
     <message>
-      <location filename="app/editor/versions_view.py" />
-      <source>UP</source>
-      <translation>ARRIBA</translation>
+      <location filename="app/jobs/job_setup.py" />
+      <source>another tip: R {radius}, {tip}; {when} it ran with R {was}, {was_tip}</source>
+      <translation>otra punta: R {radius}, {tip}; el {when} corrió con R {was}, {was_tip}</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/job_setup.py" />
+      <source>its life is gone, {words}: change the insert</source>
+      <translation>su vida se acabó, {words}: cambie la plaquita</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/job_setup.py" />
+      <source>life for {left} of {parts} parts</source>
+      <translation>vida para {left} de {parts} piezas</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/job_setup.py" />
+      <source>no offset: touch it off</source>
+      <translation>sin corrector: tómele referencia</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/job_setup.py" />
+      <source>tip {quadrant}</source>
+      <translation>punta {quadrant}</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_function.py" />
+      <source>JOBS</source>
+      <translation>TRABAJOS</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_function.py" />
+      <source>PRESS RETURN FOR THE JOBS; ESC GOES BACK TO THE LIST</source>
+      <translation>PULSE INTRO PARA LOS TRABAJOS; ESC VUELVE A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_function.py" />
+      <source>Return opens the page; Shift+F6 does so anywhere, J in the main menu.</source>
+      <translation>Intro abre la página; Mayús+F6 lo hace en todas partes, J en el menú principal.</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_function.py" />
+      <source>UNDER WAY</source>
+      <translation>EN CURSO</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_function.py" />
+      <source>WAITING</source>
+      <translation>ESPERANDO</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_function.py" />
+      <source>what is made next, how many, what it needs</source>
+      <translation>qué se hace ahora, cuántas, qué necesita</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>A NOTE HAS {most} LETTERS AT MOST</source>
+      <translation>UNA NOTA TIENE {most} LETRAS COMO MÁXIMO</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>ADD</source>
+      <translation>SUMAR</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>CHOOSE A PROGRAM FIRST (F1, F2), OR MARK ONE IN THE LIST OF PROGRAMS (F1, F6) AND PRESS F10</source>
+      <translation>ELIJA ANTES UN PROGRAMA (F1, F2), O MARQUE UNO EN LA LISTA DE PROGRAMAS (F1, F6) Y PULSE F10</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>CLEAR</source>
+      <translation>VACIAR</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>COUNT</source>
+      <translation>CUÁNTAS</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>DONE</source>
+      <translation>HECHO</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>DONE, STILL ON THE DESK</source>
+      <translation>HECHO, AÚN EN EL PUESTO</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>F2 PUTS THE MARKED JOB ON THE DESK; NOTHING STARTS BEFORE THE PALMS; ESC FOR AUTOMATIC</source>
+      <translation>F2 PONE EL TRABAJO MARCADO EN EL PUESTO; NADA ARRANCA ANTES DE LOS PULSADORES; ESC PARA AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>HOW MANY PARTS OF {program}?</source>
+      <translation>¿CUÁNTAS PIEZAS DE {program}?</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>LINE {line}</source>
+      <translation>LÍNEA {line}</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>MADE</source>
+      <translation>HECHAS</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>MARK A JOB FIRST</source>
+      <translation>MARQUE ANTES UN TRABAJO</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>NO JOB IS DONE YET: THERE IS NOTHING TO CLEAR</source>
+      <translation>NINGÚN TRABAJO ESTÁ HECHO: NO HAY NADA QUE VACIAR</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>NO JOB WAITS: F3 ADDS THE PROGRAM ON THE DESK, F10 OF THE LIST OF PROGRAMS (F1, F6) ANY OTHER</source>
+      <translation>NINGÚN TRABAJO ESPERA: F3 AÑADE EL PROGRAMA DEL PUESTO, F10 DE LA LISTA DE PROGRAMAS (F1, F6) CUALQUIER OTRO</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>NOTE</source>
+      <translation>NOTA</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>NOTES ARE TYPED BETWEEN CYCLES: LETTERS STOP THE MACHINE WHILE IT RUNS</source>
+      <translation>LAS NOTAS SE ESCRIBEN ENTRE CICLOS: LAS LETRAS PARAN LA MÁQUINA EN MARCHA</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>ON THE DESK: ITS FINDINGS STAND ON B</source>
+      <translation>EN EL PUESTO: SUS AVISOS ESTÁN EN B</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>PRESS Y TO TAKE {count} JOBS THAT ARE DONE OUT OF THE QUEUE, ESC TO KEEP THEM</source>
+      <translation>PULSE Y PARA QUITAR {count} TRABAJOS HECHOS DE LA COLA, ESC PARA DEJARLOS</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>PRESS Y TO TAKE {program} OUT OF THE QUEUE, {made} OF {wanted} MADE; ESC KEEPS IT</source>
+      <translation>PULSE Y PARA QUITAR {program} DE LA COLA, {made} DE {wanted} HECHAS; ESC LO DEJA</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>PROGRAM</source>
+      <translation>PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>PROOF</source>
+      <translation>PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>PROVING …</source>
+      <translation>PROBANDO …</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>REMOVE</source>
+      <translation>QUITAR</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>SETUP</source>
+      <translation>PREPARACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>STATE</source>
+      <translation>ESTADO</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>STOCK</source>
+      <translation>MATERIAL</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>TIME</source>
+      <translation>TIEMPO</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>TYPE IT AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS</source>
+      <translation>ESCRÍBALO Y PULSE INTRO; ESC DEJA TODO COMO ESTÁ</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>in order</source>
+      <translation>en orden</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_view.py" />
+      <source>LOAD</source>
+      <translation>CARGA</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_watch.py" />
+      <source>JOB DONE: {made} OF {wanted} PARTS OF {program}.</source>
+      <translation>TRABAJO HECHO: {made} DE {wanted} PIEZAS DE {program}.</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_watch.py" />
+      <source>NEXT: {program}, {left} PARTS</source>
+      <translation>SIGUE: {program}, {left} PIEZAS</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_watch.py" />
+      <source>NO OTHER JOB WAITS.</source>
+      <translation>NINGÚN OTRO TRABAJO ESPERA.</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_watch.py" />
+      <source>NOT PROVED YET</source>
+      <translation>AÚN NO PROBADO</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_watch.py" />
+      <source>REFUSED BY ITS PROOF</source>
+      <translation>RECHAZADO POR SU PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_watch.py" />
+      <source>TOOLS COMPLETE</source>
+      <translation>HERRAMIENTAS COMPLETAS</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_watch.py" />
+      <source>{count} MISSING</source>
+      <translation>FALTAN {count}</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_watch.py" />
+      <source>{name} IS NOT AMONG THE PROGRAMS: F1, F6</source>
+      <translation>{name} NO ESTÁ ENTRE LOS PROGRAMAS: F1, F6</translation>
     </message>
     <message>
       <location filename="app/jog/drive_test_model.py" />
@@ -2429,6 +6404,206 @@
       <translation>MANUAL</translation>
     </message>
     <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>1 TO 6 SAY WHAT THE PALMS SWITCH ON, 9 THE SPEED; B SHOWS TOOL SETTING</source>
+      <translation>1 A 6 DICEN QUÉ CONECTAN LOS PULSADORES, 9 LAS RPM; B MUESTRA EL REGLAJE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>A LINE IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R</source>
+      <translation>HAY UNA LÍNEA EN CURSO: DEJE QUE TERMINE, O PÁRELA Y OPRIMA R</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R</source>
+      <translation>HAY UNA ALARMA: CORRIJA SU CAUSA Y OPRIMA R</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>NOTHING IS CHOSEN: 1 TO 6 SAY WHAT THE PALMS SWITCH ON</source>
+      <translation>NADA ELEGIDO: 1 A 6 DICEN QUÉ CONECTAN LOS PULSADORES</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>PROVING THE LINE</source>
+      <translation>COMPROBANDO LA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>REFUSED: {rpm:g} RPM IS NOT BETWEEN 0 AND {highest:g}</source>
+      <translation>RECHAZADO: {rpm:g} RPM NO ESTÁ ENTRE 0 Y {highest:g}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>REFUSED: {why}</source>
+      <translation>RECHAZADO: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>SOMETHING IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R</source>
+      <translation>HAY ALGO EN CURSO: DÉJELO TERMINAR O ABANDÓNELO CON R</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>THE COLLET IS NOT OPENED BY HAND WHILE THE SPINDLE TURNS: 0 STOPS IT</source>
+      <translation>LA PINZA NO SE ABRE A MANO CON EL HUSILLO GIRANDO: 0 LO PARA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>THE DRIVES ARE OFF: PRESS D FOR DRIVES ON</source>
+      <translation>LOS SERVOS ESTÁN APAGADOS: OPRIMA D PARA ENCENDERLOS</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>THE E-STOP IS PRESSED: NOTHING MOVES</source>
+      <translation>EL PARO DE EMERGENCIA ESTÁ OPRIMIDO: NADA SE MUEVE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>THE LINE CANNOT BE PROVED: {why}</source>
+      <translation>LA LÍNEA NO SE PUEDE COMPROBAR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM</source>
+      <translation>LOS CARROS BUSCAN SU REFERENCIA: H LOS DETIENE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>THE SLIDES ARE STILL MOVING</source>
+      <translation>LOS CARROS TODAVÍA SE MUEVEN</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>THE SLIDES WERE MOVED: CHOOSE AGAIN WHAT THE PALMS SHALL SWITCH ON</source>
+      <translation>LOS CARROS SE HAN MOVIDO: ELIJA DE NUEVO QUÉ DEBEN CONECTAR LOS PULSADORES</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>THE SPINDLE TURNS: KEEP CLEAR; 0 STOPS IT, HOLD AN ARROW TO MOVE</source>
+      <translation>EL HUSILLO GIRA: APÁRTESE; 0 LO PARA, MANTENGA UNA FLECHA PARA MOVER</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>TO RUN {line} {start}; ESC TAKES IT BACK</source>
+      <translation>PARA EJECUTAR {line} {start}; ESC LO RETIRA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>TYPE A SPEED IN RPM, THEN RETURN; ESC LEAVES IT</source>
+      <translation>ESCRIBA LAS RPM, LUEGO RETURN; ESC LO DEJA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>coolant off</source>
+      <translation>refrigerante fuera</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>coolant on</source>
+      <translation>refrigerante en marcha</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>{line} IS HELD: BOTH PALMS GO ON, 0 STOPS THE SPINDLE AND GIVES IT UP</source>
+      <translation>{line} ESTÁ RETENIDA: AMBOS PULSADORES SIGUEN, 0 PARA EL HUSILLO Y LA ABANDONA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
+      <source>{line} IS UNDER WAY: 0 STOPS THE SPINDLE</source>
+      <translation>{line} EN CURSO: 0 PARA EL HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>BY HAND</source>
+      <translation>A MANO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>BY HAND  ·  CHOOSE, THEN BOTH PALMS</source>
+      <translation>A MANO  ·  ELEGIR, LUEGO AMBOS PULSADORES</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>CLOSE COLLET</source>
+      <translation>CERRAR PINZA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>COOLANT OFF</source>
+      <translation>REFRIG. NO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>COOLANT ON</source>
+      <translation>REFRIG. SÍ</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>DIAMETER</source>
+      <translation>DIÁMETRO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>FACE</source>
+      <translation>CARA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>FORWARD</source>
+      <translation>ADELANTE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>GIVE UP</source>
+      <translation>ABANDONAR</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>OPEN COLLET</source>
+      <translation>ABRIR PINZA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>REVERSE</source>
+      <translation>EN REVERSA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>RPM</source>
+      <translation>RPM</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>SKIM CUT</source>
+      <translation>PASADA DE MEDIDA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>SPEED …</source>
+      <translation>RPM …</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>THE CUT IS MADE</source>
+      <translation>PASADA HECHA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>THE SPINDLE STANDS</source>
+      <translation>EL HUSILLO ESTÁ PARADO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>THE SPINDLE TURNS {rpm:.0f} RPM</source>
+      <translation>EL HUSILLO GIRA A {rpm:.0f} RPM</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions_view.py" />
+      <source>TOOL SETTING</source>
+      <translation>AJUSTE DE HERRAMIENTA</translation>
+    </message>
+    <message>
       <location filename="app/jog/held_jog.py" />
       <source>ANOTHER KEY HAS ENDED THE JOG</source>
       <translation>OTRA TECLA TERMINÓ EL MOVIMIENTO</translation>
@@ -2520,11 +6695,6 @@
     </message>
     <message>
       <location filename="app/jog/jog_homing.py" />
-      <source>NOT HOMED</source>
-      <translation>SIN REF</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_homing.py" />
       <source>T{tool} MAY STAND IN THE PART: JOG IT CLEAR FIRST. </source>
       <translation>T{tool} PUEDE ESTAR EN LA PIEZA: PRIMERO SÁQUELA A MANO. </translation>
     </message>
@@ -2540,13 +6710,13 @@
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
-      <source>A PROGRAM IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R, BEFORE JOGGING</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O ABANDÓNELO CON R, ANTES DE MOVER A MANO</translation>
+      <source>3D-ROT IS ON: THE HANDWHEEL MOVES THE MACHINE'S OWN AXES, TURN IT OFF FIRST (F5)</source>
+      <translation>3D-ROT ESTÁ ACTIVO: EL VOLANTE MUEVE LOS EJES DE LA MÁQUINA, DESACTÍVELO ANTES (F5)</translation>
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
-      <source>AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R</source>
-      <translation>HAY UNA ALARMA: CORRIJA SU CAUSA Y OPRIMA R</translation>
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R, BEFORE JOGGING</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O ABANDÓNELO CON R, ANTES DE MOVER A MANO</translation>
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
@@ -2580,6 +6750,16 @@
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
+      <source>HOLD A KEY TO MOVE ALONG X' Y' Z' OF WHAT IS TILTED, SHIFT FOR RAPID; F5 TURNS 3D-ROT OFF</source>
+      <translation>MANTENGA UNA TECLA PARA MOVER POR X' Y' Z' DE LO INCLINADO, MAYÚS. PARA RÁPIDO; F5 DESACTIVA 3D-ROT</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>HOLD A KEY TO MOVE, WITH SHIFT FOR RAPID; F8 TOUCHES TOOLS OFF, F9 THE WORKPIECE</source>
+      <translation>MANTENGA UNA TECLA PARA MOVER, CON MAYÚS. EN RÁPIDO; F8 MIDE HERRAMIENTAS, F9 LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
       <source>HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF</source>
       <translation>SOSTENGA UNA FLECHA PARA MOVER, CON SHIFT PARA RÁPIDO; T ELIGE HERRAMIENTA, X o Z LA TOCAN</translation>
     </message>
@@ -2590,23 +6770,8 @@
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
-      <source>ON A MILL THE OFFSET IS THE LENGTH OF THE TOOL: MEASURE IT, AND TYPE IT ON F8</source>
-      <translation>EN UNA FRESADORA LA COMPENSACIÓN ES EL LARGO DE LA HERRAMIENTA: MÍDALO, Y ESCRÍBALO EN F8</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
       <source>RETURN KEEPS WHAT WAS FOUND, ESC LEAVES THE TOOL AS IT WAS</source>
       <translation>INTRO GUARDA LO HALLADO, ESC DEJA LA HERRAMIENTA COMO ESTABA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>THE DRIVES ARE OFF: PRESS D FOR DRIVES ON</source>
-      <translation>LOS SERVOS ESTÁN APAGADOS: OPRIMA D PARA ENCENDERLOS</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>THE E-STOP IS PRESSED: NOTHING MOVES</source>
-      <translation>EL PARO DE EMERGENCIA ESTÁ OPRIMIDO: NADA SE MUEVE</translation>
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
@@ -2627,16 +6792,6 @@
       <location filename="app/jog/jog_model.py" />
       <source>THE JOG HAS ENDED: THE KEYBOARD WENT ELSEWHERE</source>
       <translation>TERMINÓ EL MOVIMIENTO A MANO: EL TECLADO PASÓ A OTRA PARTE</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM</source>
-      <translation>LOS CARROS BUSCAN SU REFERENCIA: H LOS DETIENE</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_model.py" />
-      <source>THE SLIDES ARE STILL MOVING</source>
-      <translation>LOS CARROS TODAVÍA SE MUEVEN</translation>
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
@@ -2695,6 +6850,11 @@
     </message>
     <message>
       <location filename="app/jog/jog_pad_view.py" />
+      <source>STEP °</source>
+      <translation>PASO °</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
       <source>TOUCH OFF</source>
       <translation>TOQUE</translation>
     </message>
@@ -2724,6 +6884,11 @@
       <translation>mm</translation>
     </message>
     <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>°/MIN</source>
+      <translation>°/MIN</translation>
+    </message>
+    <message>
       <location filename="app/jog/jog_touch_off.py" />
       <source>, alone</source>
       <translation>, sola</translation>
@@ -2732,6 +6897,16 @@
       <location filename="app/jog/jog_touch_off.py" />
       <source>TOUCH OFF WITH THE MACHINE AT REST AND READY</source>
       <translation>TOQUE LA HERRAMIENTA CON LA MÁQUINA EN REPOSO Y LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_touch_off.py" />
+      <source>cut Z</source>
+      <translation>cortado Z</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_touch_off.py" />
+      <source>cut Ø</source>
+      <translation>cortado Ø</translation>
     </message>
     <message>
       <location filename="app/jog/jog_touch_off.py" />
@@ -2770,8 +6945,68 @@
     </message>
     <message>
       <location filename="app/jog/jog_view.py" />
+      <source>SPINDLE SPEED, RPM?</source>
+      <translation>¿RPM DEL HUSILLO?</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
       <source>T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo</source>
       <translation>T herr · X Z tocar · W desgaste · N punta · Q cuadrante · K nota · M maestra · F10 deshacer</translation>
+    </message>
+    <message>
+      <location filename="app/jog/mill_jog_view.py" />
+      <source>3D-ROT %1</source>
+      <translation>3D-ROT %1</translation>
+    </message>
+    <message>
+      <location filename="app/jog/mill_jog_view.py" />
+      <source>PRESET {number}</source>
+      <translation>PRESET {number}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/mill_jog_view.py" />
+      <source>THE KEY MOVES ALONG X Y Z OF THE MACHINE</source>
+      <translation>LA TECLA MUEVE POR X Y Z DE LA MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/mill_jog_view.py" />
+      <source>THE TIP STANDS AT</source>
+      <translation>LA PUNTA ESTÁ EN</translation>
+    </message>
+    <message>
+      <location filename="app/jog/mill_jog_view.py" />
+      <source>TOOL, PRESET, TILTED PLANE  ·  MM</source>
+      <translation>HERRAMIENTA, PRESET, PLANO INCLINADO  ·  MM</translation>
+    </message>
+    <message>
+      <location filename="app/jog/mill_jog_view.py" />
+      <source>X %1   Y %2   Z %3   ROT %4</source>
+      <translation>X %1   Y %2   Z %3   ROT %4</translation>
+    </message>
+    <message>
+      <location filename="app/jog/mill_jog_view.py" />
+      <source>known once a line has run</source>
+      <translation>se sabe tras ejecutar una línea</translation>
+    </message>
+    <message>
+      <location filename="app/jog/mill_jog_view.py" />
+      <source>none: TOOL CALL in MDI</source>
+      <translation>ninguna: TOOL CALL en MDI</translation>
+    </message>
+    <message>
+      <location filename="app/jog/mill_jog_view.py" />
+      <source>nothing is tilted</source>
+      <translation>nada está inclinado</translation>
+    </message>
+    <message>
+      <location filename="app/jog/mill_jog_view.py" />
+      <source>of the machine file</source>
+      <translation>del archivo de máquina</translation>
+    </message>
+    <message>
+      <location filename="app/jog/mill_jog_view.py" />
+      <source>table not turned there</source>
+      <translation>mesa no girada hasta ahí</translation>
     </message>
     <message>
       <location filename="app/jog/pendant_jog.py" />
@@ -2844,14 +7079,89 @@
       <translation>palpador {way} ±{error}</translation>
     </message>
     <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>DIFFERENCE</source>
-      <translation>DIFERENCIA</translation>
+      <location filename="app/jog/skim_cut.py" />
+      <source>CUT ALONG {other} FAR ENOUGH TO BE MEASURED, THEN RETURN: THE CUT IS MADE</source>
+      <translation>CORTE EN {other} LO BASTANTE PARA MEDIR, LUEGO RETURN: PASADA HECHA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_cut.py" />
+      <source>JOG {axis} TO THE CUT, SLOWLY, THEN FEED ALONG {other}; ESC GIVES IT UP</source>
+      <translation>LLEVE {axis} AL CORTE, DESPACIO, LUEGO AVANCE EN {other}; ESC ABANDONA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_cut.py" />
+      <source>LET THE SLIDE COME TO REST FIRST</source>
+      <translation>DEJE PRIMERO QUE EL CARRO SE PARE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_cut.py" />
+      <source>NO CUT YET, AND THE SPINDLE STANDS: B SWITCHES IT ON</source>
+      <translation>AÚN NO HAY PASADA Y EL HUSILLO ESTÁ PARADO: B LO CONECTA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_cut.py" />
+      <source>NO CUT YET: {axis} HAS MOVED LAST; FEED ALONG {other} WITH {axis} KEPT</source>
+      <translation>AÚN NO HAY PASADA: LO ÚLTIMO FUE {axis}; AVANCE EN {other} SIN MOVER {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_cut.py" />
+      <source>RETRACT IN {other} ONLY, {axis} IS KEPT; THEN 0 STOPS THE SPINDLE; ESC GIVES IT UP</source>
+      <translation>RETIRE SOLO EN {other}, {axis} SE MANTIENE; LUEGO 0 PARA EL HUSILLO; ESC ABANDONA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_cut.py" />
+      <source>SKIM CUT: X FOR A DIAMETER, Z FOR A FACE; ESC GIVES IT UP</source>
+      <translation>PASADA DE MEDIDA: X PARA UN DIÁMETRO, Z PARA UNA CARA; ESC ABANDONA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_cut.py" />
+      <source>SWITCH THE SPINDLE ON (B), THEN JOG INTO THE CUT; ESC GIVES IT UP</source>
+      <translation>CONECTE EL HUSILLO (B), LUEGO VAYA AL CORTE A MANO; ESC ABANDONA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_cut.py" />
+      <source>THE SKIM CUT IS GIVEN UP, THE MACHINE HAS STOPPED: NOTHING WAS CHANGED</source>
+      <translation>PASADA ABANDONADA, LA MÁQUINA SE HA PARADO: NO SE CAMBIÓ NADA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_cut.py" />
+      <source>THE SKIM CUT IS GIVEN UP, {axis} IS NOT HOMED: NOTHING WAS CHANGED</source>
+      <translation>PASADA ABANDONADA, {axis} NO TIENE REFERENCIA: NO SE CAMBIÓ NADA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_cut.py" />
+      <source>THE SKIM CUT IS GIVEN UP: NOTHING WAS CHANGED</source>
+      <translation>PASADA ABANDONADA: NO SE CAMBIÓ NADA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_cut.py" />
+      <source>{axis} HAS MOVED {away} SINCE THE CUT: NOTHING WAS CHANGED, CUT AGAIN OR PRESS ESC</source>
+      <translation>{axis} SE HA MOVIDO {away} DESDE LA PASADA: NO SE CAMBIÓ NADA, CORTE DE NUEVO O PULSE ESC</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tilted_jog.py" />
+      <source>3D-ROT IS OFF, KEYS MOVE ALONG THE MACHINE'S X Y Z: {why}</source>
+      <translation>3D-ROT SE HA DESACTIVADO, LAS TECLAS MUEVEN POR X Y Z DE LA MÁQUINA: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tilted_jog.py" />
+      <source>NOTHING IS TILTED: PLANE IN MDI (F4) TILTS IT, A HEAD THAT LEANS DOES</source>
+      <translation>NADA ESTÁ INCLINADO: PLANE EN MDI (F4) LO INCLINA, O UN CABEZAL INCLINADO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tilted_jog.py" />
+      <source>TOOL AXIS</source>
+      <translation>EJE DE LA HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tilted_jog.py" />
+      <source>{axes} NOT WHERE THE PLANE ASKS: TURN THERE FIRST, L {turn} FMAX IN MDI</source>
+      <translation>{axes} NO ESTÁ DONDE PIDE EL PLANO: GÍRELO ANTES, L {turn} FMAX EN MDI</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
-      <source>REFUSED: {why}</source>
-      <translation>RECHAZADO: {why}</translation>
+      <source>DIFFERENCE</source>
+      <translation>DIFERENCIA</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
@@ -2925,11 +7235,6 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting_view.py" />
-      <source>TOOL SETTING</source>
-      <translation>AJUSTE DE HERRAMIENTA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting_view.py" />
       <source>TOUCH X</source>
       <translation>TOCAR X</translation>
     </message>
@@ -2945,11 +7250,6 @@
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />
-      <source>A LINE IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R</source>
-      <translation>HAY UNA LÍNEA EN CURSO: DEJE QUE TERMINE, O PÁRELA Y OPRIMA R</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
       <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE MDI</source>
       <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE MDI</translation>
     </message>
@@ -2962,21 +7262,6 @@
       <location filename="app/mdi/mdi_model.py" />
       <source>NO LINE IS READY: TYPE ONE AND PRESS ENTER</source>
       <translation>NO HAY LÍNEA LISTA: ESCRIBA UNA Y OPRIMA ENTER</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>PROVING THE LINE</source>
-      <translation>COMPROBANDO LA LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>Set it with F8.</source>
-      <translation>Póngala con F8.</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>THE LINE CANNOT BE PROVED: {why}</source>
-      <translation>LA LÍNEA NO SE PUEDE COMPROBAR: {why}</translation>
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />
@@ -3002,11 +7287,6 @@
       <location filename="app/mdi/mdi_model.py" />
       <source>TYPE A LINE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS</source>
       <translation>ESCRIBA UNA LÍNEA, ENTER LA COMPRUEBA; F1 SALE, EL HUSILLO QUEDA COMO ESTÁ</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>Tool {number} was never set.</source>
-      <translation>La herramienta {number} nunca se puso.</translation>
     </message>
     <message>
       <location filename="app/mdi/mdi_view.py" />
@@ -3057,6 +7337,121 @@
       <location filename="app/mdi/mdi_view.py" />
       <source>SPN STOP</source>
       <translation>PARO HUS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/cell_table.py" />
+      <source>, DEGREES</source>
+      <translation>, GRADOS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/cell_table.py" />
+      <source>, MINUTES</source>
+      <translation>, MINUTOS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/cell_table.py" />
+      <source>A PROGRAM IS UNDER WAY: THIS TABLE CHANGES BETWEEN CYCLES ONLY</source>
+      <translation>HAY UN PROGRAMA EN MARCHA: ESTA TABLA SOLO CAMBIA ENTRE CICLOS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/cell_table.py" />
+      <source>TYPE A VALUE OR A SUM AND PRESS RETURN; ARROWS AND TAB CHOOSE ANOTHER CELL</source>
+      <translation>ESCRIBA UN VALOR O UNA SUMA Y OPRIMA RETURN; FLECHAS Y TAB ELIGEN OTRA CELDA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/cell_table.py" />
+      <source>TYPE THE TEXT; RETURN SAVES IT, ESC LEAVES IT AS IT WAS</source>
+      <translation>ESCRIBA EL TEXTO; RETURN LO GUARDA, ESC LO DEJA COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/cell_table.py" />
+      <source>degrees</source>
+      <translation>grados</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/cell_table.py" />
+      <source>min</source>
+      <translation>min</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/cell_table.py" />
+      <source>{which} IS AS IT WAS</source>
+      <translation>{which} ESTÁ COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/cell_table_view.py" />
+      <source>HERE</source>
+      <translation>AQUÍ</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/cell_table_view.py" />
+      <source>PRESETS</source>
+      <translation>PRESETS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/cell_table_view.py" />
+      <source>TOUCH</source>
+      <translation>PALPAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/mill_tools.py" />
+      <source>CHOOSE THE COLUMN L FIRST: F2 TOUCHES THE LENGTH OFF</source>
+      <translation>ELIJA ANTES LA COLUMNA L: F2 PALPA LA LONGITUD</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/mill_tools.py" />
+      <source>F2: the tip stands at the height that is typed: L follows        Esc: exit</source>
+      <translation>F2: la punta está a la altura escrita: de ahí sale L        Esc: salir</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/mill_tools.py" />
+      <source>STOP: no other part begins when TIME2 is reached        Return turns it on and off</source>
+      <translation>STOP: no empieza otra pieza al llegar a TIME2        Intro lo activa y desactiva</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/mill_tools.py" />
+      <source>TIME2: minutes at feed, 0 no limit        CUR.TIME: cut so far, 0 of a fresh tool</source>
+      <translation>TIME2: minutos en avance, 0 sin límite        CUR.TIME: lo cortado, 0 en una herramienta nueva</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/mill_tools.py" />
+      <source>TOOL TABLE  ·  MM, DEGREES, MINUTES</source>
+      <translation>TABLA DE HERRAMIENTAS  ·  MM, GRADOS, MINUTOS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/mill_tools.py" />
+      <source>T{number} IS NOT IN THE TABLE YET: ENTER ITS LENGTH FIRST</source>
+      <translation>T{number} AÚN NO ESTÁ EN LA TABLA: INTRODUZCA ANTES SU LONGITUD</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/mill_tools.py" />
+      <source>at {value}</source>
+      <translation>en {value}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/mill_touch.py" />
+      <source>NO TOOL OF THE TABLE IS IN THE SPINDLE: TOOL CALL IN MDI FIRST, ITS LENGTH COUNTS</source>
+      <translation>NO HAY EN EL HUSILLO NINGUNA HERRAMIENTA DE LA TABLA: PRIMERO TOOL CALL EN MDI, CUENTA SU LONGITUD</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/mill_touch.py" />
+      <source>THE MACHINE FILE OF THIS MILL HAS NO [kinematics]: NOTHING CAN BE TOUCHED OFF</source>
+      <translation>EL ARCHIVO DE ESTA FRESADORA NO TIENE [kinematics]: NO SE PUEDE PALPAR NADA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/mill_touch.py" />
+      <source>THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST</source>
+      <translation>LOS CARROS SE MUEVEN: LAS COMPENSACIONES CAMBIAN EN REPOSO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/mill_touch.py" />
+      <source>THE TOOL LEANS ON THE WORKPIECE: TURN THE ROTARY AXES SO THAT IT STANDS UPRIGHT</source>
+      <translation>LA HERRAMIENTA ESTÁ INCLINADA SOBRE LA PIEZA: GIRE LOS EJES ROTATIVOS PARA QUE QUEDE VERTICAL</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/mill_touch.py" />
+      <source>{axis} DOES NOT KNOW ITS POSITION: HOME IT FIRST</source>
+      <translation>{axis} NO CONOCE SU POSICIÓN: REFERÉNCIELO PRIMERO</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_book.py" />
@@ -3175,11 +7570,6 @@
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
-      <source>THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST</source>
-      <translation>LOS CARROS SE MUEVEN: LAS COMPENSACIONES CAMBIAN EN REPOSO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
       <source>{count} OFFSETS</source>
       <translation>{count} COMPENSACIONES</translation>
     </message>
@@ -3217,11 +7607,6 @@
       <location filename="app/offsets/offset_values.py" />
       <source>CUTTING LENGTH</source>
       <translation>LONGITUD DE CORTE</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>DIAMETER</source>
-      <translation>DIÁMETRO</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
@@ -3484,6 +7869,71 @@
       <translation>QUÉ HACE A LA PIEZA</translation>
     </message>
     <message>
+      <location filename="app/offsets/presets.py" />
+      <source>0, of the machine file</source>
+      <translation>0, del archivo de máquina</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/presets.py" />
+      <source>CHOOSE X, Y, Z, A ROTARY AXIS OR ROT FIRST: F2 TOUCHES THE WORKPIECE OFF</source>
+      <translation>ELIJA ANTES X, Y, Z, UN EJE GIRATORIO O ROT: F2 MIDE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/presets.py" />
+      <source>F2 at one point of an edge, then at another: the edge shall read what is typed</source>
+      <translation>F2 en un punto de una arista y luego en otro: la arista leerá lo escrito</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/presets.py" />
+      <source>F2: the axis stands where it shall read what is typed</source>
+      <translation>F2: el eje está donde debe leer lo escrito</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/presets.py" />
+      <source>F2: the tip stands where the part reads what is typed</source>
+      <translation>F2: la punta está donde la pieza lee lo escrito</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/presets.py" />
+      <source>F3: in force</source>
+      <translation>F3: activo</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/presets.py" />
+      <source>FIRST POINT TAKEN: TOUCH THE SAME EDGE FURTHER ON, THEN F2 AGAIN</source>
+      <translation>PRIMER PUNTO TOMADO: TOQUE LA MISMA ARISTA MÁS ALLÁ Y PULSE F2 OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/presets.py" />
+      <source>PRESET {number} WAS NEVER SET: TOUCH IT OFF OR TYPE IT</source>
+      <translation>EL PRESET {number} NUNCA SE PUSO: PÁLPELO O ESCRÍBALO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/presets.py" />
+      <source>PRESETS  ·  MACHINE POSITION OF THE WORKPIECE'S ZERO, MM AND DEGREES</source>
+      <translation>PRESETS  ·  POSICIÓN DE MÁQUINA DEL CERO DE LA PIEZA, MM Y GRADOS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/presets.py" />
+      <source>THE TWO POINTS ARE NEARER THAN 1 MM: TOUCH THE EDGE FURTHER ON</source>
+      <translation>LOS DOS PUNTOS DISTAN MENOS DE 1 MM: TOQUE LA ARISTA MÁS ALLÁ</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/presets.py" />
+      <source>edge of {value}</source>
+      <translation>arista de {value}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/presets.py" />
+      <source>in force: {preset}</source>
+      <translation>en vigor: {preset}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/presets.py" />
+      <source>reads {value}</source>
+      <translation>lee {value}</translation>
+    </message>
+    <message>
       <location filename="app/offsets/secondary_offsets.py" />
       <source>C CLEARS ALL OFFSETS ONLY WHILE Offset Number? IS ASKED; PRESS ESC FIRST</source>
       <translation>C BORRA TODO SÓLO MIENTRAS SE PREGUNTA ¿Número de compensación?; OPRIMA PRIMERO ESC</translation>
@@ -3620,6 +8070,11 @@
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
+      <source>F2 adds what is typed; F3: X and Z from the master; F8: shape; D: another edge; Esc leaves</source>
+      <translation>F2 suma lo escrito; F3: X y Z desde la maestra; F8: forma; D: otro filo; Esc sale</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets.py" />
       <source>NO TOOL IS THE MASTER: CHOOSE ONE IN ITS COLUMN WITH RETURN</source>
       <translation>NINGUNA HERRAMIENTA ES LA MAESTRA: ELIJA UNA EN SU COLUMNA CON RETURN</translation>
     </message>
@@ -3640,18 +8095,23 @@
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
+      <source>T{number} HAS ALL ITS CUTTING EDGES, D1 TO D9</source>
+      <translation>T{number} TIENE TODOS SUS FILOS, D1 A D9</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets.py" />
       <source>T{number} IS NOT SET: X AND Z BELONG TOGETHER</source>
       <translation>T{number} NO SE PUSO: X Y Z VAN JUNTAS</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
-      <source>X AND Z ARE SHOWN FROM THE MASTER: PRESS F3, THEN TYPE THEM FROM HOME</source>
-      <translation>X Y Z SE MUESTRAN DESDE LA MAESTRA: OPRIMA F3, Y ESCRÍBALAS DESDE LA REFERENCIA</translation>
+      <source>T{number}: TYPE ITS X AND Z</source>
+      <translation>T{number}: ESCRIBA SU X Y SU Z</translation>
     </message>
     <message>
-      <location filename="app/offsets/tool_offsets_view.py" />
-      <source>ADD</source>
-      <translation>SUMAR</translation>
+      <location filename="app/offsets/tool_offsets.py" />
+      <source>X AND Z ARE SHOWN FROM THE MASTER: PRESS F3, THEN TYPE THEM FROM HOME</source>
+      <translation>X Y Z SE MUESTRAN DESDE LA MAESTRA: OPRIMA F3, Y ESCRÍBALAS DESDE LA REFERENCIA</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
@@ -3755,23 +8215,18 @@
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
-      <source>G{code} IS AS IT WAS</source>
-      <translation>G{code} QUEDA COMO ESTABA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets.py" />
       <source>PRESS Y TO CLEAR G54 TO G59, ESC TO KEEP THEM</source>
       <translation>OPRIMA Y PARA BORRAR G54 A G59, ESC PARA CONSERVARLOS</translation>
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
-      <source>THIS MACHINE HAS NO AXIS {axis}</source>
-      <translation>ESTA MÁQUINA NO TIENE EJE {axis}</translation>
+      <source>SETTABLE OFFSETS  ·  X IS A RADIUS  ·  MM AND DEGREES</source>
+      <translation>CEROS AJUSTABLES  ·  X ES RADIO  ·  MM Y GRADOS</translation>
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
-      <source>TYPE A VALUE OR A SUM AND PRESS RETURN; ARROWS AND TAB CHOOSE ANOTHER CELL</source>
-      <translation>ESCRIBA UN VALOR O UNA SUMA Y OPRIMA RETURN; FLECHAS Y TAB ELIGEN OTRA CELDA</translation>
+      <source>THIS MACHINE HAS NO AXIS {axis}</source>
+      <translation>ESTA MÁQUINA NO TIENE EJE {axis}</translation>
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
@@ -3782,31 +8237,6 @@
       <location filename="app/offsets/zero_offsets.py" />
       <source>Z, MM?</source>
       <translation>¿Z, MM?</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets.py" />
-      <source>degrees</source>
-      <translation>grados</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets.py" />
-      <source>reads {value}</source>
-      <translation>lee {value}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets.py" />
-      <source>{axis} DOES NOT KNOW ITS POSITION: HOME IT FIRST</source>
-      <translation>{axis} NO CONOCE SU POSICIÓN: REFERÉNCIELO PRIMERO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets_view.py" />
-      <source>HERE</source>
-      <translation>AQUÍ</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets_view.py" />
-      <source>SETTABLE OFFSETS  ·  X IS A RADIUS  ·  MM AND DEGREES</source>
-      <translation>CEROS AJUSTABLES  ·  X ES RADIO  ·  MM Y GRADOS</translation>
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
@@ -3867,11 +8297,6 @@
       <location filename="app/part/part_sheet.py" />
       <source>SILENCE</source>
       <translation>SILENC.</translation>
-    </message>
-    <message>
-      <location filename="app/part/part_sheet.py" />
-      <source>STOCK</source>
-      <translation>MATERIAL</translation>
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
@@ -3985,11 +8410,6 @@
     </message>
     <message>
       <location filename="app/part/part_tables.py" />
-      <source>NOT PROVED YET</source>
-      <translation>AÚN NO PROBADO</translation>
-    </message>
-    <message>
-      <location filename="app/part/part_tables.py" />
       <source>NOTHING WAS FOUND</source>
       <translation>NO SE ENCONTRÓ NADA</translation>
     </message>
@@ -4075,6 +8495,11 @@
     </message>
     <message>
       <location filename="app/path/measuring.py" />
+      <source>END</source>
+      <translation>EXTREMO</translation>
+    </message>
+    <message>
+      <location filename="app/path/measuring.py" />
       <source>ROUND</source>
       <translation>REDONDO</translation>
     </message>
@@ -4087,16 +8512,6 @@
       <location filename="app/path/measuring.py" />
       <source>TO Z</source>
       <translation>A LA Z</translation>
-    </message>
-    <message>
-      <location filename="app/path/part_bar_view.py" />
-      <source>LINE {line}</source>
-      <translation>LÍNEA {line}</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_aspects.py" />
-      <source>FACE</source>
-      <translation>CARA</translation>
     </message>
     <message>
       <location filename="app/path/path_aspects.py" />
@@ -4325,11 +8740,6 @@
     </message>
     <message>
       <location filename="app/programs/folder_chooser.py" />
-      <source>%1 CANNOT BE READ: %2</source>
-      <translation>NO SE PUEDE LEER %1: %2</translation>
-    </message>
-    <message>
-      <location filename="app/programs/folder_chooser.py" />
       <source>FOLDER</source>
       <translation>CARPETA</translation>
     </message>
@@ -4345,13 +8755,18 @@
     </message>
     <message>
       <location filename="app/programs/folder_chooser.py" />
-      <source>PROGRAM</source>
-      <translation>PROGRAMA</translation>
+      <source>READ-ONLY</source>
+      <translation>SOLO LECTURA</translation>
     </message>
     <message>
       <location filename="app/programs/folder_chooser.py" />
       <source>THIS CONTROL</source>
       <translation>ESTE CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>%1 CANNOT BE READ: %2</source>
+      <translation>NO SE PUEDE LEER %1: %2</translation>
     </message>
     <message>
       <location filename="app/programs/import_export.py" />
@@ -4375,8 +8790,8 @@
     </message>
     <message>
       <location filename="app/programs/import_export.py" />
-      <source>COPYING: LEAVE THE STICK WHERE IT IS</source>
-      <translation>COPIANDO: NO SAQUE LA MEMORIA</translation>
+      <source>COPYING {number} OF {of}: LEAVE THE STICK WHERE IT IS</source>
+      <translation>COPIANDO {number} DE {of}: NO SAQUE LA MEMORIA</translation>
     </message>
     <message>
       <location filename="app/programs/import_export.py" />
@@ -4442,6 +8857,11 @@
       <location filename="app/programs/import_export.py" />
       <source>{count} IMPORTED; NOT ALL PROVE: {found}</source>
       <translation>{count} IMPORTADOS; NO TODOS PASAN LA COMPROBACIÓN: {found}</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>{done} OF {of} COPIED</source>
+      <translation>{done} DE {of} COPIADOS</translation>
     </message>
     <message>
       <location filename="app/programs/import_export.py" />
@@ -4559,6 +8979,11 @@
       <translation>DÓNDE</translation>
     </message>
     <message>
+      <location filename="app/programs/program_list.py" />
+      <source>{name} IS A DRAWING: F3 MAKES A PROGRAM OF IT</source>
+      <translation>{name} ES UN DIBUJO: F3 HACE DE ÉL UN PROGRAMA</translation>
+    </message>
+    <message>
       <location filename="app/programs/program_rows.py" />
       <source>DATE</source>
       <translation>FECHA</translation>
@@ -4577,6 +9002,31 @@
       <location filename="app/programs/programs_view.py" />
       <source>RECORD</source>
       <translation>REGISTRO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/removable_media.py" />
+      <source>NOT ENOUGH ROOM ON {place}: {size} ARE NEEDED, {free} FREE; TAKE ANOTHER STICK</source>
+      <translation>NO CABE EN {place}: HACEN FALTA {size}, HAY {free}; USE OTRA MEMORIA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/removable_media.py" />
+      <source>{place} IS FULL: NOTHING HALF IS LEFT ON IT; TAKE ANOTHER STICK</source>
+      <translation>{place} ESTÁ LLENA: NO QUEDA NADA A MEDIAS EN ELLA; USE OTRA MEMORIA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/removable_media.py" />
+      <source>{place} IS NOT THERE ANY MORE: WAS IT PULLED OUT? PLUG IT IN AND PRESS F2</source>
+      <translation>{place} YA NO ESTÁ: ¿SE HA SACADO? CONÉCTELA Y PULSE F2</translation>
+    </message>
+    <message>
+      <location filename="app/programs/removable_media.py" />
+      <source>{place} IS READ-ONLY: SET ITS SWITCH TO WRITE, OR TAKE ANOTHER STICK</source>
+      <translation>{place} ES DE SOLO LECTURA: PONGA SU INTERRUPTOR EN ESCRITURA O USE OTRA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/removable_media.py" />
+      <source>{place}: {why}</source>
+      <translation>{place}: {why}</translation>
     </message>
     <message>
       <location filename="app/programs/run_history.py" />
@@ -4855,11 +9305,6 @@
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
-      <source>REMOVE</source>
-      <translation>QUITAR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
       <source>RETURN CHANGES THE MARKED FEATURE, F2 ENTERS ANOTHER; ESC GOES BACK TO THE LIST</source>
       <translation>RETURN CAMBIA LA MARCADA, F2 INTRODUCE OTRA; ESC VUELVE A LA LISTA</translation>
     </message>
@@ -4910,8 +9355,8 @@
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
-      <source>nominal, tolerance, tool, sample plan</source>
-      <translation>nominal, tolerancia, herramienta, plan</translation>
+      <source>nominal, tolerance, sample plan</source>
+      <translation>nominal, tolerancia, plan de muestras</translation>
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
@@ -4980,8 +9425,8 @@
     </message>
     <message>
       <location filename="app/quality/parts_function.py" />
-      <source>readings, charts, tool life, trends</source>
-      <translation>lecturas, gráficas, vida útil, tendencias</translation>
+      <source>features, readings, charts, trends</source>
+      <translation>características, lecturas, gráficos, tendencias</translation>
     </message>
     <message>
       <location filename="app/quality/plots_view.py" />
@@ -5100,8 +9545,13 @@
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
-      <source>measure a part, take over a correction</source>
-      <translation>medir una pieza, tomar una corrección</translation>
+      <source>What a feature is off is typed into DL and DR of the tool table, F8 of the main menu.</source>
+      <translation>Lo que una característica se desvía se escribe en DL y DR de la tabla de herramientas, F8 del menú principal.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>measure a part, see what it asks for</source>
+      <translation>medir una pieza, ver qué pide</translation>
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
@@ -5147,6 +9597,291 @@
       <location filename="app/quality/section.py" />
       <source>NO FEATURE IS ENTERED YET: SECTION 1, F2</source>
       <translation>AÚN NO HAY CARACTERÍSTICAS: SECCIÓN 1, F2</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_figures.py" />
+      <source>No part was begun in this time.</source>
+      <translation>En este tiempo no se empezó ninguna pieza.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_figures.py" />
+      <source>The clock was put back by {time} within the shift: it was so much longer.</source>
+      <translation>El reloj se atrasó {time} dentro del turno: fue más largo en ese tiempo.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_figures.py" />
+      <source>The clock was put forward by {time} within the shift: it was so much shorter.</source>
+      <translation>El reloj se adelantó {time} dentro del turno: fue más corto en ese tiempo.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_figures.py" />
+      <source>The clock was set back after {time}: times of day overlap there, lengths are right.</source>
+      <translation>El reloj se puso atrás después de {time}: allí las horas se solapan, las duraciones son ciertas.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_figures.py" />
+      <source>The shift has not begun.</source>
+      <translation>El turno no ha empezado.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_figures.py" />
+      <source>The shift is still on: figures up to {time}.</source>
+      <translation>El turno sigue en curso: cifras hasta las {time}.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_function.py" />
+      <source>EARLIER</source>
+      <translation>ANTES</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_function.py" />
+      <source>F2 AND F3 GO TO ANOTHER SHIFT, F6 WRITES THE REPORT AS HTML; ESC GOES BACK TO THE LIST</source>
+      <translation>F2 Y F3 VAN A OTRO TURNO, F6 ESCRIBE EL INFORME COMO HTML; ESC VUELVE A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_function.py" />
+      <source>LATER</source>
+      <translation>DESPUÉS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_function.py" />
+      <source>Making the report …</source>
+      <translation>Haciendo el informe …</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_function.py" />
+      <source>NO EARLIER SHIFT IS LOOKED AT HERE</source>
+      <translation>AQUÍ NO SE MIRA NINGÚN TURNO ANTERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_function.py" />
+      <source>NOT KEPT HERE: THERE IS NO STORE</source>
+      <translation>AQUÍ NO SE GUARDA NADA: NO HAY ALMACÉN</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_function.py" />
+      <source>RETURN WRITES THE REPORT TO THE MARKED PLACE; F4 LOOKS FOR STICKS AGAIN</source>
+      <translation>INTRO ESCRIBE EL INFORME EN EL LUGAR MARCADO; F4 BUSCA OTRA VEZ MEMORIAS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_function.py" />
+      <source>Return writes it there as HTML.</source>
+      <translation>Intro lo escribe allí como HTML.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_function.py" />
+      <source>SHIFT REPORT</source>
+      <translation>INFORME DE TURNO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_function.py" />
+      <source>SHIFT REPORT  ·  WRITE TO WHERE?</source>
+      <translation>INFORME DE TURNO  ·  ¿DÓNDE SE ESCRIBE?</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_function.py" />
+      <source>THE REPORT IS STILL BEING MADE: WAIT A MOMENT</source>
+      <translation>EL INFORME AÚN SE ESTÁ HACIENDO: ESPERE UN MOMENTO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_function.py" />
+      <source>THERE IS NO LATER SHIFT</source>
+      <translation>NO HAY TURNO POSTERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_function.py" />
+      <source>parts, times, stops, alarms; on paper</source>
+      <translation>piezas, tiempos, paros, alarmas; en papel</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_function.py" />
+      <source>{name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED</source>
+      <translation>{name} ESTÁ ENTERO Y EN EL DISCO: PUEDE RETIRAR LA MEMORIA USB</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>%1 in</source>
+      <translation>%1 pulg</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>%1 mm</source>
+      <translation>%1 mm</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>Alarms and E-stops</source>
+      <translation>Alarmas y paros de emergencia</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>Availability</source>
+      <translation>Disponibilidad</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>Every stop</source>
+      <translation>Cada paro</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>HAD MADE</source>
+      <translation>HABÍA HECHO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>INSERT OF</source>
+      <translation>PLAQUITA DE</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>Inserts changed in this time</source>
+      <translation>Plaquitas cambiadas en este tiempo</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>LIMITS</source>
+      <translation>LÍMITES</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>LONGEST</source>
+      <translation>MÁS LARGO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>MEAN</source>
+      <translation>MEDIA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>NO PART</source>
+      <translation>SIN PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>Not recorded</source>
+      <translation>Sin registrar</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>OF ITS LIFE</source>
+      <translation>DE SU VIDA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>OFFSET</source>
+      <translation>CORRECTOR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>Offsets changed</source>
+      <translation>Correctores cambiados</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>Out of tolerance</source>
+      <translation>Fuera de tolerancia</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>Parts</source>
+      <translation>Piezas</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>Parts by program</source>
+      <translation>Piezas por programa</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>REASON</source>
+      <translation>MOTIVO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>SHARE</source>
+      <translation>PARTE</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>SHORTEST</source>
+      <translation>MÁS CORTO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>SINCE</source>
+      <translation>DESDE</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>Stops</source>
+      <translation>Paros</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>Stops by reason</source>
+      <translation>Paros por motivo</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>TIMES</source>
+      <translation>VECES</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>Tool life used, as of now</source>
+      <translation>Vida de herramienta usada, hasta ahora</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>USED</source>
+      <translation>USADO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>WHO</source>
+      <translation>QUIÉN</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>WHY</source>
+      <translation>POR QUÉ</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>and {count} more</source>
+      <translation>y {count} más</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>green: cycles; amber: stops; red: alarms</source>
+      <translation>verde: ciclos; ámbar: paros; rojo: alarmas</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>shift from {first} to {last}</source>
+      <translation>turno de {first} a {last}</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>wear</source>
+      <translation>desgaste</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>{bad} of {count} readings</source>
+      <translation>{bad} de {count} lecturas</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>{parts} parts, {time}</source>
+      <translation>{parts} piezas, {time}</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>{share} %: cycles ran {run} of {planned}</source>
+      <translation>{share} %: ciclos {run} de {planned}</translation>
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
@@ -5210,11 +9945,6 @@
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
-      <source>USED</source>
-      <translation>USADO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
       <source>WARN</source>
       <translation>AVISO</translation>
     </message>
@@ -5240,6 +9970,11 @@
     </message>
     <message>
       <location filename="app/quality/tool_life_watch.py" />
+      <source>T{number}: A FRESH TOOL, ITS LIFE BEGINS AT NOUGHT</source>
+      <translation>T{number}: HERRAMIENTA NUEVA, SU VIDA EMPIEZA EN CERO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_watch.py" />
       <source>T{number}: ITS LIFE IS GONE, {words}</source>
       <translation>T{number}: SU VIDA SE ACABÓ, {words}</translation>
     </message>
@@ -5247,6 +9982,16 @@
       <location filename="app/quality/tool_life_watch.py" />
       <source>T{number}: {words} OF ITS LIFE ARE GONE</source>
       <translation>T{number}: {words} DE SU VIDA ESTÁN GASTADOS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_watch.py" />
+      <source>put a fresh tool in and set its CUR.TIME to 0 in the tool table (F8)</source>
+      <translation>ponga una herramienta nueva y su CUR.TIME a 0 en la tabla de herramientas (F8)</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_watch.py" />
+      <source>the life of T%1 is gone, %2: %3</source>
+      <translation>la vida de T%1 se ha agotado, %2: %3</translation>
     </message>
     <message>
       <location filename="app/quality/tool_life_watch.py" />
@@ -5325,8 +10070,8 @@
     </message>
     <message>
       <location filename="app/quality/trends_section.py" />
-      <source>cycle times, wear, stops, availability</source>
-      <translation>ciclos, desgaste, paros, disponibilidad</translation>
+      <source>cycle times, stops, availability</source>
+      <translation>tiempos de ciclo, paradas, disponibilidad</translation>
     </message>
     <message>
       <location filename="app/quality/trends_section.py" />
@@ -5402,6 +10147,11 @@
       <location filename="app/quality/wear_correction.py" />
       <source>{offset} {change}: {feature} {old} → {new}</source>
       <translation>{offset} {change}: {feature} {old} → {new}</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>%1  rpm</source>
+      <translation>%1  rpm</translation>
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
@@ -5550,6 +10300,21 @@
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
+      <source>The worst place of each line; slides are counted from home, X as a radius.</source>
+      <translation>El peor punto de cada línea; los carros se cuentan desde el origen, X como radio.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>The worst place of each line; slides are counted from home.</source>
+      <translation>El peor lugar de cada línea; los carros se cuentan desde el origen.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>WAY BESIDE THE THREAD</source>
+      <translation>CAMINO FUERA DE LA ROSCA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
       <source>WORKED OUT …</source>
       <translation>CALCULANDO …</translation>
     </message>
@@ -5557,6 +10322,11 @@
       <location filename="app/scope/analyses.py" />
       <source>asked and done of the last move, and its following error, over seconds</source>
       <translation>lo pedido y lo hecho del último movimiento, y su error de seguimiento, en segundos</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>asked and turned of the last run-up, over seconds</source>
+      <translation>lo pedido y lo girado del último arranque, en segundos</translation>
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
@@ -5575,6 +10345,11 @@
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
+      <source>spindle command</source>
+      <translation>consigna del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
       <source>spindle speed</source>
       <translation>velocidad del husillo</translation>
     </message>
@@ -5590,8 +10365,13 @@
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
-      <source>there is no arc of 60 degrees or more in this time: record while a G02 or G03 is cut</source>
-      <translation>en este tiempo no hay un arco de 60 grados o más: registre mientras se corta un G02 o G03</translation>
+      <source>there is no arc of 60 degrees or more in this time: record while one is cut</source>
+      <translation>no hay ningún arco de 60 grados o más en este tiempo: grabe mientras se corta uno</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>turns</source>
+      <translation>vueltas</translation>
     </message>
     <message>
       <location filename="app/scope/analyses_view.py" />
@@ -5625,6 +10405,11 @@
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
+      <source>FOLLOWING ERROR</source>
+      <translation>ERROR DE SEGUIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
       <source>GREATEST ERROR</source>
       <translation>ERROR MAYOR</translation>
     </message>
@@ -5646,12 +10431,12 @@
     <message>
       <location filename="app/scope/axis_response.py" />
       <source>LAG MEETS WINDOW AT</source>
-      <translation>EL RETRASO LLENA LA VENTANA A</translation>
+      <translation>RETRASO = VENTANA A</translation>
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
       <source>NARROWEST THAT HOLDS</source>
-      <translation>LA MÁS ESTRECHA QUE AGUANTA</translation>
+      <translation>LA MÍNIMA QUE AGUANTA</translation>
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
@@ -5696,7 +10481,7 @@
     <message>
       <location filename="app/scope/axis_response.py" />
       <source>no speed it has</source>
-      <translation>ninguna velocidad que tenga</translation>
+      <translation>a ninguna</translation>
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
@@ -6080,11 +10865,6 @@
     </message>
     <message>
       <location filename="app/scope/signals.py" />
-      <source>FOLLOWING ERROR</source>
-      <translation>ERROR DE SEGUIMIENTO</translation>
-    </message>
-    <message>
-      <location filename="app/scope/signals.py" />
       <source>Feed override</source>
       <translation>Sobremando de avance</translation>
     </message>
@@ -6097,11 +10877,6 @@
       <location filename="app/scope/signals.py" />
       <source>LATENESS</source>
       <translation>RETRASO</translation>
-    </message>
-    <message>
-      <location filename="app/scope/signals.py" />
-      <source>LOAD</source>
-      <translation>CARGA</translation>
     </message>
     <message>
       <location filename="app/scope/signals.py" />
@@ -6220,11 +10995,6 @@
     </message>
     <message>
       <location filename="app/scope/signals.py" />
-      <source>spindle command</source>
-      <translation>consigna del husillo</translation>
-    </message>
-    <message>
-      <location filename="app/scope/signals.py" />
       <source>spindle load</source>
       <translation>carga del husillo</translation>
     </message>
@@ -6240,11 +11010,6 @@
     </message>
     <message>
       <location filename="app/scope/signals.py" />
-      <source>turns</source>
-      <translation>vueltas</translation>
-    </message>
-    <message>
-      <location filename="app/scope/signals.py" />
       <source>velocity</source>
       <translation>velocidad</translation>
     </message>
@@ -6252,6 +11017,71 @@
       <location filename="app/scope/signals.py" />
       <source>velocity commanded</source>
       <translation>velocidad mandada</translation>
+    </message>
+    <message>
+      <location filename="app/scope/spindle_response.py" />
+      <source>%1 rpm</source>
+      <translation>%1 rpm</translation>
+    </message>
+    <message>
+      <location filename="app/scope/spindle_response.py" />
+      <source>%1 rpm/s</source>
+      <translation>%1 rpm/s</translation>
+    </message>
+    <message>
+      <location filename="app/scope/spindle_response.py" />
+      <source>%1 → %2 rpm</source>
+      <translation>%1 → %2 rpm</translation>
+    </message>
+    <message>
+      <location filename="app/scope/spindle_response.py" />
+      <source>Mean and swing are of the last second. A dash: it did not stay there.</source>
+      <translation>Media y oscilación son del último segundo. Una raya: no se quedó ahí.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/spindle_response.py" />
+      <source>OFF IN THE MEAN</source>
+      <translation>DESVÍO MEDIO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/spindle_response.py" />
+      <source>Of the last run-up; worked out, nothing was changed.</source>
+      <translation>Del último arranque; calculado, nada se cambió.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/spindle_response.py" />
+      <source>SWING</source>
+      <translation>OSCILACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/scope/spindle_response.py" />
+      <source>The machine file counts on {accel} rpm/s and calls {share} at speed.</source>
+      <translation>El archivo de máquina cuenta con {accel} rpm/s y da {share} por velocidad alcanzada.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/spindle_response.py" />
+      <source>WITHIN {share} AFTER</source>
+      <translation>DENTRO DE {share} TRAS</translation>
+    </message>
+    <message>
+      <location filename="app/scope/spindle_response.py" />
+      <source>nobody tells the spindle's measured speed here</source>
+      <translation>aquí nadie dice la velocidad medida del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/spindle_response.py" />
+      <source>spindle %1</source>
+      <translation>husillo %1</translation>
+    </message>
+    <message>
+      <location filename="app/scope/spindle_response.py" />
+      <source>the spindle was not brought to another speed in this time: start it by a program or in MDI</source>
+      <translation>el husillo no se llevó a otra velocidad en este tiempo: arránquelo con un programa o en MDI</translation>
+    </message>
+    <message>
+      <location filename="app/scope/spindle_response.py" />
+      <source>this machine has no spindle</source>
+      <translation>esta máquina no tiene husillo</translation>
     </message>
     <message>
       <location filename="app/screen/alarm_panels.py" />
@@ -6325,6 +11155,11 @@
     </message>
     <message>
       <location filename="app/screen/main_window.py" />
+      <source>THE DESK WAS STARTED AS A KIOSK: IT ENDS WITH THE COMPUTER OR BY SIGTERM</source>
+      <translation>EL PUESTO SE ARRANCÓ COMO QUIOSCO: TERMINA CON EL ORDENADOR O POR SIGTERM</translation>
+    </message>
+    <message>
+      <location filename="app/screen/main_window.py" />
       <source>THE SCREEN STOOD STILL FOR {seconds} S: WHAT WAS PRESSED MEANWHILE WAS FORGOTTEN</source>
       <translation>LA PANTALLA ESTUVO DETENIDA {seconds} S: LO OPRIMIDO MIENTRAS TANTO SE OLVIDÓ</translation>
     </message>
@@ -6357,6 +11192,11 @@
       <location filename="app/screen/page_table.py" />
       <source>G54…G59: where SINUMERIK programs have their zero</source>
       <translation>G54…G59: dónde tienen su cero los programas SINUMERIK</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>L, R, R2, oversizes, teeth, life; length touched off</source>
+      <translation>L, R, R2, sobremedidas, dientes, vida; longitud palpada</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -6400,6 +11240,11 @@
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
+      <source>TOOL TABLE</source>
+      <translation>TABLA HERRAM.</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
       <source>ZERO OFFSETS</source>
       <translation>CEROS DE PIEZA</translation>
     </message>
@@ -6420,18 +11265,13 @@
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
-      <source>move by hand, touch tools off</source>
-      <translation>mover a mano, tocar herramientas</translation>
+      <source>move by hand: axes, steps, home</source>
+      <translation>mover a mano: ejes, pasos, referencia</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
       <source>one line at a time</source>
       <translation>una línea a la vez</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>readings, charts, wear, tool life, trends</source>
-      <translation>lecturas, gráficos, desgaste, vida de herramienta, tendencias</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -6442,6 +11282,11 @@
       <location filename="app/screen/page_table.py" />
       <source>speed limit, parts, inputs and outputs, log, backup</source>
       <translation>tope de velocidad, piezas, entradas y salidas, bitácora, respaldo</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>where the workpiece lies: X Y Z, rotary axes, basic rotation</source>
+      <translation>dónde está la pieza: X Y Z, ejes giratorios, rotación básica</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -6525,6 +11370,11 @@
     </message>
     <message>
       <location filename="app/screen/station_dock.py" />
+      <source>CYCLE START: ONE BY ONE</source>
+      <translation>CYCLE START: UNA TRAS OTRA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
       <source>FEED HOLD</source>
       <translation>RETENCIÓN DE AVANCE</translation>
     </message>
@@ -6582,11 +11432,6 @@
       <location filename="app/screen/window_frame.py" />
       <source>CYCLE</source>
       <translation>CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_frame.py" />
-      <source>DRIVES ON</source>
-      <translation>SERVOS ACTIVOS</translation>
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
@@ -6675,13 +11520,13 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
-      <source>PROVING THE RESTART; ESC GIVES UP</source>
-      <translation>COMPROBANDO EL REARRANQUE; ESC ABANDONA</translation>
+      <source>ON A MILL THE TOOL IS DRAWN OUT ALONG ITS AXIS BEFORE EVERY RESTART, OR BY HAND IN JOG</source>
+      <translation>EN UNA FRESADORA LA HERRAMIENTA SALE A LO LARGO DE SU EJE ANTES DE CADA REINICIO, O A MANO EN JOG</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
-      <source>SEARCHTO READS OMNITURN PROGRAMS ONLY; THIS ONE STARTS FROM ITS FIRST LINE</source>
-      <translation>BUSCAR A LEE SÓLO PROGRAMAS OMNITURN; ÉSTE ARRANCA DESDE SU PRIMERA LÍNEA</translation>
+      <source>PROVING THE RESTART; ESC GIVES UP</source>
+      <translation>COMPROBANDO EL REARRANQUE; ESC ABANDONA</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -6755,6 +11600,16 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
+      <source>LOOK: {axis} STANDS AT {at} AND NO LINE BEFORE HAS TURNED IT; IT STAYS THERE</source>
+      <translation>MIRE: {axis} ESTÁ EN {at} Y NINGUNA LÍNEA ANTERIOR LO HA GIRADO; SE QUEDA AHÍ</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_plan.py" />
+      <source>ON THIS MACHINE THE SLIDES HAVE NO LIMITS, SO NO SAFE WAY IS KNOWN: START FROM THE FIRST LINE</source>
+      <translation>EN ESTA MÁQUINA LOS CARROS NO TIENEN LÍMITES, ASÍ QUE NO SE CONOCE UN CAMINO SEGURO: EMPIECE DESDE LA PRIMERA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_plan.py" />
       <source>PASS OF LINES {first}-{last}</source>
       <translation>PASADA DE LAS LÍNEAS {first}-{last}</translation>
     </message>
@@ -6815,6 +11670,11 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
+      <source>{axis} MACHINE</source>
+      <translation>{axis} MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_plan.py" />
       <source>{name} ON</source>
       <translation>{name} ENCENDIDO</translation>
     </message>
@@ -6825,8 +11685,18 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_state_view.py" />
+      <source>%1  Tab  %2</source>
+      <translation>%1  Tab  %2</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_state_view.py" />
       <source>AT THE LINE</source>
       <translation>EN LA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_state_view.py" />
+      <source>NOTHING DIFFERS FROM NOW</source>
+      <translation>NADA DIFIERE DE AHORA</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_state_view.py" />
@@ -6837,6 +11707,11 @@
       <location filename="app/searchto/searchto_state_view.py" />
       <source>Pass before</source>
       <translation>Pasada ant.</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_state_view.py" />
+      <source>{count} EQUAL</source>
+      <translation>{count} IGUALES</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_view.py" />
@@ -6930,6 +11805,11 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_view.py" />
+      <source>WAY: {legs}</source>
+      <translation>CAMINO: {legs}</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_view.py" />
       <source>WILL START</source>
       <translation>ARRANCARÁ</translation>
     </message>
@@ -6942,6 +11822,276 @@
       <location filename="app/searchto/searchto_view.py" />
       <source>{which}: NONE</source>
       <translation>{which}: NINGUNA</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>AXIS</source>
+      <translation>EJE</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>BLADE</source>
+      <translation>BLADE</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>COMP</source>
+      <translation>COMP</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>CONTOUR</source>
+      <translation>CONTORNO</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>DEPTH OF A ROUGH PASS</source>
+      <translation>PROFUNDIDAD DE DESBASTE</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>DIAMETER OF THE HOLE</source>
+      <translation>DIÁMETRO DEL AGUJERO</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>DIAMETER OF THE STOCK</source>
+      <translation>DIÁMETRO DEL MATERIAL</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>DUNIT</source>
+      <translation>DUNIT</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>FACE IS AT THE</source>
+      <translation>LA CARA ESTÁ A LA</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>FROM</source>
+      <translation>FROM</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>FRONT</source>
+      <translation>FRENTE</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>GROOVE TOOL</source>
+      <translation>ÚTIL DE RANURAR</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>HOLE</source>
+      <translation>HOLE</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>LAYER</source>
+      <translation>CAPA</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>MATERIAL</source>
+      <translation>MATERIAL</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>NOSE COMPENSATION D</source>
+      <translation>COMPENSACIÓN DE PUNTA D</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>ROUGH</source>
+      <translation>ROUGH</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>SHIFT</source>
+      <translation>SHIFT</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>STEEL</source>
+      <translation>ACERO</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>STOCK BEFORE THE FACE</source>
+      <translation>MATERIAL ANTE LA CARA</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>THE DRAWING IS BEING READ</source>
+      <translation>SE ESTÁ LEYENDO EL DIBUJO</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>There is no drawing beside the programs: copy a DXF or SVG there by F6, F8.</source>
+      <translation>No hay ningún dibujo junto a los programas: copie allí un DXF o SVG con F6, F8.</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>UNIT OF THE DRAWING</source>
+      <translation>UNIDAD DEL DIBUJO</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>Z OF THAT PLACE</source>
+      <translation>Z DE ESE LUGAR</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>Z0 IS AT THE</source>
+      <translation>Z0 ESTÁ EN</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
+      <source>a profile out of a DXF or SVG drawing: faced, roughed, finished, grooved</source>
+      <translation>un perfil de un dibujo DXF o SVG: refrentado, desbastado, acabado, ranurado</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_plan.py" />
+      <source>%1 cannot be read: %2.</source>
+      <translation>no se puede leer %1: %2.</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_plan.py" />
+      <source>%1 does not say its unit: choose MM or INCH.</source>
+      <translation>%1 no dice su unidad: elija MM o INCH.</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_plan.py" />
+      <source>%1 has %2 contours: choose 1 to %3.</source>
+      <translation>%1 tiene %2 contornos: elija de 1 a %3.</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_plan.py" />
+      <source>%1 has no contour %2: choose another layer or axis.</source>
+      <translation>%1 no tiene contorno %2: elija otra capa u otro eje.</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_plan.py" />
+      <source>%1 has no layer %2: choose another.</source>
+      <translation>%1 no tiene la capa %2: elija otra.</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_plan.py" />
+      <source>A bore begins with a hole: type its diameter.</source>
+      <translation>Un mandrinado empieza con un agujero: escriba su diámetro.</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_plan.py" />
+      <source>AS DRAWN</source>
+      <translation>COMO EN EL DIBUJO</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_plan.py" />
+      <source>CONTOUR %1</source>
+      <translation>CONTORNO %1</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_plan.py" />
+      <source>beside this axis</source>
+      <translation>junto a este eje</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_plan.py" />
+      <source>on layer %1</source>
+      <translation>en la capa %1</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shape_form.py" />
+      <source>CLASS</source>
+      <translation>CLASE</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shape_form.py" />
+      <source>These figures make no shape: look at the last that was typed.</source>
+      <translation>Estas cifras no dan ninguna forma: mire la última que se ha escrito.</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
+      <source>A LETTER OPENS A SHAPE, RIGHT LEADS TO THOSE OF THIS PROGRAM; F10: TO THE TEXT</source>
+      <translation>UNA LETRA ABRE UNA FORMA, DERECHA LLEVA A LAS DE ESTE PROGRAMA; F10: AL TEXTO</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
+      <source>A PROGRAM BEGINS WITH ITS HEAD: PRESS N, THEN WRITE IT</source>
+      <translation>UN PROGRAMA EMPIEZA POR SU CABECERA: PULSE N Y ESCRÍBALA</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
+      <source>CHANGED BY HAND IN THE TEXT, AND TAKEN OVER: {fields}</source>
+      <translation>CAMBIADO A MANO EN EL TEXTO Y TOMADO DE ALLÍ: {fields}</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
+      <source>F6 REPLACES {count} LINES THAT WERE CHANGED BY HAND, FROM LINE {line}; ESC LEAVES THEM</source>
+      <translation>F6 SUSTITUYE {count} LÍNEAS CAMBIADAS A MANO, DESDE LA LÍNEA {line}; ESC LAS DEJA</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
+      <source>F6 TAKES THE {count} LINES OF THIS SHAPE OUT OF THE TEXT; ESC LEAVES THEM</source>
+      <translation>F6 QUITA DEL TEXTO LAS {count} LÍNEAS DE ESTA FORMA; ESC LAS DEJA</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
+      <source>LEFT AND RIGHT CHOOSE; A FINGER ON THE DRAWING PICKS THE CONTOUR, OR THE AXIS; F2 WRITES IT</source>
+      <translation>IZQUIERDA Y DERECHA ELIGEN; UN DEDO EN EL DIBUJO TOMA EL CONTORNO O EL EJE; F2 LO ESCRIBE</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
+      <source>LINE {line} WAS CHANGED BY HAND: THE FORM HAS WHAT THE COMMENT SAYS, F2 ASKS FIRST</source>
+      <translation>LA LÍNEA {line} SE CAMBIÓ A MANO: LA FICHA TIENE LO QUE DICE EL COMENTARIO, F2 PREGUNTA ANTES</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
+      <source>SHAPES ARE WRITTEN IN OMNITURN: THIS PROGRAM SPEAKS ANOTHER LANGUAGE</source>
+      <translation>LAS FORMAS SE ESCRIBEN EN OMNITURN: ESTE PROGRAMA HABLA OTRO LENGUAJE</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
+      <source>THE DRAWING CANNOT BE WORKED OUT: {why}</source>
+      <translation>NO SE PUEDE PROCESAR EL DIBUJO: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
+      <source>THE TOOL SHEETS CANNOT BE READ: {why}</source>
+      <translation>NO SE PUEDEN LEER LAS FICHAS DE HERRAMIENTA: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
+      <source>TYPE A FIGURE OR A SUM, RETURN: NEXT FIELD; F2 WRITES IT INTO THE PROGRAM</source>
+      <translation>ESCRIBA UNA CIFRA O UNA SUMA, RETORNO: CAMPO SIGUIENTE; F2 LO ESCRIBE EN EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
+      <source>X Z C R A LEAD TO A COLUMN, RETURN TO THE NEXT POINT; F2 WRITES IT INTO THE PROGRAM</source>
+      <translation>X Z C R A LLEVAN A UNA COLUMNA, RETORNO AL PUNTO SIGUIENTE; F2 LO ESCRIBE EN EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
+      <source>{count} SHAPES WERE CHANGED BY HAND AND STAY AS THEY ARE</source>
+      <translation>{count} FORMAS SE CAMBIARON A MANO Y QUEDAN COMO ESTÁN</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_view.py" />
+      <source>CALCULATORS AND TEMPLATES</source>
+      <translation>CALCULADORAS Y PLANTILLAS</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_view.py" />
+      <source>LINES</source>
+      <translation>LÍNEAS</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_view.py" />
+      <source>SHAPES  ·  THOSE OF THIS PROGRAM BY LINE</source>
+      <translation>FORMAS  ·  LAS DE ESTE PROGRAMA POR LÍNEA</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
@@ -6972,6 +12122,11 @@
       <location filename="app/special/backup_and_restore.py" />
       <source>Backing up …</source>
       <translation>Respaldando …</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
+      <source>DAILY</source>
+      <translation>DIARIA</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
@@ -7020,11 +12175,6 @@
     </message>
     <message>
       <location filename="app/special/drive_status.py" />
-      <source>AXIS</source>
-      <translation>EJE</translation>
-    </message>
-    <message>
-      <location filename="app/special/drive_status.py" />
       <source>DEMAND</source>
       <translation>CONSIGNA</translation>
     </message>
@@ -7057,11 +12207,6 @@
       <location filename="app/special/drive_status.py" />
       <source>Largest following error since the start: %1</source>
       <translation>Mayor error de seguimiento desde el arranque: %1</translation>
-    </message>
-    <message>
-      <location filename="app/special/drive_status.py" />
-      <source>ON</source>
-      <translation>ENCENDIDO</translation>
     </message>
     <message>
       <location filename="app/special/drive_status.py" />
@@ -7115,6 +12260,11 @@
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
+      <source>LAMP TEST: ALL LAMPS OF THE TOWER ARE ON FOR TWO SECONDS</source>
+      <translation>PRUEBA DE LÁMPARAS: TODAS LAS DE LA TORRE ESTÁN ENCENDIDAS DOS SEGUNDOS</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
       <source>LAMPS</source>
       <translation>LÁMPARAS</translation>
     </message>
@@ -7145,13 +12295,23 @@
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
+      <source>RETURN SWITCHES THE MARKED INPUT OF THE SIMULATED MACHINE; F4 SHOWS THE NEXT LIST</source>
+      <translation>RETURN CONMUTA LA ENTRADA MARCADA DE LA MÁQUINA SIMULADA; F4 MUESTRA LA LISTA SIGUIENTE</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
       <source>RETURN SWITCHES THE MARKED OUTPUT BY HAND: LOOK AT THE MACHINE FIRST</source>
       <translation>RETURN CAMBIA A MANO LA SALIDA MARCADA: MIRE PRIMERO LA MÁQUINA</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
-      <source>STATE</source>
-      <translation>ESTADO</translation>
+      <source>SIMULATED INPUT {name} IS OFF</source>
+      <translation>ENTRADA SIMULADA {name}: OFF</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>SIMULATED INPUT {name} IS ON</source>
+      <translation>ENTRADA SIMULADA {name}: ON</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
@@ -7165,8 +12325,108 @@
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
+      <source>THE CONTROL, BY ITSELF</source>
+      <translation>EL CONTROL, POR SÍ MISMO</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
       <source>live state, outputs by hand, lamps</source>
       <translation>estado, salidas a mano, lámparas</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>{name} IS A BUTTON OF THE STATION OR FOLLOWS THE MACHINE</source>
+      <translation>{name} ES UN BOTÓN DEL PUESTO O SIGUE A LA MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>A CYCLE THAT RUNS IS HEARD ANYWAY: IT HAS A LAMP ALONE</source>
+      <translation>UN CICLO EN MARCHA SE OYE DE TODOS MODOS: SOLO TIENE LÁMPARA</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>AMBER</source>
+      <translation>ÁMBAR</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>BLINKING</source>
+      <translation>INTERMITENTE</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>BUZZER</source>
+      <translation>ZUMBADOR</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>GREEN</source>
+      <translation>VERDE</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>LAMPS AND SOUND</source>
+      <translation>LÁMPARAS Y SONIDO</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>LAMPS: {names}</source>
+      <translation>LÁMPARAS: {names}</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>LAMPTEST</source>
+      <translation>PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>LOUDER</source>
+      <translation>MÁS</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>NO SOUND: {why}</source>
+      <translation>SIN SONIDO: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>RETURN SWITCHES THE SOUND OF THE MARKED ROW; F3 LOUDER, F4 TRIES; ESC GOES BACK TO THE LIST</source>
+      <translation>INTRO CAMBIA EL SONIDO DE LA FILA MARCADA; F3 MÁS FUERTE, F4 PRUEBA; ESC VUELVE A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>SOFTER</source>
+      <translation>MENOS</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>SOUND</source>
+      <translation>SONIDO</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>THE VOLUME IS NOUGHT: F3 MAKES IT LOUDER</source>
+      <translation>EL VOLUMEN ES CERO: F3 LO SUBE</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>THIS MACHINE HAS NO LAMPS: NAME THEM UNDER [io.out] OF ITS FILE</source>
+      <translation>ESTA MÁQUINA NO TIENE LÁMPARAS: NÓMBRELAS EN [io.out] DE SU ARCHIVO</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>VOLUME: {volume}</source>
+      <translation>VOLUMEN: {volume}</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>none in the machine file: lamp_red, lamp_amber, lamp_green, lamp_buzzer under [io.out]</source>
+      <translation>ninguna en el archivo de máquina: lamp_red, lamp_amber, lamp_green, lamp_buzzer en [io.out]</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>what lights and sounds, volume, lamp test</source>
+      <translation>qué se enciende y suena, volumen, prueba</translation>
     </message>
     <message>
       <location filename="app/special/logged_events.py" />
@@ -7274,6 +12534,31 @@
       <translation>lo que ha cambiado en él</translation>
     </message>
     <message>
+      <location filename="app/special/mill_setup.py" />
+      <source>BLK FORM  %1</source>
+      <translation>BLK FORM  %1</translation>
+    </message>
+    <message>
+      <location filename="app/special/mill_setup.py" />
+      <source>ROT %1°</source>
+      <translation>ROT %1°</translation>
+    </message>
+    <message>
+      <location filename="app/special/mill_setup.py" />
+      <source>not said: the program has no BLK FORM</source>
+      <translation>no se ha dicho: el programa no tiene BLK FORM</translation>
+    </message>
+    <message>
+      <location filename="app/special/mill_setup.py" />
+      <source>teeth</source>
+      <translation>dientes</translation>
+    </message>
+    <message>
+      <location filename="app/special/mill_setup.py" />
+      <source>without a name in the tool table</source>
+      <translation>sin nombre en la tabla de herramientas</translation>
+    </message>
+    <message>
       <location filename="app/special/part_count.py" />
       <source>TARGET REACHED: {count} OF {target} PARTS</source>
       <translation>META ALCANZADA: {count} DE {target} PIEZAS</translation>
@@ -7340,6 +12625,11 @@
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
+      <source>REFUSED: A JOB IS UNDER WAY AND HAS ITS OWN COUNT; CHANGE THAT IN JOBS (SHIFT+F6)</source>
+      <translation>RECHAZADO: HAY UN TRABAJO EN CURSO CON SU PROPIA CUENTA; CÁMBIELA EN TRABAJOS (MAYÚS+F6)</translation>
+    </message>
+    <message>
+      <location filename="app/special/parts_counter.py" />
       <source>REFUSED: {made} PARTS ARE MADE ALREADY; F4 PUTS THE COUNT TO NOUGHT</source>
       <translation>RECHAZADO: YA SE HICIERON {made} PIEZAS; F4 PONE LA CUENTA EN CERO</translation>
     </message>
@@ -7374,9 +12664,24 @@
       <translation>piezas hechas, meta, tiempos</translation>
     </message>
     <message>
+      <location filename="app/special/parts_counter.py" />
+      <source>{count}, BY ITS JOB</source>
+      <translation>{count}, POR SU TRABAJO</translation>
+    </message>
+    <message>
       <location filename="app/special/preferences.py" />
       <source>ARROWS MARK, RETURN GOES ON TO THE NEXT CHOICE; ESC GOES BACK TO THE LIST</source>
       <translation>LAS FLECHAS MARCAN, RETURN PASA A LA SIGUIENTE OPCIÓN; ESC REGRESA A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/special/preferences.py" />
+      <source>BOTH HELD</source>
+      <translation>LOS DOS A LA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/special/preferences.py" />
+      <source>CARD OF THE FIRST JOB</source>
+      <translation>TARJETA DEL PRIMER TRABAJO</translation>
     </message>
     <message>
       <location filename="app/special/preferences.py" />
@@ -7400,6 +12705,11 @@
     </message>
     <message>
       <location filename="app/special/preferences.py" />
+      <source>FULL SCREEN</source>
+      <translation>PANTALLA COMPLETA</translation>
+    </message>
+    <message>
+      <location filename="app/special/preferences.py" />
       <source>HIDDEN</source>
       <translation>OCULTA</translation>
     </message>
@@ -7420,8 +12730,23 @@
     </message>
     <message>
       <location filename="app/special/preferences.py" />
+      <source>ONE AFTER THE OTHER</source>
+      <translation>UNO TRAS OTRO</translation>
+    </message>
+    <message>
+      <location filename="app/special/preferences.py" />
       <source>OPERATOR STATION ON THE SCREEN</source>
       <translation>ESTACIÓN DEL OPERADOR EN LA PANTALLA</translation>
+    </message>
+    <message>
+      <location filename="app/special/preferences.py" />
+      <source>PALM BUTTONS ON THE SCREEN</source>
+      <translation>BOTONES DE PALMA EN PANTALLA</translation>
+    </message>
+    <message>
+      <location filename="app/special/preferences.py" />
+      <source>PALMS LATCH WHERE EVERYTHING IS SIMULATED ALONE: HERE SOMETHING REAL WOULD TURN</source>
+      <translation>LOS BOTONES SE ENCLAVAN SOLO DONDE TODO ES SIMULADO: AQUÍ GIRARÍA ALGO REAL</translation>
     </message>
     <message>
       <location filename="app/special/preferences.py" />
@@ -7460,18 +12785,13 @@
     </message>
     <message>
       <location filename="app/special/preferences.py" />
-      <source>units, language, colours, station</source>
-      <translation>unidades, idioma, colores, estación</translation>
+      <source>WINDOW</source>
+      <translation>VENTANA</translation>
     </message>
     <message>
-      <location filename="app/special/setup_sheet.py" />
-      <source>%1 in</source>
-      <translation>%1 pulg</translation>
-    </message>
-    <message>
-      <location filename="app/special/setup_sheet.py" />
-      <source>%1 mm</source>
-      <translation>%1 mm</translation>
+      <location filename="app/special/preferences.py" />
+      <source>units, language, station, window</source>
+      <translation>unidades, idioma, puesto, ventana</translation>
     </message>
     <message>
       <location filename="app/special/setup_sheet.py" />
@@ -7580,11 +12900,6 @@
     </message>
     <message>
       <location filename="app/special/setup_sheet_function.py" />
-      <source>NOTE</source>
-      <translation>NOTA</translation>
-    </message>
-    <message>
-      <location filename="app/special/setup_sheet_function.py" />
       <source>PRESS Y TO THROW THIS NOTE AWAY, ESC TO KEEP IT</source>
       <translation>PULSE Y PARA BORRAR ESTA NOTA, ESC PARA CONSERVARLA</translation>
     </message>
@@ -7630,11 +12945,6 @@
     </message>
     <message>
       <location filename="app/special/setup_sheet_function.py" />
-      <source>WRITE</source>
-      <translation>ESCRIBIR</translation>
-    </message>
-    <message>
-      <location filename="app/special/setup_sheet_function.py" />
       <source>Writing …</source>
       <translation>Se escribe …</translation>
     </message>
@@ -7642,11 +12952,6 @@
       <location filename="app/special/setup_sheet_function.py" />
       <source>tools, stock, stops, notes; on paper</source>
       <translation>herramientas, material, notas; en papel</translation>
-    </message>
-    <message>
-      <location filename="app/special/setup_sheet_function.py" />
-      <source>{name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED</source>
-      <translation>{name} ESTÁ ENTERO Y EN EL DISCO: PUEDE RETIRAR LA MEMORIA USB</translation>
     </message>
     <message>
       <location filename="app/special/setup_sheet_page.py" />
@@ -7657,11 +12962,6 @@
       <location filename="app/special/setup_sheet_page.py" />
       <source>None.</source>
       <translation>Ninguna.</translation>
-    </message>
-    <message>
-      <location filename="app/special/setup_sheet_page.py" />
-      <source>OFFSET</source>
-      <translation>CORRECTOR</translation>
     </message>
     <message>
       <location filename="app/special/setup_sheet_page.py" />
@@ -7915,11 +13215,6 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
-      <source>DONE</source>
-      <translation>HECHO</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
       <source>F4 sends: {program}</source>
       <translation>F4 envía: {program}</translation>
     </message>
@@ -7957,11 +13252,6 @@
       <location filename="app/transfer/serial_transfer.py" />
       <source>It replaces nothing and starts nothing.</source>
       <translation>No reemplaza ni arranca nada.</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>LINES</source>
-      <translation>LÍNEAS</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -8082,11 +13372,6 @@
       <location filename="app/transfer/serial_transfer.py" />
       <source>{name} IS SENT: {count} BYTES</source>
       <translation>{name} ENVIADO: {count} BYTES</translation>
-    </message>
-    <message>
-      <location filename="app/working_plane/plane_drawing.py" />
-      <source>FRONT</source>
-      <translation>FRENTE</translation>
     </message>
     <message>
       <location filename="app/working_plane/plane_drawing.py" />
@@ -8555,6 +13840,16 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
+      <source>HAL does not come up</source>
+      <translation>HAL no arranca</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>HAL's real-time thread stands</source>
+      <translation>el hilo de tiempo real de HAL está parado</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
       <source>PRESS E-STOP, the spindle may turn; check cable and power, Reset connects again. Home where asked</source>
       <translation>PULSE PARO DE EMERGENCIA, el husillo puede girar; revise cable y corriente, Reset conecta de nuevo. Referencie donde se pida</translation>
     </message>
@@ -8565,8 +13860,23 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
+      <source>PRESS E-STOP, the spindle may turn; look at the boards; Reset starts HAL anew. Home where asked</source>
+      <translation>PULSE PARO DE EMERGENCIA, el husillo puede girar; mire las tarjetas; Reset arranca HAL de nuevo. Referencie donde se pida</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>PRESS E-STOP, the spindle may turn; look at the tool; Reset starts HAL anew. Home where asked</source>
+      <translation>PULSE PARO DE EMERGENCIA, el husillo puede girar; mire la herramienta; Reset arranca HAL de nuevo. Referencie donde se pida</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
       <source>PRESS E-STOP, the spindle may turn; look at the tool; Reset starts another. Home where asked</source>
       <translation>PULSE PARO DE EMERGENCIA, el husillo puede girar; mire la herramienta; Reset inicia otro. Referencie donde se pida</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>PRESS E-STOP, the spindle may turn; look where the tool is; end other programs, Reset, Drives On</source>
+      <translation>PULSE PARO DE EMERGENCIA, el husillo puede girar; mire dónde está la herramienta; cierre otros programas, Reset, Accionamientos</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
@@ -8580,8 +13890,23 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
+      <source>a board or component does not load, or another session of LinuxCNC runs</source>
+      <translation>una tarjeta o un componente no se carga, u otra sesión de LinuxCNC está en marcha</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>a board's driver waits for a board: its cable, its power</source>
+      <translation>el controlador de una tarjeta la espera: su cable, su alimentación</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
       <source>a line was damaged on its way</source>
       <translation>una línea se dañó en el camino</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>a pin that the machine file names is not there, or is of another kind</source>
+      <translation>falta un pin que nombra el archivo de máquina, o es de otro tipo</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
@@ -8660,6 +13985,16 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
+      <source>its process (rtapi_app) has ended: what drives the slides now is the boards' watchdogs alone</source>
+      <translation>su proceso (rtapi_app) ha terminado: ahora sólo mandan los vigilantes de las tarjetas</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>its process was ended or has failed: HAL plays what it has, brakes, takes the power</source>
+      <translation>su proceso fue terminado o ha fallado: HAL ejecuta lo que tiene, frena y quita la potencia</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
       <source>its reset button or input</source>
       <translation>su botón o entrada de reset</translation>
     </message>
@@ -8685,6 +14020,16 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
+      <source>run 'turndesk machine check' with the machine file: it names every pin; put it right, Reset</source>
+      <translation>ejecute 'turndesk machine check' con el archivo de máquina: nombra cada pin; corríjalo, Reset</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>something has stopped the bridge's process</source>
+      <translation>algo ha detenido el proceso del puente</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
       <source>spindle and coolant are off: close the door, Reset, Drives On</source>
       <translation>husillo y refrigerante están apagados: cierre la puerta, Reset, encienda servos</translation>
     </message>
@@ -8700,8 +14045,23 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
+      <source>the bridge to HAL has ended</source>
+      <translation>el puente a HAL terminó</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the bridge to HAL is silent</source>
+      <translation>el puente a HAL no responde</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the cable to the controller was pulled or damaged</source>
       <translation>el cable al controlador se jaló o se dañó</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the computer is overloaded: HAL plays what it has, brakes, takes the power</source>
+      <translation>la computadora está sobrecargada: HAL ejecuta lo que tiene, frena y quita la potencia</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
@@ -9624,6 +14984,231 @@
       <translation>lo que se dice aquí</translation>
     </message>
     <message>
+      <location filename="core/drawings/contour_walk.py" />
+      <source>has a contour that crosses itself %1 mm behind its face at a diameter of %2 mm: mend it there.</source>
+      <translation>tiene un contorno que se cruza a sí mismo %1 mm detrás de su cara, en un diámetro de %2 mm: corríjalo allí.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/contour_walk.py" />
+      <source>has a contour that crosses the axis %1 mm behind its face: choose another axis.</source>
+      <translation>tiene un contorno que cruza el eje %1 mm detrás de su cara: elija otro eje.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/contour_walk.py" />
+      <source>has no bore at its face: choose the outside, or another contour.</source>
+      <translation>no tiene agujero en su cara: elija el exterior u otro contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/contour_walk.py" />
+      <source>has no contour there: choose another.</source>
+      <translation>no tiene ahí ningún contorno: elija otro.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/drawing.py" />
+      <source>%1 has a point that is no number: save the drawing anew.</source>
+      <translation>%1 tiene un punto que no es un número: guarde el dibujo de nuevo.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/drawing.py" />
+      <source>%1 has more than %2 lines: leave the layer of the contour in it alone.</source>
+      <translation>%1 tiene más de %2 líneas: deje en él solo la capa del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/drawing.py" />
+      <source>%1 is damaged or no %2 (%3): save the drawing anew.</source>
+      <translation>%1 está dañado o no es %2 (%3): guarde el dibujo de nuevo.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/drawing_file.py" />
+      <source>%1 has %2 MB, %3 are read: save the contour of the part alone.</source>
+      <translation>%1 tiene %2 MB, se leen %3: guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/drawing_file.py" />
+      <source>%1 is empty: save the drawing anew.</source>
+      <translation>%1 está vacío: guarde el dibujo de nuevo.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/drawing_file.py" />
+      <source>%1 is no drawing: DXF and SVG are read.</source>
+      <translation>%1 no es un dibujo: se leen DXF y SVG.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/drawing_file.py" />
+      <source>%1 needs more memory than is free: close other programs.</source>
+      <translation>%1 necesita más memoria de la que hay libre: cierre otros programas.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/drawing_view.py" />
+      <source>%1 has %2 lines, none is number %3: choose one of them.</source>
+      <translation>%1 tiene %2 líneas, ninguna es la %3: elija una de ellas.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/drawing_view.py" />
+      <source>%1 has an arc as its line %2: choose a straight line as the axis.</source>
+      <translation>%1 tiene un arco como línea %2: elija una recta como eje.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/drawing_view.py" />
+      <source>%1 has no axis %2: choose %3, or LINE and the number of a line.</source>
+      <translation>%1 no tiene el eje %2: elija %3, o LINE y el número de una línea.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/drawing_view.py" />
+      <source>CENTRE LINE %1</source>
+      <translation>LÍNEA DE EJE %1</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/drawing_view.py" />
+      <source>LOWEST LINE</source>
+      <translation>LÍNEA MÁS BAJA</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/dxf_reader.py" />
+      <source>%1 has blocks in blocks, more than %2 deep: explode them.</source>
+      <translation>%1 tiene bloques dentro de bloques, más de %2 niveles: descompóngalos.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/dxf_reader.py" />
+      <source>%1 has no line nor arc in its model space, only %2: draw the contour as lines.</source>
+      <translation>%1 no tiene línea ni arco en su espacio modelo, solo %2: dibuje el contorno con líneas.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/dxf_reader.py" />
+      <source>%1 is a DWG drawing: save it as DXF.</source>
+      <translation>%1 es un dibujo DWG: guárdelo como DXF.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/dxf_reader.py" />
+      <source>%1 is damaged: draw it anew.</source>
+      <translation>%1 está dañado: dibújelo de nuevo.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/dxf_reader.py" />
+      <source>%1 is three-dimensional: save a section or a view of the part in one plane.</source>
+      <translation>%1 es tridimensional: guarde una sección o una vista de la pieza en un plano.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/dxf_reader.py" />
+      <source>a %1 of %2 on layer %3</source>
+      <translation>un %1 de %2 en la capa %3</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/dxf_reader.py" />
+      <source>is three-dimensional: save a section or a view of the part in one plane.</source>
+      <translation>es tridimensional: guarde una sección o una vista de la pieza en un plano.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_program.py" />
+      <source>a groove narrower than the blade of %1 mm</source>
+      <translation>una ranura más estrecha que la cuchilla de %1 mm</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_program.py" />
+      <source>a groove, and T%1 has no width</source>
+      <translation>una ranura, y T%1 no tiene anchura</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_program.py" />
+      <source>a groove, and no groove tool is said</source>
+      <translation>una ranura, y no se dice útil de ranurar</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
+      <source>%1 %2 %3 the radius, %4</source>
+      <translation>%1 %2 %3 el radio, %4</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
+      <source>%1 %2 stays in the corner at Z %3, by the nose of the tool</source>
+      <translation>%1 %2 queda en el rincón en Z %3, por la punta del útil</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
+      <source>%1 is the drawing's within %2 %3</source>
+      <translation>%1 es la del dibujo con %2 %3 de diferencia</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
+      <source>Z %1 to %2</source>
+      <translation>Z %1 a %2</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
+      <source>elsewhere the proved part</source>
+      <translation>por lo demás la pieza probada</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
+      <source>gaps up to %1 %2 were closed</source>
+      <translation>se cerraron huecos de hasta %1 %2</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
+      <source>is cut too deep from</source>
+      <translation>se corta de más de</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
+      <source>no part came of the proof: the drawing could not be held against it</source>
+      <translation>la prueba no dio pieza: no se pudo comparar con el dibujo</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
+      <source>not cut, %1: %2</source>
+      <translation>no se corta, %1: %2</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
+      <source>secondary offset %1 has to hold X %2 (as a diameter), Z %3, R %4 %5</source>
+      <translation>el corrector secundario %1 ha de tener X %2 (en diámetro), Z %3, R %4 %5</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
+      <source>stays on</source>
+      <translation>queda en</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
+      <source>the proved part</source>
+      <translation>la pieza probada</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
+      <source>the sheet of T%1 states no nose radius: the contour is not compensated</source>
+      <translation>la ficha de T%1 no dice radio de punta: el contorno no se compensa</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/svg_reader.py" />
+      <source>%1 has entities of its own, which are not read: save it as plain SVG.</source>
+      <translation>%1 tiene entidades propias, que no se leen: guárdelo como SVG simple.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/svg_reader.py" />
+      <source>%1 has no path nor line, only %2: draw the contour as a path.</source>
+      <translation>%1 no tiene trazado ni línea, solo %2: dibuje el contorno como trazado.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/turning_contour.py" />
+      <source>The edge of the tool stands at %1 degrees, the contour at Z %2 mm at %3: take a tool for shoulders.</source>
+      <translation>El filo del útil está a %1 grados, el contorno en Z %2 mm a %3: tome un útil para escalones.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/turning_contour.py" />
+      <source>There is nothing to turn on this contour: its face is all of it. Choose another.</source>
+      <translation>No hay nada que tornear en este contorno: solo es su cara. Elija otro.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/turning_contour.py" />
+      <source>falls too steeply for the tool</source>
+      <translation>cae demasiado para el útil</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/turning_contour.py" />
+      <source>goes back under itself</source>
+      <translation>vuelve por debajo de sí mismo</translation>
+    </message>
+    <message>
       <location filename="core/executor/changed_offsets.py" />
       <source>another program is under way: new offsets are taken by the same program only</source>
       <translation>hay otro programa en marcha: las compensaciones nuevas sólo las toma el mismo programa</translation>
@@ -9695,11 +15280,6 @@
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
-      <source>it was let go</source>
-      <translation>se soltó</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
       <source>its button is up</source>
       <translation>su botón está suelto</translation>
     </message>
@@ -9707,6 +15287,11 @@
       <location filename="core/executor/command_handler.py" />
       <source>jog: %1</source>
       <translation>mover a mano: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/command_handler.py" />
+      <source>lamp test</source>
+      <translation>prueba de lámparas</translation>
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
@@ -9800,11 +15385,6 @@
     </message>
     <message>
       <location filename="core/executor/cycle.py" />
-      <source>FEED OVERRIDE AT 0</source>
-      <translation>AVANCE EN 0 POR LA PERILLA</translation>
-    </message>
-    <message>
-      <location filename="core/executor/cycle.py" />
       <source>SPINDLE BELOW HALF ITS SPEED</source>
       <translation>HUSILLO A MENOS DE LA MITAD DE SU VELOCIDAD</translation>
     </message>
@@ -9887,11 +15467,6 @@
       <location filename="core/executor/executor.py" />
       <source>%1 came too late to be obeyed</source>
       <translation>%1 llegó demasiado tarde para obedecerse</translation>
-    </message>
-    <message>
-      <location filename="core/executor/executor.py" />
-      <source>GUARD OPEN</source>
-      <translation>GUARDA ABIERTA</translation>
     </message>
     <message>
       <location filename="core/executor/executor.py" />
@@ -10025,8 +15600,8 @@
     </message>
     <message>
       <location filename="core/executor/interrupted_job.py" />
-      <source>%1 line %2, T%3, part %4: %5</source>
-      <translation>%1 línea %2, T%3, pieza %4: %5</translation>
+      <source>%1 line %2, %3, part %4: %5</source>
+      <translation>%1 línea %2, %3, pieza %4: %5</translation>
     </message>
     <message>
       <location filename="core/executor/interrupted_job.py" />
@@ -10065,8 +15640,8 @@
     </message>
     <message>
       <location filename="core/executor/interruption_watch.py" />
-      <source>line %1 of %2 was interrupted and T%3 may stand in the part: %4 and then start at the first line</source>
-      <translation>la línea %1 de %2 se interrumpió y T%3 puede estar en la pieza: %4 y luego arranque en la primera línea</translation>
+      <source>line %1 of %2 was interrupted and %3 may stand in the part: %4 and then start at the first line</source>
+      <translation>la línea %1 de %2 se interrumpió y %3 puede estar en la pieza: %4 y luego arranque en la primera línea</translation>
     </message>
     <message>
       <location filename="core/executor/interruption_watch.py" />
@@ -10125,6 +15700,11 @@
     </message>
     <message>
       <location filename="core/executor/jogging.py" />
+      <source>%1: the controller jogs along its own axes only</source>
+      <translation>%1: el controlador solo mueve a mano sus propios ejes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jogging.py" />
       <source>C is the spindle, and the spindle turns; stop it first</source>
       <translation>C es el husillo, y el husillo gira; párelo primero</translation>
     </message>
@@ -10142,6 +15722,16 @@
       <location filename="core/executor/jogging.py" />
       <source>a step needs a speed above 0</source>
       <translation>un paso necesita velocidad mayor que 0</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jogging.py" />
+      <source>a tilted plane needs X, Y and Z, and a direction of length 1</source>
+      <translation>un plano inclinado necesita X, Y y Z, y una dirección de longitud 1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jogging.py" />
+      <source>along a tilted plane every axis has to be homed first</source>
+      <translation>en un plano inclinado todos los ejes deben tener antes su referencia</translation>
     </message>
     <message>
       <location filename="core/executor/jogging.py" />
@@ -10165,16 +15755,6 @@
     </message>
     <message>
       <location filename="core/executor/machine_control.py" />
-      <source>FORWARD</source>
-      <translation>ADELANTE</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
-      <source>REVERSE</source>
-      <translation>EN REVERSA</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
       <source>SWITCH TO AUTO: %1</source>
       <translation>INTERRUPTOR EN AUTO: %1</translation>
     </message>
@@ -10195,6 +15775,16 @@
     </message>
     <message>
       <location filename="core/executor/machine_control.py" />
+      <source>below half its speed</source>
+      <translation>por debajo de la mitad de sus rpm</translation>
+    </message>
+    <message>
+      <location filename="core/executor/machine_control.py" />
+      <source>it was let go</source>
+      <translation>se soltó</translation>
+    </message>
+    <message>
+      <location filename="core/executor/machine_control.py" />
       <source>reset: wait until the slides are at rest</source>
       <translation>reset: espere a que los carros estén en reposo</translation>
     </message>
@@ -10207,6 +15797,11 @@
       <location filename="core/executor/machine_control.py" />
       <source>that was meant just now: let both palms go, read the prompt, press them again</source>
       <translation>eso se ha contestado ahora mismo: suelte los dos pulsadores, lea el aviso y vuelva a pulsarlos</translation>
+    </message>
+    <message>
+      <location filename="core/executor/machine_control.py" />
+      <source>the spindle has stopped: %1</source>
+      <translation>el husillo se ha parado: %1</translation>
     </message>
     <message>
       <location filename="core/executor/machine_control.py" />
@@ -10374,6 +15969,11 @@
       <translation>el husillo cambió de velocidad más rápido de lo que los carros podían seguir: revise la rosca</translation>
     </message>
     <message>
+      <location filename="core/executor/signal_lamps.py" />
+      <source>%1 CANNOT BE SWITCHED: %2</source>
+      <translation>%1 NO SE PUEDE CONMUTAR: %2</translation>
+    </message>
+    <message>
       <location filename="core/executor/snapshot.py" />
       <source>DRIVES OFF</source>
       <translation>SERVOS APAGADOS</translation>
@@ -10390,11 +15990,6 @@
     </message>
     <message>
       <location filename="core/executor/snapshot.py" />
-      <source>WAITING</source>
-      <translation>ESPERANDO</translation>
-    </message>
-    <message>
-      <location filename="core/executor/snapshot.py" />
       <source>back off</source>
       <translation>retroceda</translation>
     </message>
@@ -10407,21 +16002,6 @@
       <location filename="core/executor/spindle_control.py" />
       <source>SPINDLE HAS STOPPED</source>
       <translation>EL HUSILLO SE DETUVO</translation>
-    </message>
-    <message>
-      <location filename="core/executor/spindle_control.py" />
-      <source>SPINDLE OVERRIDE AT 0</source>
-      <translation>PERILLA DEL HUSILLO EN 0</translation>
-    </message>
-    <message>
-      <location filename="core/executor/spindle_control.py" />
-      <source>SPINDLE STOPPED</source>
-      <translation>HUSILLO PARADO</translation>
-    </message>
-    <message>
-      <location filename="core/executor/spindle_control.py" />
-      <source>SPINDLE SWITCH OFF</source>
-      <translation>INTERRUPTOR DEL HUSILLO APAGADO</translation>
     </message>
     <message>
       <location filename="core/executor/spindle_control.py" />
@@ -10447,21 +16027,6 @@
       <location filename="core/executor/spindle_control.py" />
       <source>the spindle's drive tells a speed that is no number</source>
       <translation>el variador del husillo da una velocidad que no es un número</translation>
-    </message>
-    <message>
-      <location filename="core/executor/standstill.py" />
-      <source>AT SPEED</source>
-      <translation>A SU VELOCIDAD</translation>
-    </message>
-    <message>
-      <location filename="core/executor/standstill.py" />
-      <source>DWELL</source>
-      <translation>ESPERA</translation>
-    </message>
-    <message>
-      <location filename="core/executor/standstill.py" />
-      <source>SPINDLE STOP</source>
-      <translation>PARO DE HUSILLO</translation>
     </message>
     <message>
       <location filename="core/executor/standstill.py" />
@@ -10495,6 +16060,11 @@
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
+      <source>ask for it again</source>
+      <translation>pídala de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
       <source>ask for the way out again</source>
       <translation>pida otra vez la salida</translation>
     </message>
@@ -10505,8 +16075,18 @@
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
+      <source>line %1: nothing on this machine answers %2</source>
+      <translation>línea %1: nada en esta máquina responde a %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
       <source>line %1: this controller cannot do %2</source>
       <translation>línea %1: este controlador no puede hacer %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>line %1: this machine has no %2</source>
+      <translation>línea %1: esta máquina no tiene %2</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -10515,8 +16095,8 @@
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
-      <source>no line is ready: type one and press Enter</source>
-      <translation>no hay línea lista: escriba una y oprima Enter</translation>
+      <source>no line is ready</source>
+      <translation>no hay ninguna línea preparada</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -10530,8 +16110,8 @@
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
-      <source>press Enter again</source>
-      <translation>oprima Enter otra vez</translation>
+      <source>output %1</source>
+      <translation>la salida %1</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -10669,11 +16249,6 @@
       <translation>NO SE OÍA A LA MÁQUINA</translation>
     </message>
     <message>
-      <location filename="core/executor/supervision.py" />
-      <source>output %1</source>
-      <translation>la salida %1</translation>
-    </message>
-    <message>
       <location filename="core/executor/thread_path.py" />
       <source>%1 in the pull-out: the thread is cut, its end runs out short</source>
       <translation>%1 en la salida: la rosca está cortada, su final sale corto</translation>
@@ -10804,6 +16379,16 @@
       <translation>su hilo está atorado</translation>
     </message>
     <message>
+      <location filename="core/geometry/area_clearing.py" />
+      <source>an island lies on its edge</source>
+      <translation>una isla está sobre su borde</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/area_clearing.py" />
+      <source>it takes over %1 rings</source>
+      <translation>necesita más de %1 anillos</translation>
+    </message>
+    <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>line itself</source>
       <translation>línea misma</translation>
@@ -10879,6 +16464,11 @@
       <translation>la trayectoria junto a él cortaría a otro</translation>
     </message>
     <message>
+      <location filename="core/geometry/pocket_area.py" />
+      <source>its way breaks off</source>
+      <translation>su recorrido se interrumpe</translation>
+    </message>
+    <message>
       <location filename="core/geometry/rotation_frames.py" />
       <source>a projection angle is 90 degrees</source>
       <translation>un ángulo de proyección es de 90 grados</translation>
@@ -10910,11 +16500,6 @@
     </message>
     <message>
       <location filename="core/interpreter/dialects.py" />
-      <source>A %1 program begins with its first block.</source>
-      <translation>Un programa %1 empieza por su primer bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/dialects.py" />
       <source>A Klartext program needs a mill with X, Y and Z, and its [kinematics]; this machine is none.</source>
       <translation>Un programa Klartext necesita una fresadora con X, Y y Z, y su [kinematics]; esta máquina no lo es.</translation>
     </message>
@@ -10930,18 +16515,18 @@
     </message>
     <message>
       <location filename="core/interpreter/dialects.py" />
-      <source>Choose the machine file of a lathe.</source>
-      <translation>Elija el archivo de máquina de un torno.</translation>
+      <source>Choose the machine file of a lathe: --machine gt75.</source>
+      <translation>Elija el archivo de máquina de un torno: --machine gt75.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/dialects.py" />
+      <source>Choose the machine file of a lathe: --machine sinumerik-modulo.</source>
+      <translation>Elija el archivo de máquina de un torno: --machine sinumerik-modulo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/dialects.py" />
       <source>Choose the machine file of a mill: --machine ac-table-mill.</source>
       <translation>Elija el archivo de máquina de una fresadora: --machine ac-table-mill.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/dialects.py" />
-      <source>Start it from the beginning.</source>
-      <translation>Empiécelo desde el principio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/formula_values.py" />
@@ -11029,6 +16614,216 @@
       <translation>El programa hace más de %1 bloques o %2 líneas ejecutadas.</translation>
     </message>
     <message>
+      <location filename="core/interpreter/klartext/blocks_without_motion.py" />
+      <source>Correct the text, or write the label.</source>
+      <translation>Corrija el texto, o escriba la etiqueta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/blocks_without_motion.py" />
+      <source>LBL "%1" is nowhere in the program, or has no LBL 0.</source>
+      <translation>LBL "%1" no está en el programa, o no tiene LBL 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
+      <source>A slot of %1 mm over %2 degrees on a circle of %3 mm is none.</source>
+      <translation>Una ranura de %1 mm sobre %2 grados en un círculo de %3 mm no es ninguna.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
+      <source>Correct Q219, Q248 and Q375.</source>
+      <translation>Corrija Q219, Q248 y Q375.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
+      <source>Correct the position.</source>
+      <translation>Corrija la posición.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
+      <source>Make Q248 smaller.</source>
+      <translation>Haga Q248 más pequeño.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
+      <source>Q367 is not between 0 and 3.</source>
+      <translation>Q367 no está entre 0 y 3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
+      <source>Q377 %1 is no number of slots.</source>
+      <translation>Q377 %1 no es un número de ranuras.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
+      <source>The slot runs into its own end.</source>
+      <translation>La ranura llega a su propio extremo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
+      <source>Write how many there are.</source>
+      <translation>Escriba cuántos hay.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>Cycle 25 mills the first contour of cycle 14 alone.</source>
+      <translation>El ciclo 25 fresa solo el primer contorno del ciclo 14.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>Go straight down, with a tool that cuts in its middle.</source>
+      <translation>Baje en vertical, con una herramienta que corte en el centro.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>Q18: all of the pocket is gone over, what the coarse tool has cleared too.</source>
+      <translation>Q18: se repasa toda la cajera, también lo que la herramienta de desbaste ya vació.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>Take a smaller tool, or correct the contour.</source>
+      <translation>Tome una herramienta menor o corrija el contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>The contour %1 has no elements.</source>
+      <translation>El contorno %1 no tiene elementos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>The contour cannot be milled with R %1 mm and its allowance: %2.</source>
+      <translation>El contorno no se puede fresar con R %1 mm y su sobremedida: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>The depth Q1 %1 mm leads upwards.</source>
+      <translation>La profundidad Q1 %1 mm va hacia arriba.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>The depth Q1 leads upwards.</source>
+      <translation>La profundidad Q1 va hacia arriba.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>The path overlap %1 %2 clears nothing.</source>
+      <translation>El solapamiento %1 %2 no vacía nada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>The path overlap Q2 clears nothing.</source>
+      <translation>El solapamiento Q2 no vacía nada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>The rough-out tool Q13 %1 has no radius in the tool table.</source>
+      <translation>La herramienta de desbaste Q13 %1 no tiene radio en la tabla de herramientas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>The tool has no radius.</source>
+      <translation>La herramienta no tiene radio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>There is no room to go down by a ramp.</source>
+      <translation>No hay sitio para bajar en rampa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>Write Q2 between 0.0001 and 1.9999.</source>
+      <translation>Escriba Q2 entre 0.0001 y 1.9999.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>Write R into the tool table.</source>
+      <translation>Escriba R en la tabla de herramientas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>Write it between 0.0001 and 1.9999.</source>
+      <translation>Escríbalo entre 0.0001 y 1.9999.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>Write it with a minus.</source>
+      <translation>Escríbala con menos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>Write its path functions.</source>
+      <translation>Escriba sus funciones de trayectoria.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>Write the number of a measured tool into Q13.</source>
+      <translation>Escriba en Q13 el número de una herramienta medida.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>the tool is wider than every place of it</source>
+      <translation>la herramienta es más ancha que cualquier lugar de él</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <source>%1 within a contour of SL cycles</source>
+      <translation>%1 dentro de un contorno de ciclos SL</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <source>An upright arc within a contour of SL cycles</source>
+      <translation>Un arco vertical dentro de un contorno de ciclos SL</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <source>Close it: end it where it begins.</source>
+      <translation>Ciérrelo: termínelo donde empieza.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <source>Correct the contours.</source>
+      <translation>Corrija los contornos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <source>Correct them.</source>
+      <translation>Corríjalos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <source>No contour of cycle 14 is a pocket: there is nothing to clear between islands.</source>
+      <translation>Ningún contorno del ciclo 14 es una cajera: no hay nada que vaciar entre islas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <source>Nothing says on which side of the contour %1 is milled.</source>
+      <translation>Nada dice a qué lado del contorno %1 se fresa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <source>Of the contours %1.</source>
+      <translation>De los contornos, %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <source>The contour %1 ends %2 mm from its start.</source>
+      <translation>El contorno %1 termina a %2 mm de su inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <source>The contours enclose nothing: the islands cover the pockets.</source>
+      <translation>Los contornos no encierran nada: las islas cubren las cajeras.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <source>Write RL or RR in its first block.</source>
+      <translation>Escriba RL o RR en su primer bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <source>Write the outer contour clockwise with RR.</source>
+      <translation>Escriba el contorno exterior en sentido horario con RR.</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/klartext/coordinate_transformations.py" />
       <source>A datum shift of the rotary axis %1 is not built.</source>
       <translation>Un decalaje de origen del eje giratorio %1 no está hecho.</translation>
@@ -11037,6 +16832,21 @@
       <location filename="core/interpreter/klartext/coordinate_transformations.py" />
       <source>A factor of 0 leaves nothing.</source>
       <translation>Un factor de 0 no deja nada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/coordinate_transformations.py" />
+      <source>Correct the number, or write the row.</source>
+      <translation>Corrija el número o escriba la fila.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/coordinate_transformations.py" />
+      <source>No datum table is selected.</source>
+      <translation>No hay tabla de puntos cero seleccionada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/coordinate_transformations.py" />
+      <source>The datum table has no row %1.</source>
+      <translation>La tabla de puntos cero no tiene fila %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/coordinate_transformations.py" />
@@ -11049,14 +16859,39 @@
       <translation>Escriba SCL con un factor como 0.99.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
-      <source>Cycle %1 moves at pitch times speed: nothing couples the spindle to Z here.</source>
-      <translation>El ciclo %1 se mueve a paso por velocidad: aquí nada acopla el husillo a Z.</translation>
+      <location filename="core/interpreter/klartext/coordinate_transformations.py" />
+      <source>Write SEL TABLE with the file before.</source>
+      <translation>Escriba antes SEL TABLE con el archivo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
-      <source>Cycle %1 needs Q%2.</source>
-      <translation>El ciclo %1 necesita Q%2.</translation>
+      <source>%1 is a rapid, and cuts.</source>
+      <translation>%1 es un avance rápido, y corta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>%1 of cycle %2 is no feed.</source>
+      <translation>%1 del ciclo %2 no es un avance.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>A lead of %1 mm at S%2 is faster than Z goes (%3 mm/min).</source>
+      <translation>Un paso de %1 mm con S%2 es más rápido de lo que va Z (%3 mm/min).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Cycle %1 by diameter needs the angle of the tool's point.</source>
+      <translation>El ciclo %1 por diámetro necesita el ángulo de punta de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Cycle %1 frees the edge aside, and nothing here stops the spindle at an angle.</source>
+      <translation>El ciclo %1 aparta el filo, y aquí nada para el husillo en un ángulo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Cycle %1 needs %2.</source>
+      <translation>El ciclo %1 necesita %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
@@ -11065,8 +16900,18 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
-      <source>Q%1 of cycle %2 is no feed.</source>
-      <translation>Q%1 del ciclo %2 no es un avance.</translation>
+      <source>Cycle %1: %2</source>
+      <translation>Ciclo %1: %2</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Cycle %1: Z stands while the spindle turns round, as nothing ties it to its angle.</source>
+      <translation>Ciclo %1: Z está parado mientras el husillo invierte el giro, pues nada lo une a su ángulo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Q%1 is M%2, which is no coolant of this machine.</source>
+      <translation>Q%1 es M%2, que no es refrigerante de esta máquina.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
@@ -11080,13 +16925,58 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Write 8 for on and 9 for off.</source>
+      <translation>Escriba 8 para conectar y 9 para desconectar.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Write Q214=0, or turn the edge by hand before the move.</source>
+      <translation>Escriba Q214=0, o gire el filo a mano antes del movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
       <source>Write a feed above zero.</source>
       <translation>Escriba un avance mayor que cero.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Write a feed.</source>
+      <translation>Escriba un avance.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
       <source>Write it behind CYCL DEF.</source>
       <translation>Escríbalo tras CYCL DEF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Write it into the tool table, or Q343=+0 and Q201.</source>
+      <translation>Escríbalo en la tabla de herramientas, o Q343=+0 y Q201.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source> (cylinder surface, %1)</source>
+      <translation> (superficie cilíndrica, %1)</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>%1 is no axis.</source>
+      <translation>%1 no es un eje.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>A cycle while M136 is on (write M137 before)</source>
+      <translation>Un ciclo con M136 activo (escriba antes M137)</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>A dwell of %1 s lies before now.</source>
+      <translation>Una espera de %1 s queda antes de ahora.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>CYCL CALL PAT needs a cycle from 200 on before it.</source>
+      <translation>CYCL CALL PAT necesita antes un ciclo a partir del 200.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
@@ -11105,8 +16995,23 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
+      <source>CYCL DEF %1%2</source>
+      <translation>CYCL DEF %1%2</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
       <source>Cycle %1</source>
       <translation>Ciclo %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Cycle %1 has no contour.</source>
+      <translation>El ciclo %1 no tiene contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Cycle %1 is a machine builder's, and this machine has none of its own.</source>
+      <translation>El ciclo %1 es de fabricante de máquina, y esta máquina no tiene ninguno propio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
@@ -11115,13 +17020,68 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Cycle 14 names %1 contours; %2 are the most.</source>
+      <translation>El ciclo 14 nombra %1 contornos; como máximo %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Cycle 14 names no label.</source>
+      <translation>El ciclo 14 no nombra ninguna etiqueta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Cycle 19 takes A, B and C.</source>
+      <translation>El ciclo 19 toma A, B y C.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Join some of them.</source>
+      <translation>Una algunos de ellos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Line %1.%2 of the cycle is missing.</source>
+      <translation>Falta la línea %1.%2 del ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>M103 leaves the feeds of a cycle as they are.</source>
+      <translation>M103 deja los avances de un ciclo como están.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Name its labels in cycle 14 before.</source>
+      <translation>Nombre antes sus etiquetas en el ciclo 14.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>No DECLARE CONTOUR has named QC%1.</source>
+      <translation>Ningún DECLARE CONTOUR ha nombrado QC%1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>No PATTERN DEF and no SEL PATTERN has told points.</source>
+      <translation>Ningún PATTERN DEF ni SEL PATTERN ha dado puntos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
       <source>No machining cycle has been told.</source>
       <translation>No se ha indicado ningún ciclo de mecanizado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
-      <source>Preset %1 is not kept here.</source>
-      <translation>El preset %1 no se guarda aquí.</translation>
+      <source>No preset table is kept on this machine, so preset %1 is its zero.</source>
+      <translation>Esta máquina no lleva tabla de presets, así que el preset %1 es su cero.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Preset %1 is not in the preset table.</source>
+      <translation>El preset %1 no está en la tabla de presets.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Preset %1 turns the workpiece while a tilted plane is in force.</source>
+      <translation>El preset %1 gira la pieza mientras vale un plano inclinado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
@@ -11130,8 +17090,28 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
-      <source>The workpiece's zero is that of the machine file: touch off there.</source>
-      <translation>El cero de la pieza es el del archivo de máquina: tóquelo allí.</translation>
+      <source>SET UP</source>
+      <translation>SET UP</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Set it on the page PRESETS, or correct Q339.</source>
+      <translation>Fíjelo en la página PRESETS, o corrija Q339.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Set the preset on the page PRESETS.</source>
+      <translation>Fije el preset en la página PRESETS.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Take it out.</source>
+      <translation>Quítelo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Write CONTOUR LABEL1 /2.</source>
+      <translation>Escriba CONTOUR LABEL1 /2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
@@ -11140,18 +17120,168 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Write PATTERN DEF before.</source>
+      <translation>Escriba antes PATTERN DEF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Write PLANE RESET STAY before.</source>
+      <translation>Escriba antes PLANE RESET STAY.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
       <source>Write Z+0, and the surface into Q203.</source>
       <translation>Escriba Z+0, y la superficie en Q203.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
-      <source>Write how many there are.</source>
-      <translation>Escriba cuántos hay.</translation>
+      <source>Write a time over 0.</source>
+      <translation>Escriba un tiempo mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Write it before.</source>
+      <translation>Escríbalo antes.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Write it in CYCL DEF.</source>
+      <translation>Escríbalo en CYCL DEF.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
       <source>Write its CYCL DEF before.</source>
       <translation>Escriba antes su CYCL DEF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
+      <source>Correct the heights.</source>
+      <translation>Corrija las alturas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
+      <source>Cycle 233 with a limit (Q347, Q348, Q349) is not built.</source>
+      <translation>El ciclo 233 con un límite (Q347, Q348, Q349) no está hecho.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
+      <source>Q240 %1 is no number of cuts.</source>
+      <translation>Q240 %1 no es un número de cortes.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
+      <source>Q367 is not between -1 and 4.</source>
+      <translation>Q367 no está entre -1 y 4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
+      <source>Q389 %1 is no strategy.</source>
+      <translation>Q389 %1 no es una estrategia.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
+      <source>Take a larger tool.</source>
+      <translation>Tome una herramienta mayor.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
+      <source>The end Q386 lies above the start Q227.</source>
+      <translation>El final Q386 está por encima del inicio Q227.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
+      <source>The face takes %1 rows.</source>
+      <translation>El planeado necesita %1 filas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
+      <source>The overlap Q370 %1 of a tool of R %2 mm clears nothing.</source>
+      <translation>El solapamiento Q370 %1 de una herramienta de R %2 mm no vacía nada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
+      <source>Write 0 to 4.</source>
+      <translation>Escriba de 0 a 4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
+      <source>Write 0, or mill a pocket.</source>
+      <translation>Escriba 0 o frese una cajera.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
+      <source>Write 2 to %1.</source>
+      <translation>Escriba de 2 a %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
+      <source>Write Q370 between 0.1 and 1.9999, the tool's radius, and the sides.</source>
+      <translation>Escriba Q370 entre 0.1 y 1.9999, el radio de la herramienta y los lados.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
+      <source>the face is milled to and fro, and not in a spiral.</source>
+      <translation>la cara se planea en vaivén, y no en espiral.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <source>%1 %2 at S%3 comes to a feed of %4.</source>
+      <translation>%1 %2 a S%3 da un avance de %4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <source>%1 counts by the spindle, and it stands.</source>
+      <translation>%1 cuenta según el husillo, y está parado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <source>%1 counts with S as programmed: the spindle override leaves the feed as it is.</source>
+      <translation>%1 cuenta con S como está programada: el override del husillo no cambia el avance.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <source>Correct the feed.</source>
+      <translation>Corrija el avance.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <source>FZ counts teeth, and the tool table has none (CUT) for tool %1.</source>
+      <translation>FZ cuenta dientes, y la tabla de herramientas no tiene (CUT) para la herramienta %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <source>M103 F%1 is not above 0 and up to 100 percent.</source>
+      <translation>M103 F%1 no está por encima de 0 y hasta 100 por ciento.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <source>M103 with a Q parameter</source>
+      <translation>M103 con un parámetro Q</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <source>M136 in an INCH program</source>
+      <translation>M136 en un programa INCH</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <source>Start it with M3 or M4 before.</source>
+      <translation>Arránquelo antes con M3 o M4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <source>Write CUT into the tool table, or program F.</source>
+      <translation>Escriba CUT en la tabla de herramientas, o programe F.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <source>Write M103 F20 for a fifth of the feed.</source>
+      <translation>Escriba M103 F20 para un quinto del avance.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>Bore from the other side.</source>
+      <translation>Mandrine desde el otro lado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
@@ -11160,13 +17290,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
-      <source>Correct them.</source>
-      <translation>Corríjalos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
-      <source>Cycle 240 by diameter needs the angle of the tool's point.</source>
-      <translation>El ciclo 240 por diámetro necesita el ángulo de la punta.</translation>
+      <source>Cycle 204 goes through the hole with the spindle at an angle, and nothing here orients it.</source>
+      <translation>El ciclo 204 pasa por el agujero con el husillo en un ángulo, y aquí nada lo orienta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
@@ -11185,6 +17310,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>Q426 is neither 3, 4 nor 5.</source>
+      <translation>Q426 no es 3, 4 ni 5.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
       <source>The depth Q201 %1 mm leads upwards.</source>
       <translation>La profundidad Q201 %1 mm va hacia arriba.</translation>
     </message>
@@ -11200,13 +17330,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
-      <source>Write Q343=+0 and Q201.</source>
-      <translation>Escriba Q343=+0 y Q201.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
-      <source>Write it with a minus.</source>
-      <translation>Escríbala con menos.</translation>
+      <source>Write the M function of the direction.</source>
+      <translation>Escriba la función M del sentido.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
@@ -11215,13 +17340,48 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_interpreter.py" />
+      <source>%1 does not come to its end.</source>
+      <translation>%1 no llega a su fin.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
+      <source>%1 has no contour formula.</source>
+      <translation>%1 no tiene fórmula de contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
+      <source>%1 of the contour is nowhere in the program, or has no LBL 0.</source>
+      <translation>%1 del contorno no está en el programa, o no tiene LBL 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
       <source>CYCL CALL</source>
       <translation>CYCL CALL</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_interpreter.py" />
+      <source>Correct it.</source>
+      <translation>Corríjalo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
+      <source>Correct the number, or write the label.</source>
+      <translation>Corrija el número, o escriba la etiqueta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
+      <source>LBL %1</source>
+      <translation>LBL %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
       <source>Lower the counts of the repeats.</source>
       <translation>Baje los números de las repeticiones.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
+      <source>No program is selected.</source>
+      <translation>No hay programa seleccionado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_interpreter.py" />
@@ -11232,6 +17392,21 @@
       <location filename="core/interpreter/klartext/klartext_interpreter.py" />
       <source>The program %1 is not beside this one.</source>
       <translation>El programa %1 no está junto a este.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
+      <source>The table %1 is not beside this program.</source>
+      <translation>La tabla %1 no está junto a este programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
+      <source>Write QC10 = QC1 | QC2 into it.</source>
+      <translation>Escriba en él QC10 = QC1 | QC2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
+      <source>Write SEL PGM before.</source>
+      <translation>Escriba antes SEL PGM.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
@@ -11260,8 +17435,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>Correct the number, or write the label.</source>
-      <translation>Corrija el número, o escriba la etiqueta.</translation>
+      <source>Convert it into Klartext on the control that it comes from, or post it anew.</source>
+      <translation>Conviértalo a Klartext en el control del que viene, o postprocéselo de nuevo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
@@ -11320,6 +17495,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>This program is written in DIN/ISO.</source>
+      <translation>Este programa está escrito en DIN/ISO.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>Write LBL 0 behind it.</source>
       <translation>Escriba LBL 0 después.</translation>
     </message>
@@ -11335,6 +17515,21 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/m_functions.py" />
+      <source>It has no second datum of the machine: count from the machine's zero with M91.</source>
+      <translation>No tiene segundo origen de máquina: cuente desde el cero de máquina con M91.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/m_functions.py" />
+      <source>It is the machine builder's: give it an output under [m_codes], or take it out.</source>
+      <translation>Es del fabricante de la máquina: dele una salida en [m_codes], o quítela.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/m_functions.py" />
+      <source>Look at the tool's life before the start.</source>
+      <translation>Mire la vida de la herramienta antes de empezar.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/m_functions.py" />
       <source>M%1 stands twice in the block.</source>
       <translation>M%1 está dos veces en el bloque.</translation>
     </message>
@@ -11347,6 +17542,11 @@
       <location filename="core/interpreter/klartext/m_functions.py" />
       <source>M%1 while M128 is on.</source>
       <translation>M%1 con M128 activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/m_functions.py" />
+      <source>M101 changes to no replacement tool here: the tool that was called goes on.</source>
+      <translation>M101 no cambia aquí a ninguna herramienta gemela: sigue la que se llamó.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/m_functions.py" />
@@ -11370,13 +17570,98 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/m_functions.py" />
+      <source>This machine's file has no M%1.</source>
+      <translation>El archivo de esta máquina no tiene M%1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/m_functions.py" />
       <source>Write S behind TOOL CALL.</source>
       <translation>Escriba S tras TOOL CALL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/mdi_block.py" />
+      <source>%1 leads to a contour, or away from one</source>
+      <translation>%1 lleva a un contorno, o sale de él</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/mdi_block.py" />
+      <source>/ leaves a block of a program out, and there is nothing to leave out</source>
+      <translation>/ salta un bloque de un programa, y no hay nada que saltar</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/mdi_block.py" />
+      <source>A jump leads to another block</source>
+      <translation>Un salto lleva a otro bloque</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/mdi_block.py" />
+      <source>BLK FORM describes the blank of a program</source>
+      <translation>BLK FORM describe la pieza en bruto de un programa</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/mdi_block.py" />
+      <source>CALL LBL leads to another block</source>
+      <translation>CALL LBL lleva a otro bloque</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/mdi_block.py" />
+      <source>CALL PGM calls another program</source>
+      <translation>CALL PGM llama a otro programa</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/mdi_block.py" />
+      <source>Cycle 12 names another program</source>
+      <translation>El ciclo 12 nombra otro programa</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/mdi_block.py" />
+      <source>END PGM ends a program</source>
+      <translation>END PGM termina un programa</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/mdi_block.py" />
+      <source>LBL marks a place in a program</source>
+      <translation>LBL marca un lugar en un programa</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/mdi_block.py" />
+      <source>R%1 compensates along a contour of more than one block</source>
+      <translation>R%1 compensa a lo largo de un contorno de más de un bloque</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/mdi_block.py" />
+      <source>RND and CHF stand between two blocks of a contour</source>
+      <translation>RND y CHF van entre dos bloques de un contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/mdi_block.py" />
+      <source>Write it in a program.</source>
+      <translation>Escríbalo en un programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/mid_program_startup.py" />
+      <source>MIRROR %1</source>
+      <translation>MIRROR %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/older_contour_cycles.py" />
+      <source>holes stand where this tool itself would go down; cycle 6 goes down by a ramp and needs none.</source>
+      <translation>los taladros están donde esta misma herramienta bajaría; el ciclo 6 baja en rampa y no necesita ninguno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/older_contour_cycles.py" />
+      <source>the pocket is cleared in rings, and not along parallel ways.</source>
+      <translation>la cajera se vacía en anillos, y no por pasadas paralelas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/older_cycles.py" />
       <source>A pocket is not milled in rapid.</source>
       <translation>Una caja no se fresa en rápido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <source>Cycle 18 needs a speed and a pitch.</source>
+      <translation>El ciclo 18 necesita una velocidad y un paso.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/older_cycles.py" />
@@ -11415,8 +17700,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/older_cycles.py" />
-      <source>Write it in CYCL DEF.</source>
-      <translation>Escríbalo en CYCL DEF.</translation>
+      <source>Write S behind TOOL CALL, and PITCH.</source>
+      <translation>Escriba S tras TOOL CALL, y PITCH.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/path_elements.py" />
@@ -11555,6 +17840,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>An arc that stands upright while M103 is on</source>
+      <translation>Un arco vertical con M103 activo</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
       <source>End the contour with R0 before.</source>
       <translation>Termine antes el contorno con R0.</translation>
     </message>
@@ -11567,6 +17857,16 @@
       <location filename="core/interpreter/klartext/path_functions.py" />
       <source>End the contour with R0 or DEP.</source>
       <translation>Termine el contorno con R0 o DEP.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>LN with 3D compensation (DL, DR, DR2, RL, RR)</source>
+      <translation>LN con compensación 3D (DL, DR, DR2, RL, RR)</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>LN with the tool's direction (TX TY TZ)</source>
+      <translation>LN con la dirección de la herramienta (TX TY TZ)</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/path_functions.py" />
@@ -11587,6 +17887,11 @@
       <location filename="core/interpreter/klartext/path_functions.py" />
       <source>R%1 stands while R%2 is on.</source>
       <translation>R%1 está mientras R%2 está activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>Radius compensation holds in X and Y, and this arc stands upright.</source>
+      <translation>La compensación de radio vale en X e Y, y este arco está vertical.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/path_functions.py" />
@@ -11615,8 +17920,23 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>Write R0 before.</source>
+      <translation>Escriba antes R0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
       <source>Write R0 between them.</source>
       <translation>Escriba R0 entre ellos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>radius compensation is on</source>
+      <translation>la compensación de radio está activa</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/path_functions.py" />
+      <source>the block before it waits for its corner</source>
+      <translation>el bloque anterior espera su esquina</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/plane_functions.py" />
@@ -11625,8 +17945,13 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>%1 %2 is not between %3 and %4.</source>
-      <translation>%1 %2 no está entre %3 y %4.</translation>
+      <source>%1 %2 is not between %3.</source>
+      <translation>%1 %2 no está entre %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>%1 and %2</source>
+      <translation>%1 y %2</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/plane_functions.py" />
@@ -11670,6 +17995,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>Take the word out, or choose a machine that has %1.</source>
+      <translation>Quite la palabra, o elija una máquina que tenga %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>The datum was shifted in the tilted system of line %1.</source>
       <translation>El origen se desplazó en el sistema inclinado de la línea %1.</translation>
     </message>
@@ -11704,9 +18034,64 @@
       <translation>Escriba antes TOOL CALL n Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/q_functions.py" />
-      <source>%1%2 has no value yet.</source>
-      <translation>%1%2 aún no tiene valor.</translation>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>Correct Q218 and Q219.</source>
+      <translation>Corrija Q218 y Q219.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>Correct the sides of the blank.</source>
+      <translation>Corrija los lados de la pieza en bruto.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>Q367 is not between 0 and 4.</source>
+      <translation>Q367 no está entre 0 y 4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>The blank is not larger than the stud.</source>
+      <translation>El bruto no es mayor que la isla.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>The slot is wider than it is long.</source>
+      <translation>La ranura es más ancha que larga.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>The tool is wider than the figure.</source>
+      <translation>La herramienta es más ancha que la figura.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>Write Q366=+0 for a tool that cuts in its middle.</source>
+      <translation>Escriba Q366=+0 para una herramienta que corta en el centro.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>Write Q370 between 0.1 and 1.9999, and the tool's radius.</source>
+      <translation>Escriba Q370 entre 0.1 y 1.9999, y el radio de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/point_patterns.py" />
+      <source>%1 are the most.</source>
+      <translation>lo más son %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/point_patterns.py" />
+      <source>%1 has %2 points.</source>
+      <translation>%1 tiene %2 puntos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/point_patterns.py" />
+      <source>The pattern has %1 points.</source>
+      <translation>El modelo tiene %1 puntos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/point_patterns.py" />
+      <source>Write a whole number from 1 on.</source>
+      <translation>Escriba un número entero desde 1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/q_functions.py" />
@@ -11715,13 +18100,13 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/q_functions.py" />
-      <source>FN 18 with ID%1 NR%2 IDX%3</source>
-      <translation>FN 18 con ID%1 NR%2 IDX%3</translation>
+      <source>Look at the conditions before this block.</source>
+      <translation>Mire las condiciones antes de este bloque.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/q_functions.py" />
-      <source>Look at the conditions before this block.</source>
-      <translation>Mire las condiciones antes de este bloque.</translation>
+      <source>Q%1=PREDEF, and no GLOBAL DEF has told Q%2.</source>
+      <translation>Q%1=PREDEF, y ningún GLOBAL DEF ha dado Q%2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/q_functions.py" />
@@ -11735,8 +18120,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/q_functions.py" />
-      <source>Write %1%2 = … before.</source>
-      <translation>Escriba antes %1%2 = ….</translation>
+      <source>Write GLOBAL DEF before, or a number.</source>
+      <translation>Escriba antes GLOBAL DEF, o un número.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/radius_compensation.py" />
@@ -11769,9 +18154,164 @@
       <translation>El radio de herramienta de %1 mm no cabe aquí: %2.</translation>
     </message>
     <message>
+      <location filename="core/interpreter/klartext/system_data.py" />
+      <source>FN %1 with ID%2 NR%3 IDX%4</source>
+      <translation>FN %1 con ID%2 NR%3 IDX%4</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/system_data.py" />
+      <source>FN 17 SYSWRITE ID50 NR%1 %2</source>
+      <translation>FN 17 SYSWRITE ID50 NR%1 %2</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/system_data.py" />
+      <source>FN 17 with %1 of tool %2 in the tool table (type it in there)</source>
+      <translation>FN 17 con %1 de la herramienta %2 en la tabla de herramientas (escríbalo allí)</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/system_data.py" />
+      <source>The tool table here has no column %1: FN 18 reads %2, as of an empty cell.</source>
+      <translation>La tabla de herramientas de aquí no tiene columna %1: FN 18 lee %2, como de una celda vacía.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/system_data.py" />
+      <source>Tool %1 is not in the tool table.</source>
+      <translation>La herramienta %1 no está en la tabla de herramientas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/system_data.py" />
+      <source>Write it into the tool table.</source>
+      <translation>Escríbala en la tabla de herramientas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
+      <source>%1 of QS%2</source>
+      <translation>%1 de QS%2</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
+      <source>A jump by a text of the control</source>
+      <translation>Un salto por un texto del control</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
+      <source>A text of a free table</source>
+      <translation>Un texto de una tabla libre</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
+      <source>Correct the column, or fill the cell.</source>
+      <translation>Corrija la columna, o rellene la celda.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
+      <source>Correct the row.</source>
+      <translation>Corrija la fila.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
+      <source>DECIMALS%1 is not between 0 and %2.</source>
+      <translation>DECIMALS%1 no está entre 0 y %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
+      <source>FN 27 TABWRITE into the file</source>
+      <translation>FN 27 TABWRITE en el archivo</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
+      <source>Look what it holds.</source>
+      <translation>Mire qué contiene.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
+      <source>No table is open.</source>
+      <translation>No hay ninguna tabla abierta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
+      <source>QS%1 would have %2 signs.</source>
+      <translation>QS%1 tendría %2 caracteres.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
+      <source>QS%1, "%2", is no number.</source>
+      <translation>QS%1, "%2", no es un número.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
+      <source>SUBSTR takes no BEG or LEN under 0.</source>
+      <translation>SUBSTR no admite BEG ni LEN menores que 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
+      <source>The row has no number under %1.</source>
+      <translation>La fila no tiene ningún número en %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
+      <source>The table has no row %1.</source>
+      <translation>La tabla no tiene la fila %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
+      <source>What goes by QS%1, a text of the control,</source>
+      <translation>Lo que depende de QS%1, un texto del control,</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
+      <source>Write FN 26: TABOPEN with the file before.</source>
+      <translation>Escriba antes FN 26: TABOPEN con el archivo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
+      <source>A tool of R %1 mm mills no thread of diameter %2 mm.</source>
+      <translation>Una herramienta de R %1 mm no fresa una rosca de diámetro %2 mm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
+      <source>Correct pitch and depth.</source>
+      <translation>Corrija paso y profundidad.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
+      <source>Q355 %1 is no number of threads.</source>
+      <translation>Q355 %1 no es un número de hilos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
+      <source>Take another tool, or correct Q335.</source>
+      <translation>Tome otra herramienta o corrija Q335.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
+      <source>The depth Q356 of the hole leads upwards.</source>
+      <translation>La profundidad Q356 del agujero va hacia arriba.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
+      <source>The depth Q358 at the front leads upwards.</source>
+      <translation>La profundidad Q358 en el frente va hacia arriba.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
+      <source>The thread takes %1 turns.</source>
+      <translation>La rosca necesita %1 vueltas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
+      <source>Write 0, 1 or more.</source>
+      <translation>Escriba 0, 1 o más.</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/klartext/tool_call.py" />
-      <source>Call it by its number, or write TOOL DEF before.</source>
-      <translation>Llámela por su número o escriba antes TOOL DEF.</translation>
+      <source>A cutting speed needs the tool's radius, and it has none.</source>
+      <translation>Una velocidad de corte necesita el radio de la herramienta, y no lo tiene.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/tool_call.py" />
+      <source>Give a tool of the tool table this name, or call it by its number.</source>
+      <translation>Dé este nombre a una herramienta de la tabla, o llámela por su número.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/tool_call.py" />
@@ -11790,6 +18330,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/tool_call.py" />
+      <source>TOOL CALL</source>
+      <translation>TOOL CALL</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/tool_call.py" />
       <source>TOOL CALL while M128 is on.</source>
       <translation>TOOL CALL con M128 activo.</translation>
     </message>
@@ -11802,6 +18347,16 @@
       <location filename="core/interpreter/klartext/tool_call.py" />
       <source>Tool %1 has no offset; 0 is used, and the machine will refuse to start.</source>
       <translation>La herramienta %1 no tiene compensación; se usa 0, y la máquina se negará a arrancar.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/tool_call.py" />
+      <source>Write R into the tool table, or S.</source>
+      <translation>Escriba R en la tabla de herramientas, o S.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/word_values.py" />
+      <source>%1 %2 is not between %3 and %4.</source>
+      <translation>%1 %2 no está entre %3 y %4.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/word_values.py" />
@@ -11834,14 +18389,14 @@
       <translation>Escriba F o FMAX.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
-      <source>Write a feed.</source>
-      <translation>Escriba un avance.</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/machine_requirements.py" />
       <source>a thread that pulls out in step with the spindle; end it in a groove</source>
       <translation>una rosca que sale en paso con el husillo; termínela en una ranura</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/machine_requirements.py" />
+      <source>a thread under constant surface speed; program G97 before it</source>
+      <translation>una rosca con velocidad de corte constante; programe antes G97</translation>
     </message>
     <message>
       <location filename="core/interpreter/machine_requirements.py" />
@@ -11877,6 +18432,16 @@
       <location filename="core/interpreter/machine_requirements.py" />
       <source>the C axis</source>
       <translation>el eje C</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/machine_requirements.py" />
+      <source>threads in a chain or with a lead that changes; cut each with a lead of its own</source>
+      <translation>roscas encadenadas o de paso variable; corte cada una con su propio paso</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/machine_requirements.py" />
+      <source>write %1 = { output = "NAME", on = true } under [m_codes] of the machine file, NAME one of [io.out], or %2 = { ignored = true } if it does nothing on this machine</source>
+      <translation>escriba %1 = { output = "NAME", on = true } en [m_codes] del archivo de máquina, con NAME uno de [io.out], o %2 = { ignored = true } si no hace nada en esta máquina</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
@@ -12145,11 +18710,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycle_contour.py" />
-      <source>Take it out.</source>
-      <translation>Quítelo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>The contour cannot be read here</source>
       <translation>El contorno no se puede leer aquí</translation>
     </message>
@@ -12400,6 +18960,11 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/m_codes.py" />
+      <source>M%1 has no effect here: the machine file says that it does nothing.</source>
+      <translation>M%1 no tiene efecto aquí: el archivo de máquina dice que no hace nada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/m_codes.py" />
       <source>Set enabled = true for %1 under [m_codes].</source>
       <translation>Ponga enabled = true para %1 en [m_codes].</translation>
     </message>
@@ -12417,11 +18982,6 @@
       <location filename="core/interpreter/omniturn/mdi_line.py" />
       <source>/ leaves a line of a program out, and there is nothing to leave out</source>
       <translation>/ salta una línea de un programa, y no hay nada que saltar</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>Write it in a program.</source>
-      <translation>Escríbalo en un programa.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
@@ -12850,11 +19410,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Correct it.</source>
-      <translation>Corríjalo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>D belongs to (~PLZC).</source>
       <translation>D pertenece a (~PLZC).</translation>
     </message>
@@ -12890,11 +19445,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>The tool stands meanwhile; lead it past the axis.</source>
-      <translation>La herramienta se detiene entretanto; llévela al lado del eje.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>The tool's centre line stands H beside the axis.</source>
       <translation>La línea central de la herramienta está a H del eje.</translation>
     </message>
@@ -12902,11 +19452,6 @@
       <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>The way comes within %1 of the axis; with this H the tool reaches %2.</source>
       <translation>El camino pasa a %1 del eje; con esta H la herramienta alcanza %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>The way leads through the axis: C turns by %1 degrees there.</source>
-      <translation>El camino pasa por el eje: ahí C gira %1 grados.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/plane_switching.py" />
@@ -13229,6 +19774,81 @@
       <translation>El programa nunca llega a la línea %1.</translation>
     </message>
     <message>
+      <location filename="core/interpreter/restart/mill_approach.py" />
+      <source>TOOL CALL %1</source>
+      <translation>TOOL CALL %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/mill_approach.py" />
+      <source>the slides have no software limits</source>
+      <translation>los carros no tienen límites por software</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/program_search.py" />
+      <source>Line %1 begins in metal that %2 would have had to cut.</source>
+      <translation>La línea %1 empieza en metal que debieron cortar antes: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/program_search.py" />
+      <source>Line %1 is empty, a comment, part of the block before it, or the run never comes to it.</source>
+      <translation>La línea %1 está vacía, es un comentario, es parte del bloque anterior, o la ejecución nunca llega a ella.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/program_search.py" />
+      <source>Line %1 is no place to go on: %2</source>
+      <translation>La línea %1 no es lugar para seguir: %2</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/program_search.py" />
+      <source>Line %1 is no place to go on: %2 has not been positioned before it.</source>
+      <translation>La línea %1 no es lugar para seguir: %2 no se ha posicionado antes.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/program_search.py" />
+      <source>Line %1 is no place to go on: %2.</source>
+      <translation>La línea %1 no es lugar para seguir: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/program_search.py" />
+      <source>The program ends on line %1, before line %2.</source>
+      <translation>El programa termina en la línea %1, antes de la línea %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/program_search.py" />
+      <source>The run comes to line %1 %2 times only.</source>
+      <translation>La ejecución llega a la línea %1 sólo %2 veces.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/program_search.py" />
+      <source>There is no line %1; the program has %2.</source>
+      <translation>No hay línea %1; el programa tiene %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/program_search.py" />
+      <source>lines %1 to %2</source>
+      <translation>líneas %1 a %2</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/program_search.py" />
+      <source>nothing has moved before it; start the program from its first line.</source>
+      <translation>nada se ha movido antes; empiece el programa desde su primera línea.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/program_search.py" />
+      <source>the program has errors before it</source>
+      <translation>el programa tiene errores antes de ella</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/program_search.py" />
+      <source>what comes before it depends on where the slides stood at Cycle Start.</source>
+      <translation>lo que viene antes depende de dónde estaban los carros en el inicio de ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/program_search.py" />
+      <source>where %1 stands there depends on where it stood at Cycle Start.</source>
+      <translation>dónde está ahí %1 depende de dónde estaba en el inicio de ciclo.</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/restart/restart_approach.py" />
       <source>%1 OFF</source>
       <translation>%1 APAGADO</translation>
@@ -13247,11 +19867,6 @@
       <location filename="core/interpreter/restart/restart_lines.py" />
       <source>Line %1 is empty.</source>
       <translation>La línea %1 está vacía.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/restart/restart_lines.py" />
-      <source>There is no line %1; the program has %2.</source>
-      <translation>No hay línea %1; el programa tiene %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/restart_lines.py" />
@@ -13305,11 +19920,6 @@
     </message>
     <message>
       <location filename="core/interpreter/restart/state_rebuild.py" />
-      <source>Line %1 begins in metal that %2 would have had to cut.</source>
-      <translation>La línea %1 empieza en metal que debieron cortar antes: %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>Line %1 begins in the work, and no sure way leads there. %2</source>
       <translation>La línea %1 empieza dentro de la pieza y ningún camino seguro lleva allí. %2</translation>
     </message>
@@ -13325,11 +19935,6 @@
     </message>
     <message>
       <location filename="core/interpreter/restart/state_rebuild.py" />
-      <source>Line %1 is no place to go on: %2</source>
-      <translation>La línea %1 no es lugar para seguir: %2</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>Line %1 is under nose compensation or in a corner.</source>
       <translation>La línea %1 está bajo compensación de punta o en una esquina.</translation>
     </message>
@@ -13337,11 +19942,6 @@
       <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>Nothing has moved before line %1: start the program from its first line.</source>
       <translation>Nada se mueve antes de la línea %1: empiece el programa desde su primera línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/restart/state_rebuild.py" />
-      <source>The program ends on line %1, before line %2.</source>
-      <translation>El programa termina en la línea %1, antes de la línea %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/state_rebuild.py" />
@@ -13355,11 +19955,6 @@
     </message>
     <message>
       <location filename="core/interpreter/restart/state_rebuild.py" />
-      <source>lines %1 to %2</source>
-      <translation>líneas %1 a %2</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>what input %1 answered on line %2 is not known.</source>
       <translation>no se sabe qué respondió la entrada %1 en la línea %2.</translation>
     </message>
@@ -13367,6 +19962,46 @@
       <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>what the input of line %1 answered is not known.</source>
       <translation>no se sabe qué respondió la entrada de la línea %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
+      <source>%1 needs S in rpm.</source>
+      <translation>%1 necesita S en rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
+      <source>Correct its sign.</source>
+      <translation>Corrija su signo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
+      <source>Write G97 S before it.</source>
+      <translation>Escriba antes G97 S.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
+      <source>Write the direction of the spindle.</source>
+      <translation>Escriba el sentido del husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
+      <source>is an angle of 0 to under 360</source>
+      <translation>es un ángulo de 0 a menos de 360</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
+      <source>is neither 3 nor 4</source>
+      <translation>no es 3 ni 4</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
+      <source>leads on into the hole</source>
+      <translation>sigue hacia dentro del agujero</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
+      <source>this lathe has no axis Y</source>
+      <translation>este torno no tiene eje Y</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
@@ -13430,8 +20065,13 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/control_structures.py" />
-      <source>%1 is no variable of this program.</source>
-      <translation>%1 no es una variable de este programa.</translation>
+      <source>%1[%2] is no array of 1 to %3 elements.</source>
+      <translation>%1[%2] no es una matriz de 1 a %3 elementos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <source>Correct its size.</source>
+      <translation>Corrija su tamaño.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/control_structures.py" />
@@ -13442,6 +20082,11 @@
       <location filename="core/interpreter/sinumerik/control_structures.py" />
       <source>Look at the beginning of the structure.</source>
       <translation>Mire el principio de la estructura.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <source>Look at the lines before it for the reason.</source>
+      <translation>Busque la razón en las líneas de antes.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/control_structures.py" />
@@ -13459,9 +20104,474 @@
       <translation>la etiqueta %1 no está donde %2 la busca.</translation>
     </message>
     <message>
+      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <source>the name %1 is not defined: no DEF has named it.</source>
+      <translation>el nombre %1 no está definido: ningún DEF lo ha nombrado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <source>the program raises its alarm %1.</source>
+      <translation>el programa da su alarma %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_calls.py" />
+      <source>Put %1.spf beside the main program, or %_N_%2_SPF into its file.</source>
+      <translation>Ponga %1.spf junto al programa principal, o %_N_%2_SPF en su archivo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_calls.py" />
+      <source>Write "NAME" of a subprogram, or "START:END" of two labels.</source>
+      <translation>Escriba "NAME" de un subprograma, o "START:END" de dos etiquetas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_calls.py" />
+      <source>names labels that are not here: %1</source>
+      <translation>nombra etiquetas que no están aquí: %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_calls.py" />
+      <source>names no contour</source>
+      <translation>no nombra ningún contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_calls.py" />
+      <source>names the subprogram %1, which does not exist</source>
+      <translation>nombra el subprograma %1, que no existe</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_contour.py" />
+      <source>C and frames cannot stand in a contour</source>
+      <translation>C y los frames no pueden estar en un contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_contour.py" />
+      <source>a contour holds G0, G1, G2 and G3</source>
+      <translation>un contorno lleva G0, G1, G2 y G3</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_contour.py" />
+      <source>a contour holds moves alone, and this line calls or jumps</source>
+      <translation>un contorno sólo lleva movimientos, y esta línea llama o salta</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>%1 %2, and %3 is on.</source>
+      <translation>%1 %2, y %3 está activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>%1 cannot run in a frame that is turned, scaled or mirrored.</source>
+      <translation>%1 no puede correr en un frame girado, escalado o en espejo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>%1 needs it.</source>
+      <translation>%1 lo necesita.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>%1 takes %2 parameters, and %3 are handed over.</source>
+      <translation>%1 toma %2 parámetros, y se pasan %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>Leave %1 out.</source>
+      <translation>Omita %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>Take the sign out.</source>
+      <translation>Quite el signo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>They are %1.</source>
+      <translation>Son %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>Write G40 and a move before it.</source>
+      <translation>Escriba antes G40 y un movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>Write TRAFOOF before it.</source>
+      <translation>Escriba antes TRAFOOF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>Write TRANS alone before it.</source>
+      <translation>Escriba antes TRANS solo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>Write a number.</source>
+      <translation>Escriba un número.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>goes along Z</source>
+      <translation>va a lo largo de Z</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>is %1, and lies between %2 and %3</source>
+      <translation>es %1, y está entre %2 y %3</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>is %1; types are %2 to %3</source>
+      <translation>es %1; los tipos son de %2 a %3</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>is a feed, and over 0</source>
+      <translation>es un avance, y mayor que 0</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>is a size, and takes no sign</source>
+      <translation>es una medida, y va sin signo</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>is a text, and takes a number</source>
+      <translation>es un texto, y toma un número</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>is missing</source>
+      <translation>falta</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>is not executed here: %1</source>
+      <translation>no se ejecuta aquí: %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>must be over 0</source>
+      <translation>debe ser mayor que 0</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>turns or taps with the spindle</source>
+      <translation>tornea o rosca con el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>%1 drills across the plane G%2; along Z it does so under G17.</source>
+      <translation>%1 taladra de través al plano G%2; a lo largo de Z lo hace con G17.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>DP and DPR differ: DP counts.</source>
+      <translation>DP y DPR difieren: cuenta DP.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>Leave it out.</source>
+      <translation>Omítalo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>Leave one of them out.</source>
+      <translation>Omita uno de ellos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>RTP, RFP and the depth lie one behind the other.</source>
+      <translation>RTP, RFP y la profundidad van uno tras otro.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>Write DP, or DPR from the reference plane.</source>
+      <translation>Escriba DP, o DPR desde el plano de referencia.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>Write F before it.</source>
+      <translation>Escriba antes F.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>Write G17 before it, and G18 behind it.</source>
+      <translation>Escriba antes G17, y después G18.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>Write _MDEP, or a smaller DAM.</source>
+      <translation>Escriba _MDEP, o un DAM menor.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>Write seconds.</source>
+      <translation>Escriba segundos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>counts revolutions of a spindle that stands</source>
+      <translation>cuenta vueltas de un husillo parado</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>is a factor of 0.001 to 1</source>
+      <translation>es un factor de 0.001 a 1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>is a factor of over -1 to 0, or an amount</source>
+      <translation>es un factor de más de -1 a 0, o una cantidad</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>lies before RFP</source>
+      <translation>está antes de RFP</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>lies beyond the depth of the hole</source>
+      <translation>está más allá de la profundidad del agujero</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>lies not beyond RFP as seen from RTP (%1, %2, %3)</source>
+      <translation>no está más allá de RFP visto desde RTP (%1, %2, %3)</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>makes pecks that come to nothing</source>
+      <translation>da picadas que quedan en nada</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>names another axis than Z</source>
+      <translation>nombra otro eje que Z</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>no feedrate is programmed.</source>
+      <translation>no hay avance programado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <source>%1 beside G75 says nothing: the axis goes to %2 mm of the machine.</source>
+      <translation>%1 junto a G75 no dice nada: el eje va a %2 mm de la máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <source>%1 is no fixed point.</source>
+      <translation>%1 no es un punto fijo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <source>%1 leaves the contour while G%2 is on.</source>
+      <translation>%1 sale del contorno con G%2 activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <source>%1 names the axes that go there, each with 0, and nothing else.</source>
+      <translation>%1 nombra los ejes que van allí, cada uno con 0, y nada más.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <source>%1: G74 goes to the home of the machine.</source>
+      <translation>%1: G74 va al punto de referencia de la máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <source>%1: the machine file names %2 of %3, and number %4 is asked for.</source>
+      <translation>%1: el archivo de máquina da %2 de %3, y se pide el número %4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <source>%1: the machine file names no fixed point of %2.</source>
+      <translation>%1: el archivo de máquina no da ningún punto fijo de %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <source>Add %1, or write SUPA G0 D0 with X and Z of the machine.</source>
+      <translation>Añada %1, o escriba SUPA G0 D0 con X y Z de la máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <source>Correct FP, or add to %1.</source>
+      <translation>Corrija FP, o amplíe %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <source>Write %1 X1=0 Z1=0.</source>
+      <translation>Escriba %1 X1=0 Z1=0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <source>Write %10.</source>
+      <translation>Escriba %10.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <source>Write %1=0.</source>
+      <translation>Escriba %1=0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <source>Write FP=1 to FP=4.</source>
+      <translation>Escriba de FP=1 a FP=4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <source>fixed_points under [axis.%1] of the machine file</source>
+      <translation>fixed_points en [axis.%1] del archivo de máquina</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>%1 and %2 stand in one place: the tool has no width.</source>
+      <translation>%1 y %2 están en el mismo lugar: la herramienta no tiene ancho.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>%1 needs a tool with its offset.</source>
+      <translation>%1 necesita una herramienta con su compensación.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>%1 reckons with the tool's width, and %2, its other corner, is not set.</source>
+      <translation>%1 cuenta con el ancho de la herramienta, y %2, su otra esquina, no está puesta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>Correct SPD or DIAG.</source>
+      <translation>Corrija SPD o DIAG.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>Correct the offsets of its two corners.</source>
+      <translation>Corrija las compensaciones de sus dos esquinas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>Set %1 on the page of tool offsets (F8).</source>
+      <translation>Ponga %1 en la página de compensaciones de herramienta (F8).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>Take a narrower tool.</source>
+      <translation>Tome una herramienta más angosta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>Write T and D before it.</source>
+      <translation>Escriba antes T y D.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>Write a groove in a face as a contour of CYCLE95, or as G1 blocks.</source>
+      <translation>Escriba una ranura frontal como contorno de CYCLE95, o en bloques G1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>is %1 with FAL2 on both flanks, and the tool is %2 wide</source>
+      <translation>es %1 con FAL2 en ambos flancos, y la herramienta mide %2 de ancho</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>is %1, a groove in a face</source>
+      <translation>es %1, una ranura frontal</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>is a time in seconds</source>
+      <translation>es un tiempo en segundos</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>is none of 1 to 8 and 11 to 18</source>
+      <translation>no es ninguno de 1 a 8 ni de 11 a 18</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>reaches beyond the axis</source>
+      <translation>llega más allá del eje</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>would take %1 cuts</source>
+      <translation>daría %1 cortes</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>would take %1 steps</source>
+      <translation>daría %1 penetraciones</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>write a groove with slanted flanks as a contour of CYCLE95</source>
+      <translation>escriba una ranura de flancos inclinados como contorno de CYCLE95</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>write its corners as a contour of CYCLE95, or chamfer them with G1</source>
+      <translation>escriba sus esquinas como contorno de CYCLE95, o achaflánelas con G1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/hole_patterns.py" />
+      <source>%1 drills by the cycle of MCALL, and none is in force.</source>
+      <translation>%1 taladra con el ciclo de MCALL, y no hay ninguno vigente.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/hole_patterns.py" />
+      <source>%1 has places of X and Y, and this lathe has no axis Y.</source>
+      <translation>%1 tiene lugares de X e Y, y este torno no tiene eje Y.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/hole_patterns.py" />
+      <source>Write MCALL CYCLE81( ) or another cycle before it.</source>
+      <translation>Escriba antes MCALL CYCLE81( ) u otro ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/hole_patterns.py" />
+      <source>Write TRANSMIT before it, or the places behind MCALL.</source>
+      <translation>Escriba antes TRANSMIT, o los lugares tras MCALL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/hole_patterns.py" />
+      <source>is the distance between the holes, and over 0</source>
+      <translation>es la distancia entre los agujeros, y mayor que 0</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/hole_patterns.py" />
+      <source>is the number of holes, and over 0</source>
+      <translation>es el número de agujeros, y mayor que 0</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>%1 alone begins a contour of two lines, which is not worked out here.</source>
+      <translation>%1 solo empieza un contorno de dos rectas, que aquí no se calcula.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>%1 belongs to a line.</source>
+      <translation>%1 pertenece a una recta.</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>%1 belongs to an arc, and G%2 is in force.</source>
       <translation>%1 pertenece a un arco, y está vigente G%2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>%1 is a distance, and T or D has just changed where %2 stands.</source>
+      <translation>%1 es una distancia, y T o D acaba de cambiar dónde está %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>%1 stands beside RP and AP.</source>
+      <translation>%1 está junto a RP y AP.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>%1 stands beside X and Z, which say the end.</source>
+      <translation>%1 está junto a X y Z, que dicen el final.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
@@ -13470,23 +20580,23 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>C of this machine counts -360 to +360; write AC( ) or IC( ).</source>
-      <translation>El C de esta máquina cuenta de -360 a +360; escriba AC( ) o IC( ).</translation>
+      <source>Correct the target or the offset of the axis.</source>
+      <translation>Corrija el destino o el decalaje del eje.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>Correct the target or the offset of C.</source>
-      <translation>Corrija el destino o el desplazamiento de C.</translation>
+      <source>Keep X or Z beside ANG.</source>
+      <translation>Deje X o Z junto a ANG.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>G96 is in force and no S has given a surface speed.</source>
-      <translation>G96 está vigente y ninguna S dio una velocidad superficial.</translation>
+      <source>RP comes to less than 0.</source>
+      <translation>RP resulta menor que 0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>Start it with S and M3 or M4, or use G94.</source>
-      <translation>Arránquelo con S y M3 o M4, o use G94.</translation>
+      <source>This axis counts -360 to +360; write AC( ) or IC( ).</source>
+      <translation>Este eje cuenta de -360 a +360; escriba AC( ) o IC( ).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
@@ -13495,13 +20605,28 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>Write F. Between G94 and G95 the old value is forgotten.</source>
-      <translation>Escriba F. Entre G94 y G95 se olvida el valor anterior.</translation>
+      <source>Write G2 or G3, or take it out.</source>
+      <translation>Escriba G2 o G3, o quítelo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>Write G2 or G3, or take it out.</source>
-      <translation>Escriba G2 o G3, o quítelo.</translation>
+      <source>Write X beside ANG.</source>
+      <translation>Escriba X junto a ANG.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>Write X or Z of its end beside it.</source>
+      <translation>Escriba junto a él X o Z de su final.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>Write Z beside ANG.</source>
+      <translation>Escriba Z junto a ANG.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>Write a position of %1 before it.</source>
+      <translation>Escriba antes una posición de %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
@@ -13510,28 +20635,158 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>kind of feed</source>
-      <translation>clase de avance</translation>
+      <source>Write both.</source>
+      <translation>Escriba los dos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>no feedrate is programmed.</source>
-      <translation>no hay avance programado.</translation>
+      <source>Write one or the other.</source>
+      <translation>Escriba uno u otro.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>no spindle speed for G95: the spindle stands.</source>
-      <translation>no hay velocidad de husillo para G95: el husillo está parado.</translation>
+      <source>the first polar move needs RP and AP.</source>
+      <translation>el primer movimiento polar necesita RP y AP.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>suppression of offsets</source>
-      <translation>supresión de desplazamientos</translation>
+      <source>this line never reaches X.</source>
+      <translation>esta recta nunca llega a X.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
-      <source>the feed</source>
-      <translation>el avance</translation>
+      <source>this line never reaches Z.</source>
+      <translation>esta recta nunca llega a Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <source>%1 starts the live tool, and no S has said how fast.</source>
+      <translation>%1 arranca la herramienta motorizada y ninguna S dijo qué tan rápido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <source>%1: the live tool is switched on and off here; its speed is set at its own drive.</source>
+      <translation>%1: aquí la herramienta motorizada se enciende y se apaga; su velocidad se ajusta en su propio accionamiento.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <source>%1: the live tool turns one way.</source>
+      <translation>%1: la herramienta motorizada gira en un solo sentido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <source>%1: the speed has no sign; M3 and M4 say the direction.</source>
+      <translation>%1: la velocidad no lleva signo; M3 y M4 dicen el sentido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <source>%1: this machine has one spindle, and no output that turns a live tool.</source>
+      <translation>%1: esta máquina tiene un solo husillo, y ninguna salida que haga girar una herramienta motorizada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <source>Set it to %1 rpm by hand.</source>
+      <translation>Póngala a %1 rpm a mano.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <source>Take it out, or name an output live under [io.out] of the machine file.</source>
+      <translation>Quítelo, o nombre una salida live en [io.out] del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <source>Write M3, with a tool of that hand.</source>
+      <translation>Escriba M3, con una herramienta de ese sentido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <source>Write S2= in the block.</source>
+      <translation>Escriba S2= en el bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <source>%1: the machine will not start.</source>
+      <translation>%1: la máquina no arrancará.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <source>M%1 belongs to the ISO language of this control.</source>
+      <translation>M%1 pertenece al lenguaje ISO de este control.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <source>M%1 is defined, and not switched on in the machine file.</source>
+      <translation>M%1 está definido, y no activado en el archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <source>M%1 is the machine builder's, and nothing on this machine answers it</source>
+      <translation>M%1 es del fabricante de la máquina, y nada en esta máquina le responde</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <source>T changes the tool by itself on this machine</source>
+      <translation>en esta máquina T cambia la herramienta por sí sola</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <source>Write the name of a subprogram, M17 at its end.</source>
+      <translation>Escriba el nombre de un subprograma, con M17 al final.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <source>the machine file says that it does nothing</source>
+      <translation>el archivo de máquina dice que no hace nada</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/mda_block.py" />
+      <source>%1 calls another program</source>
+      <translation>%1 llama a otro programa</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/mda_block.py" />
+      <source>%1 is for the blocks behind it</source>
+      <translation>%1 es para los bloques que le siguen</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/mda_block.py" />
+      <source>%1 leads to another block</source>
+      <translation>%1 lleva a otro bloque</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/mda_block.py" />
+      <source>%1 stands between two blocks of a contour</source>
+      <translation>%1 va entre dos bloques de un contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>%1 belongs to ROT.</source>
+      <translation>%1 pertenece a ROT.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>%1 has no effect here: %2.</source>
+      <translation>%1 no tiene efecto aquí: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>%1 leaves the working area of G%2 at %3 mm.</source>
+      <translation>%1 sale de la zona de trabajo de G%2 en %3 mm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>%1 takes X and Z.</source>
+      <translation>%1 toma X y Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>%1: %2 %3 on a lathe.</source>
+      <translation>%1: en un torno %2 %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>%1: a factor lies between 0.001 and 1000.</source>
+      <translation>%1: un factor está entre 0.001 y 1000.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
@@ -13540,8 +20795,48 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
-      <source>Take C out, or choose a machine file that has it.</source>
-      <translation>Quite C, o elija un archivo de máquina que lo tenga.</translation>
+      <source>%1: this lathe has no axis Y.</source>
+      <translation>%1: este torno no tiene eje Y.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>Correct it; MIRROR counts the other way.</source>
+      <translation>Corríjalo; MIRROR cuenta al revés.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>Correct the move, or write WALIMOF.</source>
+      <translation>Corrija el movimiento, o escriba WALIMOF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>G%1 changes the plane while G%2 is on.</source>
+      <translation>G%1 cambia el plano con G%2 activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>J: an arc in G18 has I and K.</source>
+      <translation>J: un arco en G18 tiene I y K.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>Take C out.</source>
+      <translation>Quite C.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>Take it out, or choose a machine file that has it.</source>
+      <translation>Quítelo, o elija un archivo de máquina que lo tenga.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>Take it out; TRANSMIT and TRACYL make Y of X and C.</source>
+      <translation>Quítelo; TRANSMIT y TRACYL hacen Y con X y C.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>Write %1 RPL=…</source>
+      <translation>Escriba %1 RPL=…</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
@@ -13550,23 +20845,203 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
-      <source>absolute or incremental</source>
-      <translation>absoluto o incremental</translation>
+      <source>Write G%1 before it.</source>
+      <translation>Escriba antes G%1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
-      <source>settable offset</source>
-      <translation>cero ajustable</translation>
+      <source>radius compensation of %1 needs G%2.</source>
+      <translation>la compensación de radio de %1 necesita G%2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
-      <source>unit of length</source>
-      <translation>unidad de longitud</translation>
+      <source>turns the plane by RPL=</source>
+      <translation>gira el plano con RPL=</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
       <source>unknown axis: this machine has no third axis.</source>
       <translation>eje desconocido: esta máquina no tiene tercer eje.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <source>%1 of %2 is VAR and takes a variable.</source>
+      <translation>%1 de %2 es VAR y toma una variable.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <source>%1 parameter%2</source>
+      <translation>%1 parámetro%2</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <source>%1 takes %2, and %3 are handed over.</source>
+      <translation>%1 toma %2, y se pasan %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <source>Correct the call, or the PROC line of the subprogram.</source>
+      <translation>Corrija la llamada, o la línea PROC del subprograma.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <source>Hand over a variable or an R parameter.</source>
+      <translation>Pase una variable o un parámetro R.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <source>no parameters</source>
+      <translation>ningún parámetro</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>%1 while G%2 is on.</source>
+      <translation>%1 con G%2 activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>Approach with G0 or G1, and then begin the contour.</source>
+      <translation>Acérquese con G0 o G1, y luego empiece el contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>Begin further off.</source>
+      <translation>Empiece más lejos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>Begin it elsewhere, or write KONT, which goes round the end of the contour.</source>
+      <translation>Empiécela en otro lugar, o escriba KONT, que rodea el extremo del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>Begin it elsewhere.</source>
+      <translation>Empiécela en otro lugar.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>Enter the nose radius among the offsets (F8).</source>
+      <translation>Ponga el radio de punta entre las compensaciones (F8).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>Enter the tip quadrant (F8); 9 says the centre.</source>
+      <translation>Ponga el cuadrante de punta (F8); 9 dice el centro.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>G%1 follows G%2 on the contour.</source>
+      <translation>G%1 sigue a G%2 en el contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>G%1 needs a tool and its cutting edge.</source>
+      <translation>G%1 necesita una herramienta y su filo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>Leave the contour first.</source>
+      <translation>Salga primero del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>Leave the contour with G0 or G1.</source>
+      <translation>Salga del contorno con G0 o G1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>Leave the contour with G40 before it.</source>
+      <translation>Salga antes del contorno con G40.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>Move off the part with G40 before it.</source>
+      <translation>Salga antes de la pieza con G40.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>T or D stands before the move that leaves the contour.</source>
+      <translation>T o D está antes del movimiento que sale del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>Write a move behind G40 first.</source>
+      <translation>Escriba primero un movimiento tras G40.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>Write the contour before G40.</source>
+      <translation>Escriba el contorno antes de G40.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>a nose radius of %1 mm does not fit here: %2.</source>
+      <translation>un radio de punta de %1 mm no cabe aquí: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>a thread is cut</source>
+      <translation>se corta una rosca</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>in line %1</source>
+      <translation>en la línea %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>no move of a contour follows G%1.</source>
+      <translation>ningún movimiento de contorno sigue a G%1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>on the %1 the nose of %2 mm cuts into the contour.</source>
+      <translation>en la %1 la punta de %2 mm corta el contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>the %1 by KONT begins nearer to the contour's end than the nose radius.</source>
+      <translation>la %1 con KONT empieza más cerca del extremo del contorno que el radio de punta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>the first move with G%1 is no straight line.</source>
+      <translation>el primer movimiento con G%1 no es una recta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>the first move with G40 is no straight line.</source>
+      <translation>el primer movimiento con G40 no es una recta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>the nose radius of the tool is 0: G%1 compensates nothing.</source>
+      <translation>el radio de punta de la herramienta es 0: G%1 no compensa nada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>the program ends while G41 or G42 is on.</source>
+      <translation>el programa termina con G41 o G42 activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>the tool has no tip quadrant: G%1 takes its offset as that of the nose's centre.</source>
+      <translation>la herramienta no tiene cuadrante de punta: G%1 toma su compensación como la del centro del radio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>the zero changes while G%1 is on.</source>
+      <translation>el cero cambia con G%1 activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>the zero is another one in the move that leaves the contour.</source>
+      <translation>el cero es otro en el movimiento que sale del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <source>%1 does not belong to %2.</source>
+      <translation>%1 no pertenece a %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
@@ -13590,8 +21065,33 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <source>Add them.</source>
+      <translation>Añádalos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <source>CIP needs I1 and K1, a point on its way.</source>
+      <translation>CIP necesita I1 y K1, un punto en su camino.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <source>CT goes on from a path, and nothing has moved before it.</source>
+      <translation>CT continúa una trayectoria, y nada se ha movido antes.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>Correct CR or the end point.</source>
       <translation>Corrija CR o el punto final.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <source>Correct the point, or write G1.</source>
+      <translation>Corrija el punto, o escriba G1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <source>Give both one factor.</source>
+      <translation>Dé a ambos un mismo factor.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
@@ -13605,13 +21105,33 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <source>SCALE has made X and Z of different sizes, in which an arc is none.</source>
+      <translation>SCALE ha hecho X y Z de distinta escala, en la que un arco no lo es.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <source>Take it out, or write its arc.</source>
+      <translation>Quítelo, o escriba su arco.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <source>Write G1, or another end.</source>
+      <translation>Escriba G1, u otro final.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <source>Write a move before it.</source>
+      <translation>Escriba antes un movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>arcs of X and Z need G18.</source>
       <translation>los arcos de X y Z necesitan G18.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
-      <source>the arc by %1 ends where it starts.</source>
-      <translation>el arco por %1 termina donde empieza.</translation>
+      <source>start, end and the point of I1 and K1 lie on one line, or two of them in one place.</source>
+      <translation>inicio, final y el punto de I1 y K1 están en una recta, o dos de ellos en un mismo lugar.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
@@ -13630,6 +21150,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <source>the arc%1 ends where it starts.</source>
+      <translation>el arco%1 termina donde empieza.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>the arc's radius is %1 mm at its start and %2 mm at its end.</source>
       <translation>el radio del arco es %1 mm al inicio y %2 mm al final.</translation>
     </message>
@@ -13639,9 +21164,64 @@
       <translation>el centro del arco es su punto de inicio.</translation>
     </message>
     <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <source>the end of CT lies on the line of the path before it, which makes no arc.</source>
+      <translation>el final de CT está en la recta de la trayectoria anterior, lo que no da ningún arco.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
+      <source>%1 lies beyond 1 to 200.</source>
+      <translation>%1 está fuera de 1 a 200.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
+      <source>G96 is in force and no S has given a surface speed.</source>
+      <translation>G96 está vigente y ninguna S dio una velocidad superficial.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
+      <source>Start it with S and M3 or M4, or use G94.</source>
+      <translation>Arránquelo con S y M3 o M4, o use G94.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
+      <source>Start it with S and M3.</source>
+      <translation>Arránquela con S y M3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
+      <source>Write F. Between G94 and G95 the old value is forgotten, and G96 and G97 count as G95.</source>
+      <translation>Escriba F. Entre G94 y G95 se olvida el valor anterior, y G96 y G97 cuentan como G95.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
+      <source>no speed for G95: the live tool stands, and SETMS(2) is in force.</source>
+      <translation>no hay velocidad para G95: la herramienta motorizada está parada, y está vigente SETMS(2).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
+      <source>no spindle speed for G95: the spindle stands.</source>
+      <translation>no hay velocidad de husillo para G95: el husillo está parado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
+      <source>the feed</source>
+      <translation>el avance</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>%1 is no word, and no variable of this program.</source>
-      <translation>%1 no es una palabra ni una variable de este programa.</translation>
+      <source>%1 acts in a block that moves an axis.</source>
+      <translation>%1 actúa en un bloque que mueve un eje.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>%1 belongs to %2.</source>
+      <translation>%1 pertenece a %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>%1 is no function of a SINUMERIK %2, which this machine has.</source>
+      <translation>%1 no es función de un SINUMERIK %2, que es el de esta máquina.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
@@ -13650,8 +21230,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>G53 acts in a block that moves an axis.</source>
-      <translation>G53 actúa en un bloque que mueve un eje.</translation>
+      <source>CYCLE800: this lathe has no head that swivels.</source>
+      <translation>CYCLE800: este torno no tiene cabezal orientable.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
@@ -13665,8 +21245,23 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>kind of spindle speed</source>
-      <translation>clase de velocidad del husillo</translation>
+      <source>Write it otherwise, or correct control under [machine] of the machine file.</source>
+      <translation>Escríbalo de otro modo, o corrija control en [machine] del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>it stands in %1; begin before it</source>
+      <translation>está en %1; empiece antes</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>it stands on a contour of G41 or G42; begin before its approach</source>
+      <translation>está en un contorno de G41 o G42; empiece antes de su entrada</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>the name %1 is not defined: it is no word, and no variable of this program.</source>
+      <translation>el nombre %1 no está definido: no es palabra ni variable de este programa.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
@@ -13675,33 +21270,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
-      <source>%1 has no value: %2.</source>
-      <translation>%1 no tiene valor: %2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
       <source>%1: %2 must be over 0.</source>
       <translation>%1: %2 debe ser mayor que 0.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
-      <source>DEF REAL %1</source>
-      <translation>DEF REAL %1</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
-      <source>Write %1 before it.</source>
-      <translation>Escriba antes %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
-      <source>no DEF has named it</source>
-      <translation>ningún DEF lo ha nombrado</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
-      <source>the program has not set it</source>
-      <translation>el programa no lo ha fijado</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
@@ -13715,13 +21285,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>%1 are the most.</source>
-      <translation>lo más son %1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>%1 is no code of this control.</source>
-      <translation>%1 no es código de este control.</translation>
+      <source>%1 is no G function of this control.</source>
+      <translation>%1 no es función G de este control.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
@@ -13740,8 +21305,13 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>DIAMON and DIAMOF are of one group.</source>
-      <translation>DIAMON y DIAMOF son de un mismo grupo.</translation>
+      <source>%1: this machine has one spindle that is positioned; 2 is its live tool.</source>
+      <translation>%1: esta máquina tiene un solo husillo que se posiciona; el 2 es su herramienta motorizada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>%1: which M function it is has to be there as a number.</source>
+      <translation>%1: qué función M es tiene que estar ahí como número.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
@@ -13770,6 +21340,16 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>Write M with its number.</source>
+      <translation>Escriba M con su número.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>Write it for spindle 1, or take it out.</source>
+      <translation>Escríbalo para el husillo 1, o quítelo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
       <source>the block holds %1 M codes.</source>
       <translation>el bloque contiene %1 códigos M.</translation>
     </message>
@@ -13777,6 +21357,11 @@
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>%1 is a dwell of %2 s; %3 are the most.</source>
       <translation>%1 es una espera de %2 s; lo más son %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>%1 is no limit of a speed.</source>
+      <translation>%1 no es límite de una velocidad.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
@@ -13795,13 +21380,13 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>%1 starts the spindle and no S has said how fast.</source>
-      <translation>%1 arranca el husillo y ninguna S dijo qué tan rápido.</translation>
+      <source>%1 starts the spindle with the collet open.</source>
+      <translation>%1 arranca el husillo con la boquilla abierta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>%1 starts the spindle with the collet open.</source>
-      <translation>%1 arranca el husillo con la boquilla abierta.</translation>
+      <source>%1 starts the spindle, and its speed S is 0: none was written, or S0.</source>
+      <translation>%1 arranca el husillo y su velocidad S es 0: no se escribió ninguna, o S0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
@@ -13810,13 +21395,23 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>%1: the speed has no sign; M3 and M4 say the direction.</source>
-      <translation>%1: la velocidad no lleva signo; M3 y M4 dicen el sentido.</translation>
+      <source>%1: the lowest speed %2 is over the highest %3.</source>
+      <translation>%1: la velocidad mínima %2 pasa de la máxima %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>C is a drive of its own</source>
+      <translation>C es un accionamiento propio</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>Close it.</source>
       <translation>Ciérrela.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>Correct G25 or G26.</source>
+      <translation>Corrija G25 o G26.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
@@ -13830,11 +21425,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>G96 is in force and F counts in mm/min (G94).</source>
-      <translation>G96 está vigente y F cuenta en mm/min (G94).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>G97 makes S rpm.</source>
       <translation>G97 hace de S rpm.</translation>
     </message>
@@ -13845,13 +21435,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>Take the sign out.</source>
-      <translation>Quite el signo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>Write G95 where F is meant as mm a revolution.</source>
-      <translation>Escriba G95 donde F signifique mm por vuelta.</translation>
+      <source>Write M5, and index the part by C; on the machine sinumerik-live the spindle is C.</source>
+      <translation>Escriba M5, y posicione la pieza con C; en la máquina sinumerik-live el husillo es C.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
@@ -13860,8 +21445,138 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>it has no C</source>
+      <translation>no tiene C</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>the limit of the speed</source>
       <translation>el tope de la velocidad</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>the spindle of this machine cannot be positioned: %1.</source>
+      <translation>el husillo de esta máquina no se puede posicionar: %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>1 roughs, 5 finishes, 9 does both, along Z and outside.</source>
+      <translation>1 desbasta, 5 acaba, 9 hace ambos, a lo largo de Z y por fuera.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>End the contour where the tool can leave it.</source>
+      <translation>Termine el contorno donde la herramienta pueda salir de él.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>Enter the tip quadrant on the page of tool offsets (F8).</source>
+      <translation>Introduzca el cuadrante de la punta en la página de correctores (F8).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>Look at the contour's direction.</source>
+      <translation>Revise la dirección del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>Lower it, or open the narrow place.</source>
+      <translation>Bájelo, o abra el paso estrecho.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>Split it.</source>
+      <translation>Divídala.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>Write %1.</source>
+      <translation>Escriba %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>Write FF2.</source>
+      <translation>Escriba FF2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>Write MID.</source>
+      <translation>Escriba MID.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>has %1 elements; %2 are the most</source>
+      <translation>tiene %1 elementos; lo más son %2</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>is %1; types are 1 to 12</source>
+      <translation>es %1; los tipos son de 1 a 12</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>is missing, and no F is in force</source>
+      <translation>falta, y no hay F vigente</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>is missing, and nothing says how deep a pass is</source>
+      <translation>falta, y nada dice qué profundidad tiene una pasada</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>is missing, and the contour has a relief</source>
+      <translation>falta, y el contorno tiene un destalonado</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>is missing; types are 1 to 12</source>
+      <translation>falta; los tipos son de 1 a 12</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>leaves no unbroken way along the contour</source>
+      <translation>no deja camino continuo a lo largo del contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>leaves nothing to cut</source>
+      <translation>no deja nada que cortar</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>lies in the way to its own ends</source>
+      <translation>estorba el camino a sus propios extremos</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>names a contour without a line or arc</source>
+      <translation>nombra un contorno sin rectas ni arcos</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>the tool has no tip quadrant: %1 cuts tapers and arcs without its nose radius.</source>
+      <translation>la herramienta no tiene cuadrante de punta: %1 corta conos y arcos sin su radio de punta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>would break a pass %1 times</source>
+      <translation>rompería una pasada %1 veces</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>would make %1 passes</source>
+      <translation>daría %1 pasadas</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <source>%1 would repeat a part that has no end before it, or itself.</source>
+      <translation>%1 repetiría una parte que no termina antes de él, o a sí mismo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <source>Correct the label.</source>
+      <translation>Corrija la etiqueta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
@@ -13870,8 +21585,18 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
-      <source>Put %1.spf beside the main program, or %_N_%2_SPF into its file.</source>
-      <translation>Ponga %1.spf junto al programa principal, o %_N_%2_SPF en su archivo.</translation>
+      <source>P%1 is no number of passes.</source>
+      <translation>P%1 no es un número de repeticiones.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <source>The part to repeat stands before or behind it.</source>
+      <translation>La parte a repetir va antes o después de él.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <source>Write P1 to P%1.</source>
+      <translation>Escriba de P1 a P%1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
@@ -13880,8 +21605,128 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <source>the label %1 of %2 is not in this program.</source>
+      <translation>la etiqueta %1 de %2 no está en este programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
       <source>the subprogram %1 does not exist.</source>
       <translation>el subprograma %1 no existe.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>%1 has no speed.</source>
+      <translation>%1 no tiene velocidad.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>%1 has no way along Z.</source>
+      <translation>%1 no avanza a lo largo de Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>%1 needs K, its lead.</source>
+      <translation>%1 necesita K, su paso.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>%1 needs a spindle that turns by rpm.</source>
+      <translation>%1 necesita un husillo que gire por rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>%1 turns the spindle as C, and it is not held as one.</source>
+      <translation>%1 gira el husillo como C, y no está sostenido como tal.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>%1: %2 is %3 rpm; C turns at %4 at most, which it taps at.</source>
+      <translation>%1: %2 es %3 rpm; C gira a lo más a %4, y a eso rosca.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>%1: %2 taps along Z alone.</source>
+      <translation>%1: %2 rosca sólo a lo largo de Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>Lower it.</source>
+      <translation>Bájelo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>Write 0, or 4 behind M3 and 3 behind M4.</source>
+      <translation>Escriba 0, o 4 tras M3 y 3 tras M4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>Write G97 with S and M3 or M4 before it.</source>
+      <translation>Escriba antes G97 con S y M3 o M4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>Write PIT in mm.</source>
+      <translation>Escriba PIT en mm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>Write PIT or MPIT, or ENC 1 for the feed in force.</source>
+      <translation>Escriba PIT o MPIT, o ENC 1 para el avance vigente.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>Write PIT, or MPIT as 3 to 68 of M3 to M68.</source>
+      <translation>Escriba PIT, o MPIT de 3 a 68 para M3 a M68.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>Write S before it.</source>
+      <translation>Escriba antes S.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>Write SPOS=0 before it.</source>
+      <translation>Escriba antes SPOS=0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>Write Z of its end.</source>
+      <translation>Escriba la Z de su final.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>Write it, or S before the cycle.</source>
+      <translation>Escríbalo, o S antes del ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>does not turn the tap back</source>
+      <translation>no gira el macho de vuelta</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>is %1, and none of 0, 1, 11 and 20</source>
+      <translation>es %1, y no es 0, 1, 11 ni 20</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>is 4, a lead in modules</source>
+      <translation>es 4, un paso en módulos</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>says no lead</source>
+      <translation>no dice ningún paso</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>says no speed</source>
+      <translation>no dice ninguna velocidad</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>starts the spindle, and no S has been written</source>
+      <translation>arranca el husillo, y no se ha escrito ninguna S</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/third_axis.py" />
@@ -13897,6 +21742,511 @@
       <location filename="core/interpreter/sinumerik/third_axis.py" />
       <source>the end point %1 lies beyond -360 to +360 of the machine</source>
       <translation>el punto final %1 está fuera de -360 a +360 de la máquina</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_chain_cycle.py" />
+      <source>does not lead on along Z</source>
+      <translation>no sigue adelante a lo largo de Z</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>Correct SPL or FPL.</source>
+      <translation>Corrija SPL o FPL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>Leave MPIT out.</source>
+      <translation>Omita MPIT.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>Lower FAL.</source>
+      <translation>Baje FAL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>Write 300101 to 300104.</source>
+      <translation>Escriba 300101 a 300104.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>Write half the thread angle.</source>
+      <translation>Escriba la mitad del ángulo de rosca.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>Write the number of passes.</source>
+      <translation>Escriba el número de pasadas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>is %1: the last digit is 1 to 4, and the sixth 3, roughing and finishing in one</source>
+      <translation>es %1: la última cifra es de 1 a 4, y la sexta 3, desbaste y acabado en uno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>is 0, and nothing would be cut</source>
+      <translation>es 0, y no se cortaría nada</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>is a lead, and over 0</source>
+      <translation>es un paso, y mayor que 0</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>is a start angle of 0 to under 360</source>
+      <translation>es un ángulo de entrada de 0 a menos de 360</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>is an angle of a flank, under 60 degrees</source>
+      <translation>es un ángulo de flanco, de menos de 60 grados</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>is no thread of lead %1</source>
+      <translation>no es una rosca de paso %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>is where the thread begins</source>
+      <translation>está donde empieza la rosca</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>it is more than CYCLE97 has</source>
+      <translation>es más de lo que tiene CYCLE97</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>leaves nothing of TDEP to rough</source>
+      <translation>no deja nada de TDEP que desbastar</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>%1 is none of G%2.</source>
+      <translation>%1 no es ninguno de G%2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>%1 is the lead along X, and X does not move.</source>
+      <translation>%1 es el paso a lo largo de X, y X no se mueve.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>%1 stands in the middle of a chain of threads.</source>
+      <translation>%1 está en medio de una cadena de roscas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>%1: a lead is over 0.</source>
+      <translation>%1: un paso es mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>%1: the change of the lead is over 0.</source>
+      <translation>%1: el cambio del paso es mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>C cannot turn in a thread.</source>
+      <translation>C no puede girar en una rosca.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>End the chain with G0.</source>
+      <translation>Termine la cadena con G0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>From %1 mm by %2 a revolution it comes %3 mm far.</source>
+      <translation>Desde %1 mm, con %2 por vuelta, llega a %3 mm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>G%1 needs F, by what its lead changes each revolution.</source>
+      <translation>G%1 necesita F, lo que cambia su paso en cada vuelta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>G%1 needs K, its lead along Z.</source>
+      <translation>G%1 necesita K, su paso a lo largo de Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>G34 makes the lead grow, G35 makes it shrink.</source>
+      <translation>G34 hace crecer el paso, G35 lo hace disminuir.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>G96 is in force, and a thread needs one speed from first pass to last.</source>
+      <translation>G96 está vigente, y una rosca necesita una sola velocidad de la primera a la última pasada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>Start it with S and M3 or M4.</source>
+      <translation>Arránquelo con S y M3 o M4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>Write F in mm a revolution each revolution.</source>
+      <translation>Escriba F en mm por vuelta en cada vuelta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>Write G97 with S before it.</source>
+      <translation>Escriba antes G97 con S.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>Write K up to 45 degrees, I above.</source>
+      <translation>Escriba K hasta 45 grados, I por encima.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>Write Z of its end, and K.</source>
+      <translation>Escriba la Z de su final, y K.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>Write it in the first.</source>
+      <translation>Escríbalo en la primera.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>a thread is cut along Z in step with the spindle; this one has no way along Z.</source>
+      <translation>una rosca se corta a lo largo de Z al paso del husillo; ésta no avanza a lo largo de Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>a thread is cut by the revolution, and the spindle stands.</source>
+      <translation>una rosca se corta por vuelta, y el husillo está parado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>at %1 rpm this lead is %2 mm/min; %3 are the most.</source>
+      <translation>a %1 rpm este paso es %2 mm/min; lo más son %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>no lead is left at this start.</source>
+      <translation>en este inicio no queda paso.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>the block before it has led out of the thread, which ends the chain.</source>
+      <translation>el bloque anterior ha salido de la rosca, lo que termina la cadena.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>the lead has come to nothing before the end of the thread.</source>
+      <translation>el paso se ha agotado antes del final de la rosca.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>the thread has a lead along X and one along Z.</source>
+      <translation>la rosca tiene un paso a lo largo de X y otro a lo largo de Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <source>this thread goes back along Z, and the one before it leads on.</source>
+      <translation>esta rosca vuelve atrás a lo largo de Z, y la anterior sigue adelante.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <source>%1 comes to %2, which is no tool number.</source>
+      <translation>%1 resulta %2, que no es número de herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <source>%1 does not exist: T%2 has no such cutting edge in the tool offsets.</source>
+      <translation>%1 no existe: T%2 no tiene ese filo en las compensaciones de herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <source>%1 has no tool offset; 0 is used, and the machine will refuse to start.</source>
+      <translation>%1 no tiene compensación de herramienta; se usa 0 y la máquina no arrancará.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <source>%1: cutting edges are D1 to D9, and D0 is none.</source>
+      <translation>%1: los filos son de D1 a D9, y D0 es ninguno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <source>%1: no tool is in work.</source>
+      <translation>%1: no hay herramienta en uso.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <source>Enter the name as remark of a tool (F8).</source>
+      <translation>Ponga el nombre como nota de una herramienta (F8).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <source>Set the tool's offset on the page of tool offsets (F8); tools are T1 to T32.</source>
+      <translation>Ponga la compensación de la herramienta en la página de compensaciones (F8); las herramientas son de T1 a T32.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <source>Tools are whole numbers.</source>
+      <translation>Las herramientas son números enteros.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <source>Write T before it.</source>
+      <translation>Escriba antes T.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>%1 asks for another data set or for the walls of a groove, and there is one set.</source>
+      <translation>%1 pide otro juego de datos o las paredes de una ranura, y hay un solo juego.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>%1 makes an axis Y of X and the spindle, and the third axis of this machine is Y.</source>
+      <translation>%1 forma un eje Y con X y el husillo, y el tercer eje de esta máquina es Y.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>%1 needs a block of its own.</source>
+      <translation>%1 necesita su propio bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>%1 turns the part by C, and this machine has no third axis.</source>
+      <translation>%1 gira la pieza con C, y esta máquina no tiene tercer eje.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>%1: G%2 shifts X, and the part turns about X0.</source>
+      <translation>%1: G%2 desplaza X, y la pieza gira alrededor de X0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>%1: the spindle turns, and the part has to be held as C.</source>
+      <translation>%1: el husillo gira, y la pieza tiene que estar sostenida como C.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>Choose a machine file that has C.</source>
+      <translation>Elija un archivo de máquina que tenga C.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>DIAMON is on: X of TRANSMIT counts as a diameter, and Y does not.</source>
+      <translation>DIAMON está activo: X de TRANSMIT cuenta como diámetro, e Y no.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>Set X of G%1 to 0, or write G500.</source>
+      <translation>Ponga X de G%1 a 0, o escriba G500.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>TRACYL needs the diameter on which Y is measured.</source>
+      <translation>TRACYL necesita el diámetro sobre el que se mide Y.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>Write %1 alone, and the walls as contours.</source>
+      <translation>Escriba sólo %1, y las paredes como contornos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>Write DIAMOF before it.</source>
+      <translation>Escriba antes DIAMOF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>Write M5 or SPOS=0 before it.</source>
+      <translation>Escriba antes M5 o SPOS=0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>Write TRACYL(40).</source>
+      <translation>Escriba TRACYL(40).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>Write the part for this machine's own Y.</source>
+      <translation>Escriba la pieza para el eje Y propio de esta máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <source>%1 changes the contour that is under way.</source>
+      <translation>%1 cambia el contorno que está en curso.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <source>%1 is no centre of an arc in G%2.</source>
+      <translation>%1 no es un centro de arco en G%2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <source>%1 is nothing in %2.</source>
+      <translation>%1 no es nada en %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <source>%1 moves the axes of the machine, and %2 is on.</source>
+      <translation>%1 mueve los ejes de la máquina, y %2 está activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <source>%1 would be half of a groove in TRACYL, whose walls are not made of it.</source>
+      <translation>%1 sería la mitad de una ranura en TRACYL, cuyas paredes no se hacen con él.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <source>%1: C is turned by %2 itself.</source>
+      <translation>%1: el propio %2 gira C.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <source>Write it before the corner, or behind G40.</source>
+      <translation>Escríbalo antes de la esquina, o tras G40.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <source>Write the walls as contours, behind G40.</source>
+      <translation>Escriba las paredes como contornos, tras G40.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <source>Write those of the plane.</source>
+      <translation>Escriba los del plano.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <source>a thread is cut along Z by the spindle, which %1 holds as C.</source>
+      <translation>una rosca se corta a lo largo de Z con el husillo, que %1 sostiene como C.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <source>arcs, corners and radius compensation of %1 lie in G%2.</source>
+      <translation>los arcos, las esquinas y la compensación de radio de %1 están en G%2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <source>the tool or the zero changes between two moves of a corner or a contour.</source>
+      <translation>la herramienta o el cero cambia entre dos movimientos de una esquina o un contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>%1 lies %2, and the tool's edge is one for %3</source>
+      <translation>%1 queda %2, y el filo de la herramienta es para %3</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>Correct it, or take another tool.</source>
+      <translation>Corríjalo, o tome otra herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>Take a tool with a smaller nose.</source>
+      <translation>Tome una herramienta con menor radio de punta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>Write the undercut as lines.</source>
+      <translation>Escriba la garganta como rectas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>is %1, and no size of the coarse threads M3 to M%2</source>
+      <translation>es %1, y no es medida de las roscas gruesas M3 a M%2</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>is %1: undercuts begin over 3 mm</source>
+      <translation>es %1: las gargantas empiezan por encima de 3 mm</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>is none of "A" to "D"</source>
+      <translation>no es ninguna de "A" a "D"</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>is none of "E" and "F"</source>
+      <translation>no es "E" ni "F"</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>the nose radius %1 does not fit into this undercut: %2.</source>
+      <translation>el radio de punta %1 no cabe en esta garganta: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>the nose radius %1 is larger than the radius %2 of this undercut.</source>
+      <translation>el radio de punta %1 es mayor que el radio %2 de esta garganta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>the tip quadrant of the tool is %1, and an undercut is cut with 1 to 4.</source>
+      <translation>el cuadrante de punta de la herramienta es %1, y una garganta se corta con 1 a 4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/variables.py" />
+      <source>%1 has no value: the program has not set it.</source>
+      <translation>%1 no tiene valor: el programa no se lo ha dado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/variables.py" />
+      <source>%1 is a system variable, which is not read here.</source>
+      <translation>%1 es una variable de sistema, que aquí no se lee.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/variables.py" />
+      <source>%1 is a text, and no number.</source>
+      <translation>%1 es un texto, y no un número.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/variables.py" />
+      <source>%1 is no element of %2, which has %3.</source>
+      <translation>%1 no es un elemento de %2, que tiene %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/variables.py" />
+      <source>%1[%2] does not exist.</source>
+      <translation>%1[%2] no existe.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/variables.py" />
+      <source>An index is a whole number from 0.</source>
+      <translation>Un índice es un número entero desde 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/variables.py" />
+      <source>Elements are %1[0] to %2[%3].</source>
+      <translation>Los elementos son de %1[0] a %2[%3].</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/variables.py" />
+      <source>Use a variable of REAL or INT.</source>
+      <translation>Use una variable REAL o INT.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/variables.py" />
+      <source>Write %1=… before it.</source>
+      <translation>Escriba antes %1=…</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/variables.py" />
+      <source>Write the value, or an R parameter that has it.</source>
+      <translation>Escriba el valor, o un parámetro R que lo tenga.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/turn_at_axis.py" />
+      <source>The tool stands meanwhile; lead it past the axis.</source>
+      <translation>La herramienta se detiene entretanto; llévela al lado del eje.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/turn_at_axis.py" />
+      <source>The way leads through the axis: C turns by %1 degrees there.</source>
+      <translation>El camino pasa por el eje: ahí C gira %1 grados.</translation>
     </message>
     <message>
       <location filename="core/language/diagnostics.py" />
@@ -13915,11 +22265,6 @@
     </message>
     <message>
       <location filename="core/language/formulas.py" />
-      <source>Split it.</source>
-      <translation>Divídala.</translation>
-    </message>
-    <message>
-      <location filename="core/language/formulas.py" />
       <source>The formula is nested too deep</source>
       <translation>La fórmula está anidada demasiado</translation>
     </message>
@@ -13930,8 +22275,18 @@
     </message>
     <message>
       <location filename="core/language/formulas.py" />
+      <source>The square bracket is not closed</source>
+      <translation>El corchete no está cerrado</translation>
+    </message>
+    <message>
+      <location filename="core/language/formulas.py" />
       <source>Write ) behind the formula.</source>
       <translation>Escriba ) tras la fórmula.</translation>
+    </message>
+    <message>
+      <location filename="core/language/formulas.py" />
+      <source>Write ] behind the index.</source>
+      <translation>Escriba ] tras el índice.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/canonical_text.py" />
@@ -13955,11 +22310,6 @@
     </message>
     <message>
       <location filename="core/language/klartext/canonical_text.py" />
-      <source>LBL %1</source>
-      <translation>LBL %1</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/canonical_text.py" />
       <source>MB MAX</source>
       <translation>MB MAX</translation>
     </message>
@@ -13967,11 +22317,6 @@
       <location filename="core/language/klartext/canonical_text.py" />
       <source>REP %1</source>
       <translation>REP %1</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/canonical_text.py" />
-      <source>TOOL CALL</source>
-      <translation>TOOL CALL</translation>
     </message>
     <message>
       <location filename="core/language/klartext/canonical_text.py" />
@@ -13984,6 +22329,96 @@
       <translation>TRANS DATUM RESET</translation>
     </message>
     <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>%1 stand side by side in a contour formula.</source>
+      <translation>%1 están una junto a otra en una fórmula de contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>'=' was expected behind QC%1</source>
+      <translation>se esperaba '=' detrás de QC%1</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>A contour QC was expected</source>
+      <translation>Se esperaba un contorno QC</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>A contour is LBL n, a program in quotes, or QC n</source>
+      <translation>Un contorno es LBL n, un programa entre comillas, o QC n</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>A contour with a depth of its own</source>
+      <translation>Un contorno con profundidad propia</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>CONTOUR DEF names no contour</source>
+      <translation>CONTOUR DEF no nombra ningún contorno</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>CONTOUR DEF takes pockets and islands</source>
+      <translation>CONTOUR DEF toma cajeras e islas</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>CONTOUR DEF with a depth of its own</source>
+      <translation>CONTOUR DEF con una profundidad propia</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>Contours go up to QC%1.</source>
+      <translation>Los contornos llegan hasta QC%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>No word of DECLARE CONTOUR</source>
+      <translation>No es palabra de DECLARE CONTOUR</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>No word of SEL CONTOUR</source>
+      <translation>No es palabra de SEL CONTOUR</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>SEL CONTOUR needs the name of a program</source>
+      <translation>SEL CONTOUR necesita el nombre de un programa</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>Take another number.</source>
+      <translation>Tome otro número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>Write P1 = LBL 1 I2 = LBL 2.</source>
+      <translation>Escriba P1 = LBL 1 I2 = LBL 2.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>Write P1 = LBL 1.</source>
+      <translation>Escriba P1 = LBL 1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>Write QC and a number.</source>
+      <translation>Escriba QC y un número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>Write brackets.</source>
+      <translation>Escriba paréntesis.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>%1 with a text (QS)</source>
+      <translation>%1 con un texto (QS)</translation>
+    </message>
+    <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
       <source>A cycle takes Q parameters</source>
       <translation>Un ciclo toma parámetros Q</translation>
@@ -13992,11 +22427,6 @@
       <location filename="core/language/klartext/cycle_blocks.py" />
       <source>A rotation needs ROT and its angle</source>
       <translation>Un giro necesita ROT y su ángulo</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_blocks.py" />
-      <source>CYCL CALL PAT needs a table of points.</source>
-      <translation>CYCL CALL PAT necesita una tabla de puntos.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
@@ -14012,6 +22442,16 @@
       <location filename="core/language/klartext/cycle_blocks.py" />
       <source>CYCL DEF needs the number of a cycle</source>
       <translation>CYCL DEF necesita el número de un ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>GLOBAL DEF %1</source>
+      <translation>GLOBAL DEF %1</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>GLOBAL DEF needs its number</source>
+      <translation>GLOBAL DEF necesita su número</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
@@ -14040,6 +22480,16 @@
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>PRESET SELECT by a text</source>
+      <translation>PRESET SELECT por un texto</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>PRESET SELECT with %1</source>
+      <translation>PRESET SELECT con %1</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>Scaling needs SCL and its factor</source>
       <translation>La escala necesita SCL y su factor</translation>
     </message>
@@ -14054,9 +22504,199 @@
       <translation>Escriba Q200=+2, etc.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/cycle_blocks.py" />
-      <source>Write the points with M99.</source>
-      <translation>Escriba los puntos con M99.</translation>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>%1 DEPTH5</source>
+      <translation>%1 DEPTH5</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>CONTOUR DATA</source>
+      <translation>CONTOUR DATA</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>CONTOUR DEF</source>
+      <translation>CONTOUR DEF</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>CONTOUR MILLING</source>
+      <translation>CONTOUR MILLING</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>CONTOUR TRAIN</source>
+      <translation>CONTOUR TRAIN</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>CYCL DEF %1 %2%3</source>
+      <translation>CYCL DEF %1 %2%3</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>CYCL DEF %1.%2 %3</source>
+      <translation>CYCL DEF %1.%2 %3</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>CYCL DEF 14</source>
+      <translation>CYCL DEF 14</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>CYCL DEF 20</source>
+      <translation>CYCL DEF 20</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>CYCL DEF 25</source>
+      <translation>CYCL DEF 25</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>Clears the pocket of cycle 14 level by level, round its islands; straight down where Q19 is 0.</source>
+      <translation>Vacía la cajera del ciclo 14 nivel a nivel, alrededor de sus islas; baja en vertical si Q19 es 0.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>Clears the pocket of cycle 14, from where the tool stands; in rings, down by a ramp.</source>
+      <translation>Vacía la cajera del ciclo 14, desde donde está la herramienta; en anillos, bajando en rampa.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>DECLARE CONTOUR</source>
+      <translation>DECLARE CONTOUR</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>DECLARE CONTOUR QC1 = "ROUND"</source>
+      <translation>DECLARE CONTOUR QC1 = "ROUND"</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>Depth, overlap, allowances, heights and sense for cycles 21 to 24.</source>
+      <translation>Profundidad, solapamiento, sobremedidas, alturas y sentido para los ciclos 21 a 24.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>Drills where a tool of this radius would go down; cycle 6 needs no hole here.</source>
+      <translation>Taladra donde bajaría una herramienta de este radio; aquí el ciclo 6 no necesita taladro.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>Drills where cycle 22 goes down with the tool Q13.</source>
+      <translation>Taladra donde el ciclo 22 baja con la herramienta Q13.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>FLOOR FINISHING</source>
+      <translation>FLOOR FINISHING</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>Goes along the walls of pocket and islands, to the allowance Q14.</source>
+      <translation>Recorre las paredes de cajera e islas, hasta la sobremedida Q14.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>Goes along the walls of pocket and islands.</source>
+      <translation>Recorre las paredes de la cajera y de las islas.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>Goes over the floor of the pocket at its depth.</source>
+      <translation>Repasa el fondo de la cajera a su profundidad.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>Mills along an open or closed contour, at the side that RL or RR says.</source>
+      <translation>Fresa a lo largo de un contorno abierto o cerrado, al lado que dice RL o RR.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>Names a closed contour: a program of its own (in quotes), or LBL n.</source>
+      <translation>Nombra un contorno cerrado: un programa propio (entre comillas), o LBL n.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>Names pockets (P) and islands (I) as cycle 14 does: LBL n, a program in quotes, or QC n.</source>
+      <translation>Nombra cajeras (P) e islas (I) como el ciclo 14: LBL n, un programa entre comillas, o QC n.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>Names the subprograms of pockets (clockwise with RR) and islands (clockwise with RL).</source>
+      <translation>Nombra los subprogramas de cajeras (sentido horario con RR) e islas (sentido horario con RL).</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>P1 = LBL n I2 = LBL n</source>
+      <translation>P1 = LBL n I2 = LBL n</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>PILOT DRILLING</source>
+      <translation>PILOT DRILLING</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>QCn = "name"</source>
+      <translation>QCn = "nombre"</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>SEL CONTOUR</source>
+      <translation>SEL CONTOUR</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>SEL CONTOUR "ROUND"</source>
+      <translation>SEL CONTOUR "ROUND"</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>SET UP2 DEPTH-5|PECKG5 F150 ALLOW+0.2</source>
+      <translation>SET UP2 DEPTH-5|PECKG5 F150 ALLOW+0.2</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>SET UP2 DEPTH-5|PECKG5 F150 ALLOW+0.2|ANGLE+0 F400</source>
+      <translation>SET UP2 DEPTH-5|PECKG5 F150 ALLOW+0.2|ANGLE+0 F400</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>SET UP2 DEPTH-5|PECKG5 F150|DR+ F400</source>
+      <translation>SET UP2 DEPTH-5|PECKG5 F150|DR+ F400</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>SIDE FINISHING</source>
+      <translation>SIDE FINISHING</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>Takes the contour formula of another program.</source>
+      <translation>Toma la fórmula de contorno de otro programa.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>depth of its own</source>
+      <translation>profundidad propia</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>no contour formula</source>
+      <translation>ninguna fórmula de contorno</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_contour_book.py" />
+      <source>side by side</source>
+      <translation>una junto a otra</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>%1 has no value yet.</source>
+      <translation>%1 aún no tiene valor.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
@@ -14087,6 +22727,16 @@
       <location filename="core/language/klartext/klartext_faults.py" />
       <source>Cycle incomplete</source>
       <translation>Ciclo incompleto</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Cycle not defined</source>
+      <translation>Ciclo no definido</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Datum table missing</source>
+      <translation>Falta la tabla de puntos cero</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
@@ -14127,6 +22777,16 @@
       <location filename="core/language/klartext/klartext_faults.py" />
       <source>Label not found</source>
       <translation>Etiqueta no encontrada</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>M function not defined</source>
+      <translation>Función M no definida</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>No touch probe</source>
+      <translation>Sin palpador</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
@@ -14200,6 +22860,11 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Write %1 = … before.</source>
+      <translation>Escriba antes %1 = ….</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Wrong axis programmed</source>
       <translation>Eje mal programado</translation>
     </message>
@@ -14240,8 +22905,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
-      <source>CONTOUR DEF</source>
-      <translation>CONTOUR DEF</translation>
+      <source>CALL SELECTED CYCLE</source>
+      <translation>CALL SELECTED CYCLE</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
@@ -14250,8 +22915,28 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
+      <source>DECLARE STRING</source>
+      <translation>DECLARE STRING</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>END PGM</source>
       <translation>END PGM</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_line.py" />
+      <source>Free contour programming (FK: FPOL, FL, FC, FLT, FCT, FSELECT)</source>
+      <translation>Programación libre de contornos (FK: FPOL, FL, FC, FLT, FCT, FSELECT)</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_line.py" />
+      <source>GLOBAL DEF</source>
+      <translation>GLOBAL DEF</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_line.py" />
+      <source>OPEN FILE</source>
+      <translation>OPEN FILE</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
@@ -14260,23 +22945,33 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
-      <source>SEL CONTOUR</source>
-      <translation>SEL CONTOUR</translation>
+      <source>PRESET COPY</source>
+      <translation>PRESET COPY</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
-      <source>SEL PATTERN</source>
-      <translation>SEL PATTERN</translation>
+      <source>PRESET CORR</source>
+      <translation>PRESET CORR</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
-      <source>SEL PGM</source>
-      <translation>SEL PGM</translation>
+      <source>PRESET SELECT</source>
+      <translation>PRESET SELECT</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
-      <source>SEL TABLE</source>
-      <translation>SEL TABLE</translation>
+      <source>SEL %1</source>
+      <translation>SEL %1</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_line.py" />
+      <source>SEL CORR-TABLE</source>
+      <translation>SEL CORR-TABLE</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_line.py" />
+      <source>SEL CYCLE</source>
+      <translation>SEL CYCLE</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
@@ -14294,9 +22989,449 @@
       <translation>La línea tiene %1 caracteres.</translation>
     </message>
     <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>As 232, from where the tool stands (Q367), along the axis Q350.</source>
+      <translation>Como 232, desde donde está la herramienta (Q367), a lo largo del eje Q350.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>BACK BORING</source>
+      <translation>BACK BORING</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Bores from below; where it is called it is refused: nothing stops the spindle at an angle.</source>
+      <translation>Mandrina desde abajo; al llamarlo se rechaza: nada para el husillo en un ángulo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>C. POCKET FINISHING</source>
+      <translation>C. POCKET FINISHING</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>C. STUD FINISHING</source>
+      <translation>C. STUD FINISHING</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>CIRCULAR SLOT</source>
+      <translation>CIRCULAR SLOT</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>CYCL DEF 204</source>
+      <translation>CYCL DEF 204</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Countersinks and mills an inside thread.</source>
+      <translation>Avellana y fresa una rosca interior.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Drills and mills an inside thread.</source>
+      <translation>Taladra y fresa una rosca interior.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>FACE MILLING</source>
+      <translation>FACE MILLING</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Goes round the wall of a circular pocket.</source>
+      <translation>Recorre la pared de una cajera circular.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Goes round the wall of a rectangular pocket.</source>
+      <translation>Recorre la pared de una cajera rectangular.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Goes round the wall of a rectangular stud.</source>
+      <translation>Recorre la pared de una isla rectangular.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Goes round the wall of a round stud.</source>
+      <translation>Recorre la pared de una isla circular.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>HEL.THREAD DRLG/MLG</source>
+      <translation>HEL.THREAD DRLG/MLG</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>MULTIPASS MILLING</source>
+      <translation>MULTIPASS MILLING</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Mills a circular slot.</source>
+      <translation>Fresa una ranura circular.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Mills a face from Q227 down to Q386; Q389 says how the rows follow each other.</source>
+      <translation>Planea una cara desde Q227 hasta Q386; Q389 dice cómo se suceden las filas.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Mills a face in Q240 rows.</source>
+      <translation>Planea una cara en Q240 filas.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Mills a slot, to and fro.</source>
+      <translation>Fresa una ranura en vaivén.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Mills an inside thread downwards in a helix, from the solid.</source>
+      <translation>Fresa una rosca interior hacia abajo en hélice, en macizo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Mills an inside thread: Q355 0 one turn, 1 over the whole depth, n every n pitches.</source>
+      <translation>Fresa una rosca interior: Q355 0 una vuelta, 1 en toda la profundidad, n cada n pasos.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Mills circular slots on a pitch circle.</source>
+      <translation>Fresa ranuras circulares en un círculo de referencia.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Mills the surface between two lines in Q240 rows, with the tool's tip.</source>
+      <translation>Fresa la superficie entre dos rectas en Q240 filas, con la punta de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Mills the thread of a stud.</source>
+      <translation>Fresa la rosca de un espárrago.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>OUTSIDE THREAD MLLNG</source>
+      <translation>OUTSIDE THREAD MLLNG</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>POCKET FINISHING</source>
+      <translation>POCKET FINISHING</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>RULED SURFACE</source>
+      <translation>RULED SURFACE</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>SLOT RECIP. PLNG</source>
+      <translation>SLOT RECIP. PLNG</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>STUD FINISHING</source>
+      <translation>STUD FINISHING</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>THREAD DRILLNG/MLLNG</source>
+      <translation>THREAD DRILLNG/MLLNG</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>THREAD MILLING</source>
+      <translation>THREAD MILLING</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>THREAD MLLNG/CNTSNKG</source>
+      <translation>THREAD MLLNG/CNTSNKG</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>leads upwards</source>
+      <translation>va hacia arriba</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>number of cuts</source>
+      <translation>número de cortes</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>Behind TOOL CALL: the speed by a cutting speed, m/min, and the tool's radius.</source>
+      <translation>Detrás de TOOL CALL: la velocidad de giro según una velocidad de corte, m/min, y el radio de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>FUNCTION DWELL</source>
+      <translation>FUNCTION DWELL</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>FUNCTION DWELL REV5</source>
+      <translation>FUNCTION DWELL REV5</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>FUNCTION DWELL TIME0.5</source>
+      <translation>FUNCTION DWELL TIME0.5</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>In a block that moves one axis (X+10 R+ F300, L may be left out): longer by the tool's radius; R- shorter.</source>
+      <translation>En un bloque que mueve un solo eje (X+10 R+ F300, se puede omitir L): más largo en el radio de la herramienta; R- más corto.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>LN X+10 Y+5 Z+20 NX+0.1 NY+0.2 NZ+0.97 F300</source>
+      <translation>LN X+10 Y+5 Z+20 NX+0.1 NY+0.2 NZ+0.97 F300</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>PRESET SELECT "VICE"</source>
+      <translation>PRESET SELECT "VICE"</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>PRESET SELECT #0</source>
+      <translation>PRESET SELECT #0</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>Rests for some seconds.</source>
+      <translation>Descansa unos segundos.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>Straight line with the normal of the surface. Nothing is compensated along it: with DL, DR or DR2, and with TX TY TZ, it is refused.</source>
+      <translation>Recta con la normal de la superficie. No se compensa nada a lo largo de ella: con DL, DR o DR2, y con TX TY TZ, se rechaza.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>TOOL CALL 1 Z S(VC=60) F300</source>
+      <translation>TOOL CALL 1 Z S(VC=60) F300</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>Takes a row of the preset table, as cycle 247 does.</source>
+      <translation>Toma una fila de la tabla de puntos de referencia, como el ciclo 247.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>Tells parameters for all cycles behind it, which take them by PREDEF.</source>
+      <translation>Da parámetros para todos los ciclos siguientes, que los toman con PREDEF.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>The material: nothing is done with it here, which is said.</source>
+      <translation>El material: aquí no se hace nada con él, y se dice.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>WMAT "STEEL"</source>
+      <translation>WMAT "STEEL"</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>X.. Y.. Z.. NX.. NY.. NZ..</source>
+      <translation>X.. Y.. Z.. NX.. NY.. NZ..</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>by a text</source>
+      <translation>por un texto</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>no GLOBAL DEF</source>
+      <translation>ningún GLOBAL DEF</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>one axis</source>
+      <translation>un solo eje</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>( DAT+Q1 DECIMALS2 )</source>
+      <translation>( DAT+Q1 DECIMALS2 )</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>( ID10321 NR0 )</source>
+      <translation>( ID10321 NR0 )</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>( SRC_QS1 BEG1 LEN2 )</source>
+      <translation>( SRC_QS1 BEG1 LEN2 )</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>( SRC_QS1 SEA_QS2 )</source>
+      <translation>( SRC_QS1 SEA_QS2 )</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>0 where two texts agree, -1 and 1 by the alphabet.</source>
+      <translation>0 si dos textos coinciden, -1 y 1 según el alfabeto.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>: TABOPEN name.TAB</source>
+      <translation>: TABOPEN nombre.TAB</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>: TABREAD Q5 = n/"X,DEPTH"</source>
+      <translation>: TABREAD Q5 = n/"X,DEPTH"</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>: TABWRITE n/"X,DEPTH" = Q5</source>
+      <translation>: TABWRITE n/"X,DEPTH" = Q5</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>: WAIT FOR SYNC</source>
+      <translation>: WAIT FOR SYNC</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>A number as a text.</source>
+      <translation>Un número como texto.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>A part of a text; the first sign is at 0.</source>
+      <translation>Una parte de un texto; el primer carácter está en 0.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>A text as a number.</source>
+      <translation>Un texto como número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>A text of the control, such as its time: not known here; it may be printed, and nothing can go by it.</source>
+      <translation>Un texto del control, como su hora: aquí no se conoce; puede imprimirse, y nada puede depender de él.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>A text was expected</source>
+      <translation>Se esperaba un texto</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>DECLARE STRING QS1 = HOLE</source>
+      <translation>DECLARE STRING QS1 = HOLE</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>Declares a text, or several.</source>
+      <translation>Declara un texto, o varios.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>FN 20: WAIT FOR I95==0</source>
+      <translation>FN 20: WAIT FOR I95==0</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>FN 20: WAIT FOR SYNC</source>
+      <translation>FN 20: WAIT FOR SYNC</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>FN 26: TABOPEN DEPTHS.TAB</source>
+      <translation>FN 26: TABOPEN DEPTHS.TAB</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>FN 26: TABOPEN NONE.TAB</source>
+      <translation>FN 26: TABOPEN NONE.TAB</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>FN 38: SEND /"DEPTH %f" / +5</source>
+      <translation>FN 38: SEND /"DEPTH %f" / +5</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>Gives a text to a text parameter; parts are joined by ||. TOOL CALL, CALL PGM, SEL PGM, CALL LBL and GOTO LBL take QSn for a name.</source>
+      <translation>Da un texto a un parámetro de texto; las partes se unen con ||. TOOL CALL, CALL PGM, SEL PGM, CALL LBL y GOTO LBL admiten QSn como nombre.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>Hands a text to the control's log: nothing is done here, which is said.</source>
+      <translation>Entrega un texto al registro del control: aquí no se hace nada, y se dice.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>How many signs a text has; -1 of none.</source>
+      <translation>Cuántos caracteres tiene un texto; -1 si no hay texto.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>No table is open</source>
+      <translation>No hay ninguna tabla abierta</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>Opens a free table beside the program.</source>
+      <translation>Abre una tabla libre que está junto al programa.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>QSn = "text"</source>
+      <translation>QSn = "texto"</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>Reads cells of a row into Q5, Q6, ...</source>
+      <translation>Lee celdas de una fila en Q5, Q6, ...</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>Waits for what is read ahead: nothing to wait for here, which is said.</source>
+      <translation>Espera a lo que se ha leído por adelantado: aquí no hay nada que esperar, y se dice.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>Where a text stands in another one.</source>
+      <translation>Dónde está un texto dentro de otro.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>Writes Q5, Q6, ... into cells of a row, for this pass: the file stays as it is, which is said.</source>
+      <translation>Escribe Q5, Q6, ... en celdas de una fila, para esta ejecución: el archivo queda como está, y se dice.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>no number</source>
+      <translation>no es un número</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_text_book.py" />
+      <source>not beside</source>
+      <translation>no está junto</translation>
+    </message>
+    <message>
       <location filename="core/language/klartext/line_cursor.py" />
       <source>%1 A comment begins with ;.</source>
       <translation>%1 Un comentario empieza con ;.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/line_cursor.py" />
+      <source>%1 by the text of %2</source>
+      <translation>%1 por el texto de %2</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line_cursor.py" />
@@ -14340,6 +23475,11 @@
     </message>
     <message>
       <location filename="core/language/klartext/line_cursor.py" />
+      <source>A feed by time (FT, FMAXT)</source>
+      <translation>Un avance por tiempo (FT, FMAXT)</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>Correct the number.</source>
       <translation>Corrija el número.</translation>
     </message>
@@ -14370,11 +23510,6 @@
     </message>
     <message>
       <location filename="core/language/klartext/line_cursor.py" />
-      <source>Write a number.</source>
-      <translation>Escriba un número.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/line_cursor.py" />
       <source>Write the name.</source>
       <translation>Escriba el nombre.</translation>
     </message>
@@ -14392,6 +23527,11 @@
       <location filename="core/language/klartext/path_block.py" />
       <source>%1 takes no DR.</source>
       <translation>%1 no toma DR.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>A block without L moves one axis.</source>
+      <translation>Un bloque sin L mueve un solo eje.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/path_block.py" />
@@ -14475,6 +23615,11 @@
     </message>
     <message>
       <location filename="core/language/klartext/path_block.py" />
+      <source>M103 takes its factor as F and a number.</source>
+      <translation>M103 lleva su factor como F y un número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
       <source>M128 takes a feed in numbers, or FMAX.</source>
       <translation>M128 toma un avance en números, o FMAX.</translation>
     </message>
@@ -14487,6 +23632,11 @@
       <location filename="core/language/klartext/path_block.py" />
       <source>No word of %1 %2 block</source>
       <translation>No es palabra de %1 bloque %2</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
+      <source>R%1 belongs to a block that moves one axis.</source>
+      <translation>R%1 corresponde a un bloque que mueve un solo eje.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/path_block.py" />
@@ -14505,13 +23655,48 @@
     </message>
     <message>
       <location filename="core/language/klartext/path_block.py" />
+      <source>Write L before it.</source>
+      <translation>Escriba L delante.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
       <source>Write MB and a length, or MB MAX.</source>
       <translation>Escriba MB y una longitud, o MB MAX.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/path_block.py" />
+      <source>Write RL or RR along a contour.</source>
+      <translation>Escriba RL o RR a lo largo de un contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/path_block.py" />
       <source>Write a number such as +10.</source>
       <translation>Escriba un número como +10.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/pattern_block.py" />
+      <source>Close the bracket behind its words.</source>
+      <translation>Cierre el paréntesis detrás de sus palabras.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/pattern_block.py" />
+      <source>No word of %1</source>
+      <translation>No es palabra de %1</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/pattern_block.py" />
+      <source>PATTERN DEF has no points</source>
+      <translation>PATTERN DEF no tiene puntos</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/pattern_block.py" />
+      <source>PATTERN DEF takes POS1 (…), ROW1, PAT1, FRAME1, CIRC1 or PITCHCIRC1</source>
+      <translation>PATTERN DEF admite POS1 (…), ROW1, PAT1, FRAME1, CIRC1 o PITCHCIRC1</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/pattern_block.py" />
+      <source>Write POS1 (X+0 Y+0 Z+0) behind it.</source>
+      <translation>Escriba detrás POS1 (X+0 Y+0 Z+0).</translation>
     </message>
     <message>
       <location filename="core/language/klartext/plane_block.py" />
@@ -14620,8 +23805,18 @@
     </message>
     <message>
       <location filename="core/language/klartext/q_parameters.py" />
+      <source>A jump needs GOTO LBL</source>
+      <translation>Un salto necesita GOTO LBL</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
       <source>An operator was expected</source>
       <translation>Se esperaba un operador</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>EXPORT, which belongs into cycles of the machine builder,</source>
+      <translation>EXPORT, que corresponde a ciclos del fabricante de la máquina,</translation>
     </message>
     <message>
       <location filename="core/language/klartext/q_parameters.py" />
@@ -14635,8 +23830,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/q_parameters.py" />
-      <source>FN %1 needs GOTO LBL</source>
-      <translation>FN %1 necesita GOTO LBL</translation>
+      <source>FN %1 needs ID and NR</source>
+      <translation>FN %1 necesita ID y NR</translation>
     </message>
     <message>
       <location filename="core/language/klartext/q_parameters.py" />
@@ -14650,8 +23845,13 @@
     </message>
     <message>
       <location filename="core/language/klartext/q_parameters.py" />
-      <source>FN 18 needs ID and NR</source>
-      <translation>FN 18 necesita ID y NR</translation>
+      <source>FN 17 needs = and what is to be written</source>
+      <translation>FN 17 necesita = y lo que se ha de escribir</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>FN 17 needs SYSWRITE</source>
+      <translation>FN 17 necesita SYSWRITE</translation>
     </message>
     <message>
       <location filename="core/language/klartext/q_parameters.py" />
@@ -14660,8 +23860,33 @@
     </message>
     <message>
       <location filename="core/language/klartext/q_parameters.py" />
+      <source>FN 20 WAIT FOR SYNC</source>
+      <translation>FN 20 WAIT FOR SYNC</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>FN 20 with a condition of the machine builder's PLC</source>
+      <translation>FN 20 con una condición del PLC del fabricante de la máquina</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
       <source>GOTO LBL</source>
       <translation>GOTO LBL</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>IS DEFINED</source>
+      <translation>IS DEFINED</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>IS UNDEFINED</source>
+      <translation>IS UNDEFINED</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>No word of FN 17</source>
+      <translation>No es palabra de FN 17</translation>
     </message>
     <message>
       <location filename="core/language/klartext/q_parameters.py" />
@@ -14674,9 +23899,24 @@
       <translation>No es palabra de un salto</translation>
     </message>
     <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>PLC, which hands figures to the machine builder's PLC,</source>
+      <translation>PLC, que entrega valores al PLC del fabricante de la máquina,</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/q_parameters.py" />
+      <source>WAIT FOR SYNC</source>
+      <translation>WAIT FOR SYNC</translation>
+    </message>
+    <message>
       <location filename="core/language/klartext/structure_blocks.py" />
       <source>%1 is missing</source>
       <translation>Falta %1</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>%1 measures with a touch probe, and this machine has none.</source>
+      <translation>%1 mide con un palpador, y esta máquina no lo tiene.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -14687,6 +23927,11 @@
       <location filename="core/language/klartext/structure_blocks.py" />
       <source>A corner needs X, Y and Z.</source>
       <translation>Una esquina necesita X, Y y Z.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>A tool with an index (%1)</source>
+      <translation>Una herramienta con índice (%1)</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -14710,8 +23955,23 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
+      <source>BLK FORM CYLINDER needs its axis, R or D, and L</source>
+      <translation>BLK FORM CYLINDER necesita su eje, R o D, y L</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>CALL PGM needs the name of a program</source>
       <translation>CALL PGM necesita el nombre de un programa</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>CALL SELECTED takes PGM alone</source>
+      <translation>CALL SELECTED solo toma PGM</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>CORRDATA RESET</source>
+      <translation>CORRDATA RESET</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -14720,13 +23980,23 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
+      <source>FEED RESET</source>
+      <translation>FEED RESET</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>FUNCTION %1</source>
       <translation>FUNCTION %1</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
-      <source>FUNCTION MODE MILL</source>
-      <translation>FUNCTION MODE MILL</translation>
+      <source>FUNCTION DWELL by revolutions</source>
+      <translation>FUNCTION DWELL por revoluciones</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>FUNCTION TCPM about the centre of a ball (REFPNT)</source>
+      <translation>FUNCTION TCPM alrededor del centro de la bola (REFPNT)</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -14737,6 +24007,11 @@
       <location filename="core/language/klartext/structure_blocks.py" />
       <source>It takes F TCP, AXIS POS, PATHCTRL AXIS.</source>
       <translation>Toma F TCP, AXIS POS, PATHCTRL AXIS.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>It takes R or D, L, DIST, RI or DI.</source>
+      <translation>Toma R o D, L, DIST, RI o DI.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -14765,8 +24040,18 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
+      <source>No word of BLK FORM CYLINDER</source>
+      <translation>No es palabra de BLK FORM CYLINDER</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>No word of CALL LBL</source>
       <translation>No es palabra de CALL LBL</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>No word of FUNCTION DWELL</source>
+      <translation>No es palabra de FUNCTION DWELL</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -14795,6 +24080,21 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
+      <source>PARAXCOMP DISPLAY</source>
+      <translation>PARAXCOMP DISPLAY</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>PARAXCOMP RESET</source>
+      <translation>PARAXCOMP RESET</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>PARAXMODE OFF</source>
+      <translation>PARAXMODE OFF</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>PATHCTRL AXIS</source>
       <translation>PATHCTRL AXIS</translation>
     </message>
@@ -14805,18 +24105,48 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
+      <source>PROG PATH</source>
+      <translation>PROG PATH</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>REFPNT CENTER-CENTER</source>
+      <translation>REFPNT CENTER-CENTER</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>REFPNT TIP-CENTER</source>
+      <translation>REFPNT TIP-CENTER</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>REFPNT TIP-TIP</source>
+      <translation>REFPNT TIP-TIP</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>RESET TCPM</source>
       <translation>RESET TCPM</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
-      <source>TRANS DATUM AXIS needs X, Y or Z</source>
-      <translation>TRANS DATUM AXIS necesita X, Y o Z</translation>
+      <source>S-PULSE RESET</source>
+      <translation>S-PULSE RESET</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
-      <source>TRANS DATUM TABLE</source>
-      <translation>TRANS DATUM TABLE</translation>
+      <source>SEL %1 needs the name of a file</source>
+      <translation>SEL %1 necesita el nombre de un archivo</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>TCH PROBE %1</source>
+      <translation>TCH PROBE %1</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>TRANS DATUM AXIS needs X, Y or Z</source>
+      <translation>TRANS DATUM AXIS necesita X, Y o Z</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -14835,6 +24165,21 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
+      <source>The bracket behind VC is not closed</source>
+      <translation>El paréntesis detrás de VC no está cerrado</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>Touch off by hand on the Jog page, and take the block out.</source>
+      <translation>Toque a mano en la página Manual, y quite el bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>Write S(VC = 120).</source>
+      <translation>Escriba S(VC = 120).</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>Write Z behind 0.1.</source>
       <translation>Escriba Z tras 0.1.</translation>
     </message>
@@ -14842,6 +24187,131 @@
       <location filename="core/language/klartext/structure_blocks.py" />
       <source>Write the unit behind the name.</source>
       <translation>Escriba la unidad tras el nombre.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>%1 is not closed</source>
+      <translation>%1 no está cerrado</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>%1 needs %2QS and a number</source>
+      <translation>%1 necesita %2QS y un número</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>%1 stands alone</source>
+      <translation>%1 está solo</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>%1 takes what it is asked of in brackets</source>
+      <translation>%1 toma entre paréntesis aquello por lo que se pregunta</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>'=' was expected behind QS%1</source>
+      <translation>Se esperaba '=' detrás de QS%1</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>A parameter was expected</source>
+      <translation>Se esperaba un parámetro</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>A text parameter was expected</source>
+      <translation>Se esperaba un parámetro de texto</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>FN 26 needs TABOPEN and the file</source>
+      <translation>FN 26 necesita TABOPEN y el archivo</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>FN 27 needs TABWRITE</source>
+      <translation>FN 27 necesita TABWRITE</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>FN 28 needs TABREAD</source>
+      <translation>FN 28 necesita TABREAD</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>No part of a text</source>
+      <translation>No es parte de un texto</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>QS parameters go up to QS%1.</source>
+      <translation>Los parámetros QS llegan hasta QS%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>Reckon on in a block of its own.</source>
+      <translation>Siga calculando en un bloque aparte.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>TABOPEN needs the name of a table</source>
+      <translation>TABOPEN necesita el nombre de una tabla</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>TABREAD needs = and a row</source>
+      <translation>TABREAD necesita = y una fila</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>TABWRITE needs = and a parameter</source>
+      <translation>TABWRITE necesita = y un parámetro</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>TOCHAR needs DAT</source>
+      <translation>TOCHAR necesita DAT</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>Texts are joined by ||.</source>
+      <translation>Los textos se unen con ||.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>The columns are missing</source>
+      <translation>Faltan las columnas</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>The row</source>
+      <translation>La fila</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>Write ) behind it.</source>
+      <translation>Escriba ) detrás.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>Write QS and a number.</source>
+      <translation>Escriba QS y un número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>Write TOCHAR(DAT+Q5 DECIMALS3).</source>
+      <translation>Escriba TOCHAR(DAT+Q5 DECIMALS3).</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>Write it in quotes, or QS and a number.</source>
+      <translation>Escríbalo entre comillas, o QS y un número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>Write them behind the row: 6/"X,Y".</source>
+      <translation>Escríbalas detrás de la fila: 6/"X,Y".</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -15469,14 +24939,89 @@
       <translation>Escriba dos cifras.</translation>
     </message>
     <message>
+      <location filename="core/language/sinumerik/call_arguments.py" />
+      <source>A parameter needs its type and name</source>
+      <translation>Un parámetro necesita su tipo y nombre</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/call_arguments.py" />
+      <source>Arrays as parameters are not read here</source>
+      <translation>Las matrices como parámetros no se leen aquí</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/call_arguments.py" />
+      <source>Pass their values.</source>
+      <translation>Pase sus valores.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/call_arguments.py" />
+      <source>The bracket %1</source>
+      <translation>El paréntesis %1</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/call_arguments.py" />
+      <source>The bracket of the parameters is not closed</source>
+      <translation>El paréntesis de los parámetros no está cerrado</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/call_arguments.py" />
+      <source>Write ) behind the last.</source>
+      <translation>Escriba ) tras el último.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/call_arguments.py" />
+      <source>Write PROC NAME(REAL LENGTH).</source>
+      <translation>Escriba PROC NAME(REAL LENGTH).</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/call_arguments.py" />
+      <source>has something that is no argument</source>
+      <translation>tiene algo que no es un argumento</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/call_arguments.py" />
+      <source>is not closed</source>
+      <translation>no está cerrado</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_differences.py" />
+      <source>IF without a jump</source>
+      <translation>IF sin salto</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>%1 needs a name</source>
+      <translation>%1 necesita un nombre</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>A branch of CASE needs its jump</source>
+      <translation>Una rama de CASE necesita su salto</translation>
+    </message>
+    <message>
       <location filename="core/language/sinumerik/program_jumps.py" />
       <source>A jump needs a label</source>
       <translation>Un salto necesita una etiqueta</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>DEF needs REAL, INT or BOOL</source>
-      <translation>DEF necesita REAL, INT o BOOL</translation>
+      <source>An array has one size, in square brackets</source>
+      <translation>Una matriz tiene un tamaño, entre corchetes</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>CASE has no branch</source>
+      <translation>CASE no tiene ninguna rama</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>CASE needs OF</source>
+      <translation>CASE necesita OF</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>DEF needs REAL, INT, BOOL or STRING</source>
+      <translation>DEF necesita REAL, INT, BOOL o STRING</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/program_jumps.py" />
@@ -15495,8 +25040,8 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>MSG needs its text in brackets and quotes</source>
-      <translation>MSG necesita su texto entre paréntesis y comillas</translation>
+      <source>MSG needs its text in brackets</source>
+      <translation>MSG necesita su texto entre paréntesis</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/program_jumps.py" />
@@ -15505,13 +25050,43 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Other types are not read here.</source>
-      <translation>Otros tipos no se leen aquí.</translation>
+      <source>Put it into a block of its own.</source>
+      <translation>Póngalo en un bloque propio.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Put it into a block of its own.</source>
-      <translation>Póngalo en un bloque propio.</translation>
+      <source>SETAL needs a number in brackets</source>
+      <translation>SETAL necesita un número entre paréntesis</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Use REAL, INT, BOOL or STRING.</source>
+      <translation>Use REAL, INT, BOOL o STRING.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Variables of the type %1 are not read here</source>
+      <translation>Las variables del tipo %1 no se leen aquí</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Write 1 GOTOF LABEL.</source>
+      <translation>Escriba 1 GOTOF LABEL.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Write CASE R1 OF 1 GOTOF A DEFAULT GOTOF B.</source>
+      <translation>Escriba CASE R1 OF 1 GOTOF A DEFAULT GOTOF B.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Write CASE R1 OF 1 GOTOF A.</source>
+      <translation>Escriba CASE R1 OF 1 GOTOF A.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Write DEF REAL A[5].</source>
+      <translation>Escriba DEF REAL A[5].</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/program_jumps.py" />
@@ -15527,6 +25102,11 @@
       <location filename="core/language/sinumerik/program_jumps.py" />
       <source>Write MSG("TEXT").</source>
       <translation>Escriba MSG("TEXT").</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Write SETAL(65000).</source>
+      <translation>Escriba SETAL(65000).</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/program_jumps.py" />
@@ -15570,6 +25150,11 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>%1 is no number of a tool or an edge</source>
+      <translation>%1 no es número de herramienta ni de filo</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 is no word</source>
       <translation>%1 no es una palabra</translation>
     </message>
@@ -15585,6 +25170,11 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>%1 is that of a spindle, by its number</source>
+      <translation>%1 es de un husillo, por su número</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 lacks its =</source>
       <translation>a %1 le falta su =</translation>
     </message>
@@ -15592,6 +25182,11 @@
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 lacks its brackets</source>
       <translation>a %1 le faltan sus paréntesis</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>%1 lacks the name of a program</source>
+      <translation>a %1 le falta el nombre de un programa</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
@@ -15605,6 +25200,11 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>%1 stands behind other words</source>
+      <translation>%1 está tras otras palabras</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1%2 is no number</source>
       <translation>%1%2 no es un número</translation>
     </message>
@@ -15612,6 +25212,21 @@
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1= has no value: %2</source>
       <translation>%1= no tiene valor: %2</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>%1[ ] is not set</source>
+      <translation>%1[ ] no está puesto</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>%1[ ]= has no value: %2</source>
+      <translation>%1[ ]= no tiene valor: %2</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>A call stands alone in its block.</source>
+      <translation>Una llamada va sola en su bloque.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
@@ -15655,6 +25270,11 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>Write %1 NAME.</source>
+      <translation>Escriba %1 NAME.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Write %1 with a number, or %2=…</source>
       <translation>Escriba %1 con un número, o %2=…</translation>
     </message>
@@ -15670,8 +25290,13 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>Write P1 to P%1.</source>
-      <translation>Escriba de P1 a P%1.</translation>
+      <source>Write %1[1]=…</source>
+      <translation>Escriba %1[1]=…</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>Write a whole number.</source>
+      <translation>Escriba un número entero.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
@@ -15685,18 +25310,13 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>in line %1</source>
-      <translation>en la línea %1</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>more stands behind %1</source>
-      <translation>hay más tras %1</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>syntax error: %1.</source>
       <translation>error de sintaxis: %1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>system variables cannot be written here</source>
+      <translation>las variables de sistema no se pueden escribir aquí</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
@@ -15724,6 +25344,11 @@
       <translation>este control no tiene esa palabra</translation>
     </message>
     <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>this lathe has no axis C; its third axis is %1</source>
+      <translation>este torno no tiene eje C; su tercer eje es %1</translation>
+    </message>
+    <message>
       <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>H functions are not part of this control's SINUMERIK subset</source>
       <translation>las funciones H no son parte del SINUMERIK de este control</translation>
@@ -15745,21 +25370,6 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_words.py" />
-      <source>an arc in G18 has I and K</source>
-      <translation>un arco en G18 tiene I y K</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_words.py" />
-      <source>incremental words are written with IC( ), such as X=IC(1)</source>
-      <translation>las palabras incrementales se escriben con IC( ), como X=IC(1)</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_words.py" />
-      <source>incremental words are written with IC( ), such as Z=IC(1)</source>
-      <translation>las palabras incrementales se escriben con IC( ), como Z=IC(1)</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>this lathe has no axis A</source>
       <translation>este torno no tiene eje A</translation>
     </message>
@@ -15770,23 +25380,13 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_words.py" />
-      <source>this lathe has no axis Y</source>
-      <translation>este torno no tiene eje Y</translation>
+      <source>this lathe has no axis U; incremental words are written with IC( ), such as X=IC(1)</source>
+      <translation>este torno no tiene eje U; las palabras incrementales se escriben con IC( ), como X=IC(1)</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_words.py" />
-      <source>tool offsets are not part of this control's SINUMERIK subset; use G54 to G59</source>
-      <translation>las compensaciones de herramienta no son parte del SINUMERIK de este control; use G54 a G59</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_words.py" />
-      <source>tools are not part of this control's SINUMERIK subset; put the offset into G54 to G59</source>
-      <translation>las herramientas no son parte del SINUMERIK de este control; ponga el desplazamiento en G54 a G59</translation>
-    </message>
-    <message>
-      <location filename="core/language/source.py" />
-      <source>%1 cannot be read: %2.</source>
-      <translation>no se puede leer %1: %2.</translation>
+      <source>this lathe has no axis W; incremental words are written with IC( ), such as Z=IC(1)</source>
+      <translation>este torno no tiene eje W; las palabras incrementales se escriben con IC( ), como Z=IC(1)</translation>
     </message>
     <message>
       <location filename="core/language/source.py" />
@@ -16255,23 +25855,28 @@
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
-      <source>%1, its diameter as %2 in</source>
-      <translation>%1, con %2 in de diámetro</translation>
+      <source>%1 is taken for %2 (%3)</source>
+      <translation>%1 se toma por %2 (%3)</translation>
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
-      <source>%1, its width as %2 in</source>
-      <translation>%1, con %2 in de ancho</translation>
+      <source>%1 is taken for a bar stop</source>
+      <translation>%1 se toma por un tope de barra</translation>
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
-      <source>, %1 in</source>
-      <translation>, %1 in</translation>
+      <source>%1, its diameter as %2</source>
+      <translation>%1, su diámetro como %2</translation>
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
-      <source>, %1 in wide</source>
-      <translation>, %1 in de ancho</translation>
+      <source>%1, its width as %2</source>
+      <translation>%1, su ancho como %2</translation>
+    </message>
+    <message>
+      <location filename="core/proving/assumed_tools.py" />
+      <source>, %1 wide</source>
+      <translation>, %1 de ancho</translation>
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
@@ -16282,16 +25887,6 @@
       <location filename="core/proving/assumed_tools.py" />
       <source>RIGHT SIDE</source>
       <translation>RIGHT SIDE</translation>
-    </message>
-    <message>
-      <location filename="core/proving/assumed_tools.py" />
-      <source>T%1 is taken for %2 (%3)</source>
-      <translation>T%1 se toma por %2 (%3)</translation>
-    </message>
-    <message>
-      <location filename="core/proving/assumed_tools.py" />
-      <source>T%1 is taken for a bar stop</source>
-      <translation>T%1 se toma por un tope de barra</translation>
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
@@ -16465,63 +26060,63 @@
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
+      <source>%1 cuts %2 beyond the axis</source>
+      <translation>%1 corta %2 más allá del eje</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1 cuts %2 deep with the back of its insert.</source>
+      <translation>%1 corta a %2 de profundidad con la parte trasera de su plaquita.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1 cuts %2 deep; its edge reaches %3.</source>
+      <translation>%1 corta %2 de profundidad; su filo llega a %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1 cuts at Z %2; the part ends at %3.</source>
+      <translation>%1 corta en Z %2; la pieza termina en %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1 cuts with the spindle turning the other way than where it has cut before.</source>
+      <translation>%1 corta con el husillo girando al revés que donde ha cortado antes.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1 feeds %2 with a diameter of %3.</source>
+      <translation>%1 avanza %2 con un diámetro de %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1 feeds %2 with a nose radius of %3.</source>
+      <translation>%1 avanza %2 con un radio de punta de %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1 feeds %2 with an edge %3 wide.</source>
+      <translation>%1 avanza %2 con un filo de %3 de ancho.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1 goes %2 deep; it cuts %3.</source>
+      <translation>%1 entra %2; corta %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1 goes in at %2°, and the back of its insert clears %3°.</source>
+      <translation>%1 entra a %2°, y la parte trasera de su plaquita libra %3°.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
       <source>%1, on the side where it does not stand.</source>
       <translation>%1, en el lado donde no está.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>T%1 cuts %2 beyond the axis</source>
-      <translation>T%1 corta %2 más allá del eje</translation>
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
-      <source>T%1 cuts %2 deep with the back of its insert.</source>
-      <translation>T%1 corta a %2 de profundidad con la parte trasera de su plaquita.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
-      <source>T%1 cuts %2 deep; its edge reaches %3.</source>
-      <translation>T%1 corta %2 de profundidad; su filo llega a %3.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
-      <source>T%1 cuts at Z %2; the part ends at %3.</source>
-      <translation>T%1 corta en Z %2; la pieza termina en %3.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
-      <source>T%1 cuts with the spindle turning the other way than where it has cut before.</source>
-      <translation>T%1 corta con el husillo girando al revés que donde ha cortado antes.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
-      <source>T%1 feeds %2 with a diameter of %3.</source>
-      <translation>T%1 avanza %2 con un diámetro de %3.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
-      <source>T%1 feeds %2 with a nose radius of %3.</source>
-      <translation>T%1 avanza %2 con un radio de punta de %3.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
-      <source>T%1 feeds %2 with an edge %3 wide.</source>
-      <translation>T%1 avanza %2 con un filo de %3 de ancho.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
-      <source>T%1 goes %2 deep; it cuts %3.</source>
-      <translation>T%1 entra %2; corta %3.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
-      <source>T%1 goes in at %2°, and the back of its insert clears %3°.</source>
-      <translation>T%1 entra a %2°, y la parte trasera de su plaquita libra %3°.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
-      <source>T%1, which is %2-hand, cuts while the spindle turns by %3.</source>
-      <translation>T%1, que es de mano %2, corta mientras el husillo gira con %3.</translation>
+      <source>%1, which is %2-hand, cuts while the spindle turns by %3.</source>
+      <translation>%1, que es de mano %2, corta mientras el husillo gira con %3.</translation>
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
@@ -16545,8 +26140,8 @@
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
-      <source>check the %1 word, the offset of T%2 and any G10 or G92</source>
-      <translation>revise la palabra %1, la compensación de T%2 y cualquier G10 o G92</translation>
+      <source>check the %1 word, the offset of %2 and any G10 or G92</source>
+      <translation>revise la palabra %1, la compensación de %2 y cualquier G10 o G92</translation>
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
@@ -17010,8 +26605,33 @@
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
+      <source>%1 beside %2 on the plate runs into the stock.</source>
+      <translation>%1, junto a %2 en la placa, choca con el material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
       <source>%1 deep at Z %2 … %3</source>
       <translation>%1 de profundidad en Z %2 … %3</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 goes over the axis, through the part.</source>
+      <translation>%1 pasa sobre el eje, a través de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 parts off down to %2, and nothing falls.</source>
+      <translation>%1 tronza hasta %2, y no cae nada.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 runs into the chuck, %2.</source>
+      <translation>%1 choca con el plato, %2.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 runs into the tailstock, %2.</source>
+      <translation>%1 choca con el contrapunto, %2.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
@@ -17045,38 +26665,13 @@
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
-      <source>T%1 beside T%2 on the plate runs into the stock.</source>
-      <translation>T%1, junto a T%2 en la placa, choca con el material.</translation>
+      <source>The holder of %1 runs into metal, %2.</source>
+      <translation>El portaherramientas de %1 choca con el metal, %2.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
-      <source>T%1 goes over the axis, through the part.</source>
-      <translation>T%1 pasa sobre el eje, a través de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_findings.py" />
-      <source>T%1 parts off down to %2, and nothing falls.</source>
-      <translation>T%1 tronza hasta %2, y no cae nada.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_findings.py" />
-      <source>T%1 runs into the chuck, %2.</source>
-      <translation>T%1 choca con el plato, %2.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_findings.py" />
-      <source>T%1 runs into the tailstock, %2.</source>
-      <translation>T%1 choca con el contrapunto, %2.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_findings.py" />
-      <source>The holder of T%1 runs into metal, %2.</source>
-      <translation>El portaherramientas de T%1 choca con el metal, %2.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_findings.py" />
-      <source>The live tool T%1 is fed, and never meets metal.</source>
-      <translation>La herramienta motorizada T%1 avanza y nunca toca metal.</translation>
+      <source>The live tool %1 is fed, and never meets metal.</source>
+      <translation>La herramienta motorizada %1 avanza y nunca toca metal.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
@@ -17105,18 +26700,18 @@
     </message>
     <message>
       <location filename="core/proving/part_proof.py" />
+      <source>%1 is never fed: all its moves are rapids.</source>
+      <translation>%1 no avanza nunca: todos sus movimientos son rápidos.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_proof.py" />
       <source>%1 moves: a part of so many is made where its stock is said</source>
       <translation>%1 movimientos: una pieza de tantos se hace donde se indica su material</translation>
     </message>
     <message>
       <location filename="core/proving/part_proof.py" />
-      <source>T%1 is never fed: all its moves are rapids.</source>
-      <translation>T%1 no avanza nunca: todos sus movimientos son rápidos.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_proof.py" />
-      <source>The live tool T%1 is fed, and never comes behind Z0.</source>
-      <translation>La herramienta motorizada T%1 avanza y nunca pasa de Z0.</translation>
+      <source>The live tool %1 is fed, and never comes behind Z0.</source>
+      <translation>La herramienta motorizada %1 avanza y nunca pasa de Z0.</translation>
     </message>
     <message>
       <location filename="core/proving/part_proof.py" />
@@ -17125,13 +26720,13 @@
     </message>
     <message>
       <location filename="core/proving/part_proof.py" />
-      <source>no stock is assumed: no feed cuts behind Z0</source>
-      <translation>no se supone material: ningún avance corta detrás de Z0</translation>
+      <source>no stock is assumed: the feeds cut before Z0, where no face of it can lie</source>
+      <translation>no se supone ningún material: los avances cortan antes de Z0, donde no puede estar su cara</translation>
     </message>
     <message>
       <location filename="core/proving/part_proof.py" />
-      <source>what T%1 cuts from line %2 on while the spindle stands</source>
-      <translation>lo que corta T%1 desde la línea %2 con el husillo parado</translation>
+      <source>what %1 cuts from line %2 on while the spindle stands</source>
+      <translation>lo que corta %1 desde la línea %2 con el husillo parado</translation>
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />
@@ -17180,43 +26775,43 @@
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
+      <source>%1 cuts a pitch of %2; the lead is %3.</source>
+      <translation>%1 corta un paso de %2; el avance de rosca es %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>%1 feeds %2 a turn; its pitch is %3.</source>
+      <translation>%1 avanza %2 por vuelta; su paso es %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>%1 goes in by %2 a turn and out by %3.</source>
+      <translation>%1 entra a %2 por vuelta y sale a %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>%1 goes on for %2 until the spindle stands</source>
+      <translation>%1 sigue %2 hasta que el husillo se para</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>%1 is drawn out of its thread %2.</source>
+      <translation>%1 se saca de su rosca %2.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>%1 is drawn out of its thread with the spindle stopped.</source>
+      <translation>%1 se saca de su rosca con el husillo parado.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>%1 is torn out of its thread by a rapid.</source>
+      <translation>%1 se arranca de su rosca en rápido.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
       <source>%1: more than a holder gives.</source>
       <translation>%1: más de lo que cede un portamachos.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>T%1 cuts a pitch of %2; the lead is %3.</source>
-      <translation>T%1 corta un paso de %2; el avance de rosca es %3.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>T%1 feeds %2 a turn; its pitch is %3.</source>
-      <translation>T%1 avanza %2 por vuelta; su paso es %3.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>T%1 goes in by %2 a turn and out by %3.</source>
-      <translation>T%1 entra a %2 por vuelta y sale a %3.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>T%1 goes on for %2 until the spindle stands</source>
-      <translation>T%1 sigue %2 hasta que el husillo se para</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>T%1 is drawn out of its thread %2.</source>
-      <translation>T%1 se saca de su rosca %2.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>T%1 is drawn out of its thread with the spindle stopped.</source>
-      <translation>T%1 se saca de su rosca con el husillo parado.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>T%1 is torn out of its thread by a rapid.</source>
-      <translation>T%1 se arranca de su rosca en rápido.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
@@ -17485,8 +27080,8 @@
     </message>
     <message>
       <location filename="core/records/ball_bar.py" />
-      <source>there is no arc in this time: choose the line of a G02 or G03</source>
-      <translation>en este tiempo no hay arco: elija la línea de un G02 o G03</translation>
+      <source>there is no arc in this time: choose the line of an arc</source>
+      <translation>no hay ningún arco en este tiempo: elija la línea de un arco</translation>
     </message>
     <message>
       <location filename="core/records/path_error.py" />
@@ -17619,6 +27214,941 @@
       <translation>en este tiempo no hay pasada de rosca: nada avanza parejo dos vueltas</translation>
     </message>
     <message>
+      <location filename="core/shapes/bar_work.py" />
+      <source>BAR A PART, CUT INCLUDED</source>
+      <translation>BARRA POR PIEZA, CON EL CORTE</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/bar_work.py" />
+      <source>BAR LOOP</source>
+      <translation>BUCLE DE BARRA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/bar_work.py" />
+      <source>EACH PART</source>
+      <translation>CADA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/bar_work.py" />
+      <source>FEED OF THE BAR A MINUTE</source>
+      <translation>AVANCE DE LA BARRA POR MINUTO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/bar_work.py" />
+      <source>STOP IS TOOL</source>
+      <translation>EL TOPE ES LA HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/bar_work.py" />
+      <source>SUBROUTINE OF THE PART</source>
+      <translation>SUBRUTINA DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/bar_work.py" />
+      <source>THE BAR IS FED</source>
+      <translation>LA BARRA SE SACA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/bar_work.py" />
+      <source>This stands in the loop of another bar: write it before that one, or after it.</source>
+      <translation>Esto está en el bucle de otra barra: escríbalo antes o después de aquel.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/bar_work.py" />
+      <source>feeds the bar to a stop and makes so many parts: what comes behind it is the part</source>
+      <translation>saca la barra hasta un tope y hace tantas piezas: lo que sigue es la pieza</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>%1 passes begin with %2: delete one of both.</source>
+      <translation>%1 pasadas empiezan con %2: borre una de ambas.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>%1 rpm at %2 a turn are %3 a minute: delete one.</source>
+      <translation>%1 rpm a %2 por vuelta son %3 por minuto: borre una.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>ANGLE TO THE AXIS</source>
+      <translation>ÁNGULO AL EJE</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>DEPTH OF THE FIRST PASS</source>
+      <translation>PROFUNDIDAD DE LA PRIMERA PASADA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>DIAMETER AT THE CHUCK</source>
+      <translation>DIÁMETRO JUNTO AL PLATO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>DIAMETER AT THE FACE</source>
+      <translation>DIÁMETRO JUNTO A LA CARA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>FEED A MINUTE</source>
+      <translation>AVANCE POR MINUTO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>FEED A TURN</source>
+      <translation>AVANCE POR VUELTA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>FEED AND SPEED</source>
+      <translation>AVANCE Y VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>G94F%1 is the same feed</source>
+      <translation>G94F%1 es el mismo avance</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>S%1 is %2 %3 there</source>
+      <translation>S%1 es ahí %2 %3</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>SPEED RPM</source>
+      <translation>VELOCIDAD RPM</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>SURFACE SPEED</source>
+      <translation>VELOCIDAD DE CORTE</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>THREAD PASSES</source>
+      <translation>PASADAS DE ROSCA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>The taper goes through the axis: look at angle and length.</source>
+      <translation>El cono atraviesa el eje: mire ángulo y longitud.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>These four are no taper: the angle would be %1. Delete one of them.</source>
+      <translation>Estos cuatro no son un cono: el ángulo sería %1. Borre uno.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>X of the passes: %1</source>
+      <translation>X de las pasadas: %1</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>a taper: type any three of both diameters, length and angle</source>
+      <translation>un cono: escriba tres de ambos diámetros, longitud y ángulo</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>depth %1 a side, the first pass %2</source>
+      <translation>profundidad %1 por lado, la primera pasada %2</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>diameters, depth and passes of a thread by its standard</source>
+      <translation>diámetros, profundidad y pasadas de una rosca por su norma</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>included angle %1°</source>
+      <translation>ángulo total %1°</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>rpm, surface speed, feed a turn and a minute: what is typed gives the rest</source>
+      <translation>rpm, velocidad de corte, avance por vuelta y por minuto: lo escrito da el resto</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>slope %1</source>
+      <translation>generatriz %1</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>taper on the diameter %1</source>
+      <translation>conicidad en el diámetro %1</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>the tool starts at X %1</source>
+      <translation>el útil empieza en X %1</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/contour.py" />
+      <source>A contour has two points at least: type the next.</source>
+      <translation>Un contorno tiene al menos dos puntos: escriba el siguiente.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/contour.py" />
+      <source>Point %1 has a corner beside an arc: the control cuts none.</source>
+      <translation>El punto %1 tiene una esquina junto a un arco: el control no la corta.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/contour.py" />
+      <source>Point %1 is where the one before is: type another X or Z.</source>
+      <translation>El punto %1 está donde el anterior: escriba otra X u otra Z.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/contour.py" />
+      <source>Point %1 lies beyond the axis: X is a diameter, 0 or more.</source>
+      <translation>El punto %1 está más allá del eje: X es un diámetro, 0 o más.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/contour.py" />
+      <source>The arc to point %1 spans %2, its radius %3 only %4: type a larger radius.</source>
+      <translation>El arco al punto %1 abarca %2, su radio %3 solo %4: escriba un radio mayor.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/contour.py" />
+      <source>The corner of point %1 is less than 0: type its size.</source>
+      <translation>La esquina del punto %1 es menor que 0: escriba su medida.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/contour.py" />
+      <source>The corner of point %1 needs a line behind it: add a point.</source>
+      <translation>La esquina del punto %1 necesita una línea detrás: añada un punto.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/contour.py" />
+      <source>The corner of point %1 takes %2 of a line of %3: make it smaller.</source>
+      <translation>La esquina del punto %1 ocupa %2 de una línea de %3: hágala menor.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/contour.py" />
+      <source>The first point says where the contour begins: type X and Z.</source>
+      <translation>El primer punto dice dónde empieza el contorno: escriba X y Z.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/cutting_data.py" />
+      <source>ALLOY STEEL</source>
+      <translation>ACERO ALEADO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/cutting_data.py" />
+      <source>CAST IRON</source>
+      <translation>FUNDICIÓN</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/cutting_data.py" />
+      <source>FREE STEEL</source>
+      <translation>ACERO DE FÁCIL MECANIZADO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/cutting_data.py" />
+      <source>TOOL STEEL</source>
+      <translation>ACERO PARA HERRAMIENTAS</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/drilling.py" />
+      <source>%1 diameters in one go clog a drill: type a peck.</source>
+      <translation>%1 diámetros de una vez atascan una broca: escriba un picoteo.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/drilling.py" />
+      <source>%1 is a drill of %2 by its sheet: type that.</source>
+      <translation>%1 es una broca de %2 según su ficha: escriba eso.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/drilling.py" />
+      <source>%1: take a longer drill.</source>
+      <translation>%1: tome una broca más larga.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/drilling.py" />
+      <source>A peck of %1 is more than the hole: type 0 for none.</source>
+      <translation>Un picoteo de %1 es más que el agujero: escriba 0 para ninguno.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/drilling.py" />
+      <source>DEPTH OF ITS POINT</source>
+      <translation>PROFUNDIDAD DE LA PUNTA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/drilling.py" />
+      <source>DIAMETER OF THE DRILL</source>
+      <translation>DIÁMETRO DE LA BROCA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/drilling.py" />
+      <source>THE HOLE IS THERE TO</source>
+      <translation>EL AGUJERO YA LLEGA A</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/drilling.py" />
+      <source>The hole begins %1 deep and ends at %2: nothing is drilled.</source>
+      <translation>El agujero empieza a %1 de hondo y acaba en %2: no se taladra nada.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/drilling.py" />
+      <source>The hole of %1 is deeper than the flutes of %2, %3</source>
+      <translation>El agujero de %1 es más hondo que las estrías de %2, %3</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/drilling.py" />
+      <source>on the axis, in one go or in pecks</source>
+      <translation>en el eje, de una vez o con picoteo</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>%1 deep: %2 reaches %3. Take a longer blade.</source>
+      <translation>%1 de hondo: %2 alcanza %3. Tome una cuchilla más larga.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>%1 is %2 wide by its sheet: type that.</source>
+      <translation>%1 tiene %2 de ancho según su ficha: escriba eso.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>A chamfer of %1 takes all of the wall: type less.</source>
+      <translation>Un chaflán de %1 se lleva toda la pared: escriba menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>A groove in a bore of %1 goes outwards: %2 is not more.</source>
+      <translation>Una ranura en un taladro de %1 va hacia fuera: %2 no es más.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>BEGINS BEHIND Z0</source>
+      <translation>EMPIEZA DETRÁS DE Z0</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>BOTTOM DIAMETER</source>
+      <translation>DIÁMETRO DEL FONDO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>CHAMFER AT BOTH EDGES</source>
+      <translation>CHAFLÁN EN AMBOS CANTOS</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>CHAMFER OF THE BAR</source>
+      <translation>CHAFLÁN DE LA BARRA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>CHAMFER OF THE PART</source>
+      <translation>CHAFLÁN DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>CORNER TOUCHED OFF</source>
+      <translation>ESQUINA TOMADA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>DWELL AT THE BOTTOM</source>
+      <translation>PAUSA EN EL FONDO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>Grooves of %1 at a pitch of %2 run into each other: type more.</source>
+      <translation>Ranuras de %1 a un paso de %2 se juntan: escriba más.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>HOW MANY</source>
+      <translation>CUÁNTAS</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>It parts off from %1 inwards: %2 is not less.</source>
+      <translation>Tronza desde %1 hacia dentro: %2 no es menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>LENGTH OF THE PART</source>
+      <translation>LONGITUD DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>PART OFF</source>
+      <translation>TRONZAR</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>TO DIAMETER</source>
+      <translation>HASTA EL DIÁMETRO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>The bottom of %1 is not less than the diameter of %2.</source>
+      <translation>El fondo de %1 no es menor que el diámetro de %2.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>The chamfer is as deep as the groove: type less.</source>
+      <translation>El chaflán es tan hondo como la ranura: escriba menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>The chamfer is longer than the part: type less.</source>
+      <translation>El chaflán es más largo que la pieza: escriba menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>The groove of %1 is narrower than the blade of %2: take a narrower one.</source>
+      <translation>La ranura de %1 es más estrecha que la cuchilla de %2: tome una más estrecha.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>WIDTH OF THE BLADE</source>
+      <translation>ANCHO DE LA CUCHILLA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>WIDTH OF THE GROOVE</source>
+      <translation>ANCHO DE LA RANURA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>one or several, outside, from behind or in a bore, edges broken</source>
+      <translation>una o varias, por fuera, desde detrás o en un taladro, con cantos matados</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>to the centre or to a bore, chamfers on both sides of the cut</source>
+      <translation>hasta el centro o hasta un taladro, con chaflanes a ambos lados del corte</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>%1 across flats is not less than the part of %2: nothing is cut.</source>
+      <translation>%1 entre caras no es menos que la pieza de %2: no se corta nada.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>%1 flats of %2 have corners at %3, the part is %4</source>
+      <translation>%1 caras de %2 tienen esquinas en %3, la pieza es de %4</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>%1 goes beyond the axis of %2: type less.</source>
+      <translation>%1 pasa del eje de %2: escriba menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>%1 holes at %2° go round more than once: type less.</source>
+      <translation>%1 agujeros a %2° dan más de una vuelta: escriba menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>%1 is deeper than the flutes of T%2, %3</source>
+      <translation>%1 es más hondo que las estrías de T%2, %3</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>%1 is more than the diameter of %2: the drill comes out behind it.</source>
+      <translation>%1 es más que el diámetro de %2: la broca sale por detrás.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>%1: take a longer mill.</source>
+      <translation>%1: tome una fresa más larga.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>%1: type less, or CORNERS ROUND.</source>
+      <translation>%1: escriba menos, o esquinas ROUND.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>A pass is deeper than the flats are long: type less.</source>
+      <translation>Una pasada es más honda que el largo de las caras: escriba menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>A pass is deeper than the slot: type less.</source>
+      <translation>Una pasada es más honda que la ranura: escriba menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>ACROSS FLATS</source>
+      <translation>ENTRE CARAS</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>ANGLE FROM HOLE TO HOLE</source>
+      <translation>ÁNGULO DE AGUJERO A AGUJERO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>ANGLE FROM SLOT TO SLOT</source>
+      <translation>ÁNGULO DE RANURA A RANURA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>ANGLE THAT IT GOES ROUND</source>
+      <translation>ÁNGULO QUE RODEA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>CENTRE BEHIND Z0</source>
+      <translation>CENTRO DETRÁS DE Z0</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>CROSS DRILL</source>
+      <translation>AGUJERO TRANSVERSAL</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>DEPTH OF A PASS</source>
+      <translation>PROFUNDIDAD DE PASADA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>DIAMETER OF THE MILL</source>
+      <translation>DIÁMETRO DE LA FRESA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>DIAMETER OF THE PART</source>
+      <translation>DIÁMETRO DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>FIRST ANGLE</source>
+      <translation>PRIMER ÁNGULO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>LENGTH ALONG Z</source>
+      <translation>LONGITUD EN Z</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>MILL FLATS</source>
+      <translation>FRESAR CARAS</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>MILL SLOT</source>
+      <translation>FRESAR RANURA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>The slot goes nowhere: type its length, or the angle that it goes round.</source>
+      <translation>La ranura no va a ninguna parte: escriba su longitud o el ángulo que rodea.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>The slot is deeper than the flutes of T%1, %2</source>
+      <translation>La ranura es más honda que las estrías de T%1, %2</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>a keyway along, around or on a helix, in the plane ZC</source>
+      <translation>un chavetero a lo largo, alrededor o en hélice, en el plano ZC</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>flats or a hexagon on the end, in the plane XC</source>
+      <translation>caras o un hexágono en el extremo, en el plano XC</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>holes from the side, all around, the spindle held</source>
+      <translation>agujeros desde el lado, alrededor, con el husillo retenido</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/program_head.py" />
+      <source>BAR DIAMETER</source>
+      <translation>DIÁMETRO DE LA BARRA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/program_head.py" />
+      <source>TOOLS CHANGE AT Z</source>
+      <translation>CAMBIO DE HERRAMIENTA EN Z</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/program_head.py" />
+      <source>how the program begins: unit, diameters, rapid, material</source>
+      <translation>cómo empieza el programa: unidad, diámetros, rápido, material</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/shape.py" />
+      <source>%1: type another.</source>
+      <translation>%1: escriba otra.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/shape.py" />
+      <source>T%1 is of the kind %2 by its sheet, this needs %3</source>
+      <translation>T%1 es de la clase %2 según su ficha, esto necesita %3</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/shape_fields.py" />
+      <source>%1 %2 is more than %3: type less.</source>
+      <translation>%1 %2 es más que %3: escriba menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/shape_fields.py" />
+      <source>%1 %2 is no whole number: type 1, 2, 3.</source>
+      <translation>%1 %2 no es un número entero: escriba 1, 2, 3.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/shape_fields.py" />
+      <source>%1 %2 is none of %3: choose one.</source>
+      <translation>%1 %2 no es ninguno de %3: elija uno.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/shape_fields.py" />
+      <source>%1 is %2: it is more than 0.</source>
+      <translation>%1 es %2: ha de ser más que 0.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/shape_fields.py" />
+      <source>%1 is not said: type it.</source>
+      <translation>%1 no está dicho: escríbalo.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/tapping.py" />
+      <source>%1 cuts %2 deep by its sheet: type less, or take a longer tap.</source>
+      <translation>%1 corta %2 de fondo según su ficha: escriba menos o tome un macho más largo.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/tapping.py" />
+      <source>%1 has a pitch of %2 by its sheet</source>
+      <translation>%1 tiene un paso de %2 según su ficha</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/tapping.py" />
+      <source>%1 has no %2: choose one with the arrows.</source>
+      <translation>%1 no tiene %2: elija con las flechas.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/tapping.py" />
+      <source>%1 is not tapped here: cut it with G33.</source>
+      <translation>%1 no se rosca aquí con macho: córtelo con G33.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/tapping.py" />
+      <source>%1, this is %2: take another tap.</source>
+      <translation>%1, este es %2: tome otro macho.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/tapping.py" />
+      <source>A pitch of %1 is more than a feed may be, %2: cut it with G33.</source>
+      <translation>Un paso de %1 es más de lo que puede ser un avance, %2: córtelo con G33.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/tapping.py" />
+      <source>At S%1 the slide needs %2 in/min, it has 300: type less.</source>
+      <translation>Con S%1 el carro necesita %2 in/min, tiene 300: escriba menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/tapping.py" />
+      <source>DWELL WHILE IT TURNS BACK</source>
+      <translation>ESPERA MIENTRAS INVIERTE</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/tapping.py" />
+      <source>It stops %1 short of %2: nothing is cut.</source>
+      <translation>Para %1 antes de %2: no se corta nada.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/tapping.py" />
+      <source>STOPS SHORT OF THE DEPTH</source>
+      <translation>PARA ANTES DEL FONDO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/tapping.py" />
+      <source>on the axis by a tap: in, spindle back, out at the pitch</source>
+      <translation>en el eje con un macho: entra, husillo atrás, sale al paso</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/tapping.py" />
+      <source>the hole before it: %1</source>
+      <translation>el agujero previo: %1</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/templates.py" />
+      <source>BAR FEED LOOP</source>
+      <translation>BUCLE DE BARRA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/templates.py" />
+      <source>START OF PROGRAM</source>
+      <translation>INICIO DE PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/templates.py" />
+      <source>TOOL CHANGE</source>
+      <translation>CAMBIO DE ÚTIL</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/templates.py" />
+      <source>a stop, the collet opens, the bar follows; the part is a subroutine</source>
+      <translation>un tope, la pinza se abre, la barra sigue; la pieza es una subrutina</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/templates.py" />
+      <source>back, tool, spindle, to the part</source>
+      <translation>atrás, útil, husillo, a la pieza</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/templates.py" />
+      <source>passes down to a contour of points, which are changed by hand</source>
+      <translation>pasadas hasta un contorno de puntos, que se cambian a mano</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/templates.py" />
+      <source>tool, run-up, passes by constant chip area, pull out</source>
+      <translation>útil, arranque, pasadas de viruta constante, salida</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/templates.py" />
+      <source>unit, diameters, rapid, coolant</source>
+      <translation>unidad, diámetros, rápido, refrigerante</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>%1 cuts %2°, this thread has %3°: take another insert.</source>
+      <translation>%1 corta %2°, esta rosca tiene %3°: tome otra plaquita.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>%1 deep: flanks of a pitch of %2 meet at %3</source>
+      <translation>%1 de hondo: los flancos de un paso de %2 se juntan en %3</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>%1 is made for a pitch of %2</source>
+      <translation>%1 está hecha para un paso de %2</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>%1, not %2: take another insert.</source>
+      <translation>%1, no %2: tome otra plaquita.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>%1. Look at both diameters.</source>
+      <translation>%1. Mire los dos diámetros.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>A lead of %1 is more than the control cuts, %2.</source>
+      <translation>Un avance de rosca de %1 es más de lo que corta el control, %2.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>A relief of %1 is less than 1.5 turns of the lead, %2.</source>
+      <translation>Una salida de %1 es menos de 1.5 vueltas de la rosca, %2.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>At S%1 the slide needs %2 in/min, it has 300: S%3 or less.</source>
+      <translation>Con S%1 el carro necesita %2 in/min y tiene 300: S%3 o menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>DIAMETER BEFORE IT IS CUT</source>
+      <translation>DIÁMETRO ANTES DE ROSCAR</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>DIAMETER OF THE LAST PASS</source>
+      <translation>DIÁMETRO DE LA ÚLTIMA PASADA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>INFEED ANGLE</source>
+      <translation>ÁNGULO DE PENETRACIÓN</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>In a bore the thread goes outwards: %1 is not more than %2.</source>
+      <translation>En un taladro la rosca va hacia fuera: %1 no es más que %2.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>More than 60 passes: type fewer.</source>
+      <translation>Más de 60 pasadas: escriba menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>PULLS OUT WHILE GOING ON</source>
+      <translation>SALE SIN PARAR</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>TAPER ON THE DIAMETER</source>
+      <translation>CONICIDAD EN DIÁMETRO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>The bar of %1 does not go into %2.</source>
+      <translation>La barra de %1 no entra en %2.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>The thread goes inwards: %1 is not less than %2.</source>
+      <translation>La rosca va hacia dentro: %1 no es menos que %2.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>Thread relief missing: where the tool stops it cuts a ring. Say its width, or pull out.</source>
+      <translation>Falta la salida de rosca: donde para la herramienta corta un anillo. Diga su ancho, o que salga sin parar.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>WIDTH OF THE RELIEF</source>
+      <translation>ANCHO DE LA SALIDA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>by series, size and class: UNC, UNF, M, NPT, BSP, ACME, or its own figures</source>
+      <translation>por serie, medida y clase: UNC, UNF, M, NPT, BSP, ACME, o sus propias cifras</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>%1 is more than the radius of %2: type %3 or less.</source>
+      <translation>%1 es más que el radio de %2: escriba %3 o menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>%1 is more than the stock of %2.</source>
+      <translation>%1 es más que el material de %2.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>%1 left for finishing is more than a pass of %2: type less.</source>
+      <translation>%1 para acabado es más que una pasada de %2: escriba menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>%1, the bore is %2 deep: take a longer bar.</source>
+      <translation>%1, el taladro tiene %2 de hondo: tome una barra más larga.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>%1: it does not go in; drill larger, or take a thinner bar.</source>
+      <translation>%1: no entra; taladre más grande o tome una barra más fina.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>CHAMFER AT THE MOUTH</source>
+      <translation>CHAFLÁN EN LA BOCA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>EDGE TURN</source>
+      <translation>MATAR CANTO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>FACE AT Z</source>
+      <translation>CARA EN Z</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>FACE BEHIND Z0</source>
+      <translation>CARA DETRÁS DE Z0</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>FEED OF ROUGHING</source>
+      <translation>AVANCE DE DESBASTE</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>G41 does not work in a subroutine, so not in a bar loop: type 0.</source>
+      <translation>G41 no funciona en una subrutina, así que tampoco en un bucle de barra: escriba 0.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>It faces from %1 inwards: %2 is not less.</source>
+      <translation>Refrenta desde %1 hacia dentro: %2 no es menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>Point %1 goes back towards the face: roughing goes along Z to the chuck only.</source>
+      <translation>El punto %1 vuelve hacia la cara: el desbaste solo va por Z hacia el plato.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>Point %1 lies outside the stock of %2: type a smaller X.</source>
+      <translation>El punto %1 está fuera del material de %2: escriba una X menor.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>T%1 reaches %2</source>
+      <translation>T%1 alcanza %2</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>TAPER TURN</source>
+      <translation>CONO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>The bar of T%1 is %2, the hole %3</source>
+      <translation>La barra de T%1 es de %2, el agujero de %3</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>The chamfer is as long as the bore of %1: type less.</source>
+      <translation>El chaflán es tan largo como el taladro de %1: escriba menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>The hole of %1 is not less than the bore of %2: nothing is cut.</source>
+      <translation>El agujero de %1 no es menor que el taladro de %2: no se corta nada.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>The taper falls towards the chuck: a turning tool leads into metal behind it.</source>
+      <translation>El cono baja hacia el plato: una herramienta de torneado entra en el metal de detrás.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>a cone by two diameters, or by a diameter and an angle</source>
+      <translation>un cono por dos diámetros, o por un diámetro y un ángulo</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>a drilled hole opened to a diameter, with a chamfer at its mouth</source>
+      <translation>un agujero taladrado abierto a un diámetro, con chaflán en la boca</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>along a profile of points, corners and arcs; roughed or not</source>
+      <translation>por un perfil de puntos, esquinas y arcos; desbastado o no</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>an edge broken by a chamfer or a radius, outside or in a bore</source>
+      <translation>un canto matado con chaflán o radio, fuera o en un taladro</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>square across the end, in one pass or several</source>
+      <translation>a escuadra sobre el extremo, en una pasada o en varias</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/usual_fields.py" />
+      <source>A feed of %1 a turn is more than %2: F.003 is what was meant?</source>
+      <translation>Un avance de %1 por vuelta es más que %2: ¿se quería F.003?</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/usual_fields.py" />
+      <source>S%1 is more than the %2 rpm of this spindle: type %3 or less.</source>
+      <translation>S%1 es más que las %2 rpm de este husillo: escriba %3 o menos.</translation>
+    </message>
+    <message>
       <location filename="core/store/backup.py" />
       <source>%1 cannot be restored: %2; nothing was changed. Take another backup</source>
       <translation>%1 no se puede restaurar: %2; no se cambió nada. Use otro respaldo</translation>
@@ -17667,6 +28197,31 @@
       <location filename="core/store/backup.py" />
       <source>there is no store in %1 yet, so there is nothing to back up</source>
       <translation>todavía no hay almacén en %1, así que no hay nada que respaldar</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>%1 is not as it was saved, and is not used; %2</source>
+      <translation>%1 no está como se guardó, y no se usa; %2</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>%1 was damaged in the store; it is again as it was entered</source>
+      <translation>%1 se dañó en el almacén; vuelve a estar como se introdujo</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>clear the queue of it ('turndesk jobs clear'), and enter it anew</source>
+      <translation>quítelo de la cola ('turndesk jobs clear'), y éntrelo de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>count the parts and enter them, or restore a backup</source>
+      <translation>cuente las piezas e introdúzcalas, o restaure un respaldo</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>enter it anew, or restore a backup</source>
+      <translation>introdúzcalo de nuevo, o restaure un respaldo</translation>
     </message>
     <message>
       <location filename="core/store/database.py" />
@@ -17719,6 +28274,31 @@
       <translation>el ajuste %1 no se puede guardar: %2</translation>
     </message>
     <message>
+      <location filename="core/store/job_queue.py" />
+      <source>a job has 1 to %1 parts, not %2</source>
+      <translation>un trabajo tiene de 1 a %1 piezas, no %2</translation>
+    </message>
+    <message>
+      <location filename="core/store/job_queue.py" />
+      <source>that job is not as it was saved; clear it from the queue and enter it anew</source>
+      <translation>ese trabajo no está como se guardó; quítelo de la cola y éntrelo de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/store/job_queue.py" />
+      <source>that job is not in the queue any more</source>
+      <translation>ese trabajo ya no está en la cola</translation>
+    </message>
+    <message>
+      <location filename="core/store/job_queue.py" />
+      <source>the note of a job has %1 letters at most, on one line</source>
+      <translation>la nota de un trabajo tiene %1 letras como máximo, en una línea</translation>
+    </message>
+    <message>
+      <location filename="core/store/job_queue.py" />
+      <source>there are %1 jobs already; take those away that are done</source>
+      <translation>ya hay %1 trabajos; quite los que están hechos</translation>
+    </message>
+    <message>
       <location filename="core/store/measured_parts.py" />
       <source>%1 has a feature %2 already; give this one another name</source>
       <translation>%1 ya tiene una característica %2; dé otro nombre a esta</translation>
@@ -17765,8 +28345,33 @@
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
+      <source>%1 has further edges; clear %2 first</source>
+      <translation>%1 tiene más filos; borre antes %2</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>%1 has no shape yet; enter its kind first: %2</source>
+      <translation>%1 aún no tiene forma; introduzca primero su clase: %2</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>%1 is a further edge; a tool is the master by its D1</source>
+      <translation>%1 es otro filo; una herramienta es maestra por su D1</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
       <source>%1 is out of range; enter %2</source>
       <translation>%1 está fuera de alcance; escriba %2</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>%1 was never set, so nothing can be relative to it; touch it off first</source>
+      <translation>%1 nunca se puso, nada puede ser relativo a ella; tóquela primero</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>%1 was never set; set its D1 before %2</source>
+      <translation>%1 nunca se puso; ponga su D1 antes de %2</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
@@ -17775,23 +28380,53 @@
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
+      <source>%1%2 does not exist; they are 1…%3</source>
+      <translation>%1%2 no existe; van de 1 a %3</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>%1's shape</source>
+      <translation>la forma de %1</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
       <source>G%1 does not exist; settable offsets are G54…G59</source>
       <translation>G%1 no existe; los ceros ajustables son G54…G59</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
-      <source>T%1 has no shape yet; enter its kind first: %2</source>
-      <translation>T%1 aún no tiene forma; introduzca primero su clase: %2</translation>
+      <source>the job</source>
+      <translation>el trabajo</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
-      <source>T%1 was never set, so nothing can be relative to it; touch it off first</source>
-      <translation>T%1 nunca se puso, nada puede ser relativo a ella; tóquela primero</translation>
+      <source>the life of tool</source>
+      <translation>la vida de la herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>the part count of</source>
+      <translation>la cuenta de piezas de</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>the setting</source>
+      <translation>el ajuste</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
       <source>there is no change of G54…G59 to undo</source>
       <translation>no hay cambio de G54…G59 que deshacer</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>there is no change of a preset to undo</source>
+      <translation>no hay ningún cambio de preset que deshacer</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>there is no change of a tool to undo</source>
+      <translation>no hay ningún cambio de herramienta que deshacer</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
@@ -17880,6 +28515,11 @@
     </message>
     <message>
       <location filename="core/store/store_export.py" />
+      <source>%1 cannot be read (%2); export it again</source>
+      <translation>%1 no se puede leer (%2); expórtelo de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_export.py" />
       <source>%1 is no exported folder (%2); name one that 'store export' wrote</source>
       <translation>%1 no es una carpeta exportada (%2); dé una escrita por 'store export'</translation>
     </message>
@@ -17887,6 +28527,11 @@
       <location filename="core/store/store_export.py" />
       <source>%1 is not empty; name a new folder for the export</source>
       <translation>%1 no está vacía; dé una carpeta nueva para la exportación</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_export.py" />
+      <source>%1 line %2: %3; each row has a number and figures, as 'store export' writes them</source>
+      <translation>%1 línea %2: %3; cada fila lleva un número y cifras, como los escribe 'store export'</translation>
     </message>
     <message>
       <location filename="core/store/store_export.py" />
@@ -17960,8 +28605,8 @@
     </message>
     <message>
       <location filename="core/store/touch_off.py" />
-      <source>T%1 was never set; touch both X and Z</source>
-      <translation>T%1 nunca se puso; toque X y Z</translation>
+      <source>%1 was never set; touch both X and Z</source>
+      <translation>%1 nunca se puso; toque X y Z</translation>
     </message>
   </context>
 </TS>
