@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from app.cli.command_parser import Parser, add_screen_options, settled
 from app.cli.crash_report import report_crash, report_thread
-from app.desk.command_errors import EXIT_OK, EXIT_USAGE, CommandError
+from app.desk.command_errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_USAGE, CommandError
 from app.desk.data_folder import DataFolderError, check_data_folder
 
 # Modules with add_parser(subparsers) and run(args) -> exit status; importing one costs next to nothing.
@@ -76,11 +76,19 @@ def main(argv: Sequence[str] | None = None) -> int:
         return EXIT_USAGE
     except KeyboardInterrupt:
         sys.stderr.write("turndesk: interrupted\n")
-        return 130
+        _forget_interrupt()
+        return EXIT_INTERRUPTED
     except BrokenPipeError:
         # The reader of our output has gone, as `| head` does; closing quietly is what it expects.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_OK
+
+
+def _forget_interrupt() -> None:
+    """Lets the exit status stand. Ctrl+C while a module makes a dataclass (``exec`` of a text) marks the interpreter as one
+    that dies of the signal, although the exception is caught; the next text that is executed takes the mark back.
+    """
+    exec("")
 
 
 def _dispatch(args: argparse.Namespace) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 EXIT_OK, EXIT_ERRORS, EXIT_USAGE = 0, 1, 2
+EXIT_INTERRUPTED = 130  # what a shell tells of Ctrl+C
 
 
 class CommandError(Exception):

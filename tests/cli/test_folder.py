@@ -267,6 +267,27 @@ def test_ctrl_c_keeps_what_is_done_and_the_next_run_goes_on(tmp_path: Path, offs
     assert [each.name for each in tmp_path.iterdir() if "report" in each.name] == []
 
 
+INTERRUPTED_WHILE_A_CLASS_IS_MADE = """\
+import sys
+from app.cli import alarms_command
+from app.cli.main import main
+
+def run(args):
+    exec("raise KeyboardInterrupt")
+
+alarms_command.run = run
+sys.exit(main(["alarms"]))
+"""
+
+
+def test_ctrl_c_while_a_class_is_made_ends_with_the_same_status(tmp_path: Path) -> None:
+    (tmp_path / "interrupted.py").write_text(INTERRUPTED_WHILE_A_CLASS_IS_MADE)
+    ended = subprocess.run(
+        [sys.executable, "-m", "interrupted"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert (ended.returncode, ended.stderr) == (130, "turndesk: interrupted\n")
+
+
 # --- what is refused
 
 
