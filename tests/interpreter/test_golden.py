@@ -24,6 +24,7 @@ from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
 from core.language.diagnostics import Severity
 from core.language.source import Source
+from tests.dialects.golden_rows import flow_words, switch_words
 from tests.interpreter.programs import ALL_TOOLS, INCH, in_feed, setup
 
 PROGRAMS = Path(__file__).parents[1] / "programs"
@@ -71,36 +72,6 @@ def frame_words(action: actions.Action) -> list[str | float]:
             words = ["surface", surface / INCH / 12 * 60, rpm]
         case actions.Dwell(seconds):
             words = ["dwell", seconds]
-    return words
-
-
-def switch_words(action: actions.Action) -> list[str | float]:
-    """M functions that switch something; nothing for any other."""
-    words: list[str | float] = []
-    match action:
-        case actions.Coolant(on):
-            words = ["coolant", "on" if on else "off"]
-        case actions.Collet(closed):
-            words = ["collet", "closed" if closed else "open"]
-        case actions.Output(name, on):
-            words = ["output", name, "on" if on else "off"]
-        case actions.SpindleLock(orient):
-            words = ["lock", "orient"] if orient else ["lock"]
-    return words
-
-
-def flow_words(action: actions.Action) -> list[str | float]:
-    """Stops, ends and inputs; nothing for any other."""
-    words: list[str | float] = []
-    match action:
-        case actions.ProgramStop(optional, message):
-            words = ["optional-stop" if optional else "stop", *message.split()]
-        case actions.ProgramEnd(reset):
-            words = ["end", "reset"] if reset else ["end"]
-        case actions.WaitInput(terminal, closed):
-            words = ["wait", terminal, "closed" if closed else "open"]
-        case actions.AskInput(terminal):
-            words = ["ask", terminal]
     return words
 
 

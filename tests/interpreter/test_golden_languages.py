@@ -20,72 +20,15 @@ import pytest
 
 from app.compose.machine_files import shipped_machine
 from app.compose.machine_setup import setup_for
-from core.interpreter import actions
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import ToolOffset
 from core.language.diagnostics import Severity
 from core.language.source import Dialect, Source
+from tests.dialects.golden_rows import row, same
 
 PROGRAMS = Path(__file__).parents[1] / "programs"
 FILES = sorted([*PROGRAMS.glob("klartext/*.h"), *PROGRAMS.glob("sinumerik/*.mpf")])
 MACHINE = {Dialect.KLARTEXT: "ac-table-mill", Dialect.SINUMERIK: "sinumerik-modulo"}
-NEAR = 6e-7
-Row = list[str | float]
-
-
-def row(block: Block, *, axes: bool) -> Row:
-    """A block as its row of the table."""
-    if block.action is not None:
-        return [block.line, *_action(block.action)]
-    return [block.line, *(_on_lathe(block) if block.swivel is None else _on_mill(block, axes=axes))]
-
-
-def _action(action: actions.Action) -> Row:
-    match action:
-        case actions.ToolChange(tool):
-            return ["tool", tool]
-        case actions.SpindleRun(rpm, None):
-            return ["spindle", rpm]
-        case actions.SpindleStop():
-            return ["spindle-off"]
-        case actions.Dwell(seconds):
-            return ["dwell", seconds]
-        case actions.ProgramEnd():
-            return ["end"]
-    raise AssertionError(f"no word for {action}")
-
-
-def _feed(block: Block) -> Row:
-    return [] if block.rapid else ["F", 60.0 * block.feed]
-
-
-def _on_lathe(block: Block) -> Row:
-    centre: Row = ["centre", block.cx, block.cz] if block.kind is Kind.ARC else []
-    return [str(block.kind), block.x, block.z, *centre, *_feed(block)]
-
-
-def _on_mill(block: Block, *, axes: bool) -> Row:
-    assert block.swivel is not None
-    assert block.travel is not None
-    stands = zip("ABC", block.swivel.rotary, strict=True)
-    rotary: Row = [word for name, at in stands if at is not None for word in (name, at)]
-    if block.kind is Kind.PLANE:
-        return ["plane", *rotary]
-    arc = block.kind is Kind.PLANE_ARC
-    way: Row = ["way", block.travel.length] if arc else []
-    place: Row = [*block.swivel.end]
-    return ["arc" if arc else str(block.kind), *place, *way, *_feed(block), *(rotary if axes else [])]
-
-
-def same(found: Row, expected: list[str]) -> bool:
-    """Whether a row says what the table says."""
-    if len(found) != len(expected):
-        return False
-    return all(
-        have == want if isinstance(have, str) else abs(have - float(want)) < NEAR
-        for have, want in zip(found, expected, strict=True)
-    )
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)

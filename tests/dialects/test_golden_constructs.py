@@ -1,0 +1,55 @@
+"""Each construct of the code books against figures worked out by hand: ``golden_constructs.py``."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.interpreter.dialects import code_book
+from core.language.code_book import Entry
+from core.language.diagnostics import Severity
+from core.language.source import Dialect
+from tests.dialects.golden_constructs import GROUNDS, Golden, differences, extent, goldens, ran, way
+
+WHOLE = ()
+"""Languages whose books are told to the last entry."""
+
+CASES = [
+    pytest.param(dialect, entry, goldens(dialect)[entry.head], id=f"{dialect}-{entry.head}")
+    for dialect in GROUNDS
+    for entry in code_book(dialect).entries
+    if entry.head in goldens(dialect)
+]
+
+
+@pytest.mark.parametrize(("dialect", "entry", "golden"), CASES)
+def test_a_construct_makes_what_its_golden_says(dialect: Dialect, entry: Entry, golden: Golden) -> None:
+    came = ran(dialect, entry, golden.program, golden.machine)
+    assert [each.in_one_line("") for each in came.findings if each.severity is Severity.ERROR] == []
+    assert golden.rows or golden.sums
+    if golden.rows:
+        assert differences(came.rows(axes=golden.axes), golden.rows) == ""
+    if "extent" in golden.sums:
+        assert extent(came.feeds) == pytest.approx(golden.sums["extent"], abs=1e-6)
+    if "way" in golden.sums:
+        assert [way(came.feeds)] == pytest.approx(golden.sums["way"], abs=1e-5)
+    assert sorted(came.told(Severity.WARNING, Severity.NOTE)) == sorted(golden.told)
+
+
+@pytest.mark.parametrize(("dialect", "entry", "golden"), [case for case in CASES if case.values[1].refused])
+def test_its_refusal_is_told_where_it_stands(dialect: Dialect, entry: Entry, golden: Golden) -> None:
+    came = ran(dialect, entry, entry.refused, golden.machine)
+    assert came.first_error == golden.refused
+
+
+@pytest.mark.parametrize("dialect", GROUNDS)
+def test_a_golden_belongs_to_an_entry(dialect: Dialect) -> None:
+    assert set(goldens(dialect)) - {entry.head for entry in code_book(dialect).entries} == set()
+
+
+@pytest.mark.parametrize("dialect", WHOLE)
+def test_every_entry_has_its_golden_and_its_refusal(dialect: Dialect) -> None:
+    """What nothing can be written wrongly of has no refusal; what is refused by its name has no example."""
+    entries = [each for each in code_book(dialect).entries if each.example]
+    assert [each.head for each in entries if each.head not in goldens(dialect)] == []
+    wanted = [each.head for each in entries if each.refused]
+    assert [head for head in wanted if not goldens(dialect)[head].refused] == []
