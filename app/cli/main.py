@@ -85,8 +85,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _forget_interrupt() -> None:
-    """Lets the exit status stand. Ctrl+C while a module makes a dataclass (``exec`` of a text) marks the interpreter as one
-    that dies of the signal, although the exception is caught; the next text that is executed takes the mark back.
+    """Lets the exit status stand.
+
+    Ctrl+C while a module makes a dataclass (``exec`` of a text) marks the interpreter as one that dies of the
+    signal, although the exception is caught; the next text that is executed takes the mark back.
     """
     exec("")
 
