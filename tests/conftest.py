@@ -14,11 +14,14 @@ from hypothesis import settings
 
 from tests import late_computer
 from tests.named import SAFETY, not_run
+from tests.steady_examples import same_examples_whatever_is_loaded
 
 HERE = Path(__file__).parent
 settings.register_profile("steady", derandomize=True, deadline=None)
 settings.register_profile("search", deadline=None)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
+if "HYPOTHESIS_PROFILE" not in os.environ:
+    same_examples_whatever_is_loaded()
 
 
 class SafetyRan:
