@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import os
 import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from app.desk.command_errors import CommandError
+from core.file_placing import put_in_place
 
 if TYPE_CHECKING:
     from app.cli.proof_work import Proof
@@ -50,7 +50,6 @@ class _HtmlPages:
 
         self._file.write(PAGE_END)
         self._file.flush()
-        os.fsync(self._file.fileno())
 
     def close(self) -> None:
         self._file.close()
@@ -99,7 +98,7 @@ class ReportFile:
         try:
             self._pages.end()
             self._pages.close()
-            aside.replace(self._path)
+            put_in_place(aside, self._path)
         except OSError as error:
             raise _unwritable(self._path, error) from error
 

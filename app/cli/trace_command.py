@@ -13,6 +13,7 @@ from app.cli.expand_command import report_diagnostics
 from app.cli.program_options import add_program_options, circumstances, read_source
 from app.cli.progress_bar import Progress
 from app.desk.command_errors import CommandError
+from core.file_placing import put_in_place
 from core.language.source import Dialect, Source
 
 if TYPE_CHECKING:
@@ -109,7 +110,7 @@ def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, sou
         if timeline.errors:
             partial.unlink()
         else:
-            partial.replace(out)
+            put_in_place(partial, out)
     except OSError as error:
         raise CommandError(f"{out}: cannot be written: {error.strerror}") from error
 

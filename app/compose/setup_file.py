@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import shutil
 import tempfile
 import zipfile
@@ -16,6 +15,7 @@ from app.compose.journal import UNDER_WAY
 from app.compose.machine_setup import read_machine
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
+from core.file_placing import put_in_place, write_in_place
 from core.store import backup
 from core.store.database import FILE_NAME
 from core.store.store import Store
@@ -47,7 +47,7 @@ def save_setup(target: Path, machine_file: str | None) -> SetupTold:
         try:
             _write(part, members)
             shutil.copyfile(part, target.with_name(target.name + ".part"))
-            os.replace(target.with_name(target.name + ".part"), target)
+            put_in_place(target.with_name(target.name + ".part"), target)
         except OSError as error:
             raise CommandError(f"{target} cannot be written: {error.strerror}") from error
     return _told(list(members))
@@ -171,10 +171,8 @@ def _checked(source: Path, file: zipfile.ZipFile, folder: Path) -> list[str]:
 
 def _put(source: Path, target: Path, stamp: str) -> Path:
     """In its place; another text that stands there is kept beside it."""
-    target.parent.mkdir(parents=True, exist_ok=True)
-    if target.exists() and target.read_bytes() != source.read_bytes():
-        target.rename(target.with_name(f"{target.name}.replaced-{stamp}"))
-    part = target.with_name(f".{target.name}.part")
-    shutil.copyfile(source, part)
-    os.replace(part, target)
+    data = source.read_bytes()
+    if target.exists() and (old := target.read_bytes()) != data:
+        write_in_place(target.with_name(f"{target.name}.replaced-{stamp}"), old)
+    write_in_place(target, data)
     return target

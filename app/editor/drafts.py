@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,6 +10,7 @@ from app.desk.latest import Latest
 from app.editor import editor_messages as messages
 from app.editor.document import Document
 from app.editor.versions import Archive
+from core.file_placing import write_in_place
 from core.store.store_errors import StoreError
 
 WHY = "typed and not saved"
@@ -87,10 +87,7 @@ class Drafts:
             if text is None:
                 place.unlink(missing_ok=True)
                 return ""
-            self.folder.mkdir(parents=True, exist_ok=True)
-            beside = place.with_name(f".{place.name}")
-            beside.write_text(text, "utf-8", "replace", "\n")
-            os.replace(beside, place)
+            write_in_place(place, text.encode("utf-8", "replace"))
         except OSError as error:
             return messages.NO_DRAFT.format(error.strerror)
         return ""

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
+from core.file_placing import folder_to_disk, make_folder, put_in_place
 from core.language.source import SourceError, load_source
 
 
@@ -24,7 +25,7 @@ def write_whole(path: Path, data: bytes) -> None:
     target = path.resolve()  # what a link names is replaced, not the link
     with ExitStack() as stack:
         try:
-            target.parent.mkdir(parents=True, exist_ok=True)
+            make_folder(target.parent)
             draft = stack.enter_context(_beside(target))
         except OSError as error:
             raise FileError(f"{target.parent} CANNOT BE WRITTEN: {error.strerror}") from error
@@ -34,8 +35,7 @@ def write_whole(path: Path, data: bytes) -> None:
                 raise FileError("NOT SAVED: THE TEXT HOLDS SIGNS THAT NO PROGRAM FILE CAN KEEP")
             if target.exists():
                 shutil.copymode(target, draft)
-            draft.replace(target)
-            _to_disk(target.parent)
+            put_in_place(draft, target)
         except OSError as error:
             raise FileError(f"{target.name} CANNOT BE WRITTEN: {error.strerror}") from error
         except SourceError as error:
@@ -49,7 +49,7 @@ def write_out(target: Path, data: bytes) -> None:
             _fill(draft, data)
             if draft.read_bytes() != data:
                 raise FileError(f"{target.name} DOES NOT READ BACK AS IT WAS WRITTEN: TAKE ANOTHER STICK")
-            draft.replace(target)
+            put_in_place(draft, target)
     except OSError as error:
         raise FileError(f"{target} CANNOT BE WRITTEN: {error.strerror}") from error
 
@@ -57,13 +57,14 @@ def write_out(target: Path, data: bytes) -> None:
 def write_new(target: Path, data: bytes) -> None:
     """A new file; nothing that is there is touched, whoever put it there meanwhile. Raises FileError."""
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(target.parent)
     except OSError as error:
         raise FileError(f"{target.parent} CANNOT BE WRITTEN: {error.strerror}") from error
     try:
         with _beside(target) as draft:
             _fill(draft, data)
             target.hardlink_to(draft)  # fails where the name is taken
+            folder_to_disk(target.parent)
     except FileExistsError as error:
         raise FileError(f"{target.name} IS THERE ALREADY; TAKE ANOTHER NAME") from error
     except OSError as error:
@@ -73,7 +74,7 @@ def write_new(target: Path, data: bytes) -> None:
 def settle(folder: Path) -> None:
     """Until all that was written in the folder is on the medium. Raises FileError."""
     try:
-        _to_disk(folder)
+        folder_to_disk(folder)
     except OSError as error:
         raise FileError(f"{folder} CANNOT BE BROUGHT TO THE DISK: {error.strerror}") from error
     os.sync()
@@ -104,11 +105,3 @@ def _fill(path: Path, data: bytes) -> None:
         file.write(data)
         file.flush()
         os.fsync(file.fileno())
-
-
-def _to_disk(folder: Path) -> None:
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from app.desk.formats import MM_PER_INCH
 from app.quality.parts_book import PartsData, feature_of
+from core.file_placing import write_in_place
 
 HEAD = (
     "feature", "part", "value", "unit", "nominal", "lower", "upper", "good", "at", "source", "gauge",
@@ -40,9 +41,6 @@ def reading_lines(data: PartsData) -> Iterator[tuple[object, ...]]:
 
 def write_readings(data: PartsData, folder: Path) -> Path:
     """Writes ``PROGRAM-readings.csv`` whole; answers its path. Raises OSError."""
-    folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{Path(data.program).stem}-readings.csv"
-    unfinished = path.with_name(path.name + ".new")
-    unfinished.write_text(readings_text(data), encoding="utf-8", newline="")
-    unfinished.replace(path)
+    write_in_place(path, readings_text(data).encode())
     return path

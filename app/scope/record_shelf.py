@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 from app.desk.formats import file_size, local_time
+from core.file_placing import put_in_place
 from core.records.record import Record
 from core.records.record_file import ENDING
 
@@ -89,7 +90,7 @@ class RecordShelf:
         def write() -> None:
             with _draft(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
                 self.table(record, file.write)
-            draft.replace(path)
+            put_in_place(draft, path)
 
         self._guarded(path, write)
         return path
@@ -101,7 +102,7 @@ class RecordShelf:
         def write() -> None:
             with _draft(path) as draft:
                 draft.write_bytes(png)
-            draft.replace(path)
+            put_in_place(draft, path)
 
         self._guarded(path, write)
         return path

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import logging
-import threading
 from collections.abc import Callable
 from pathlib import Path
 
+from app.desk.repeating_thread import RepeatingThread
 from app.shopfloor.floor_reading import Reading, Value
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.snapshot import Alarm
+from core.file_placing import write_in_place
 
 NAME = "status.json"
 _LOOK = 1.0  # s
@@ -82,10 +83,7 @@ class StatusFile:
             self._since = now
         text = json.dumps({"updated": now, "since": self._since, **status}, indent=1) + "\n"
         try:
-            self._path.parent.mkdir(parents=True, exist_ok=True)
-            new = self._path.with_name(f"{self._path.name}.new")
-            new.write_text(text, encoding="utf-8")
-            new.replace(self._path)
+            write_in_place(self._path, text.encode())
         except OSError as error:
             if not self._failed:
                 _log.warning("%s cannot be written: %s", self._path, error.strerror or error)
@@ -94,33 +92,24 @@ class StatusFile:
         self._written, self._looks, self._failed = status, 0, False
 
 
-class StatusKeeper:
+class StatusKeeper(RepeatingThread):
     """Shows the status once a second, by a thread of its own: a slow disk keeps nothing else waiting."""
 
     def __init__(self, file: StatusFile, look: Callable[[], Status], gone: Status) -> None:
         """``gone`` is written last."""
-        self._file, self._look, self._gone = file, look, gone
-        self._closing = threading.Event()
-        self._thread = threading.Thread(target=self._keep, name="status", daemon=True)
+        super().__init__("status", self._show, _LOOK)
+        self._file, self._status, self._gone = file, look, gone
+        self._last: Status = {}
 
-    def start(self) -> None:
-        """Once."""
-        self._thread.start()
+    def _show(self) -> None:
+        self._last = self._status()
+        self._file.show(self._last)
 
-    def close(self) -> None:
-        """The file says that the control has ended; the thread has ended too."""
-        self._closing.set()
-        if self._thread.is_alive():
-            self._thread.join()
-
-    def _keep(self) -> None:
-        last: Status = {}
+    def _repeat(self) -> None:
         try:
-            self._file.show(last := self._look())
-            while not self._closing.wait(_LOOK):
-                self._file.show(last := self._look())
-            last = self._look()  # what closing has interrupted stays so
+            super()._repeat()
+            self._last = self._status()  # what closing has interrupted stays so
         finally:
-            if not self._closing.is_set():
+            if not self.closing:
                 _log.error("the status file is not kept any more: a mistake of the control", exc_info=True)
-            self._file.show({**self._gone, "interrupted": last.get("interrupted")})
+            self._file.show({**self._gone, "interrupted": self._last.get("interrupted")})

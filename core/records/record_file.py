@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from core.file_placing import put_in_place
 from core.records.record import Channel, FloatArray, Record
 from core.records.record_errors import RecordError, why
 from core.records.ring_file import is_ring, read_ring
@@ -59,7 +60,7 @@ def save_record(record: Record, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         with unfinished.open("wb") as file:
             np.savez_compressed(file, **columns)  # type: ignore[arg-type]  # its stubs take one for an option
-        unfinished.replace(path)
+        put_in_place(unfinished, path)
     except OSError as error:
         with suppress(OSError):
             unfinished.unlink(missing_ok=True)
@@ -148,7 +149,7 @@ def save_csv(record: Record, path: Path) -> None:
     try:
         with unfinished.open("w", encoding="utf-8", newline="") as file:
             write_csv(record, file.write)
-        unfinished.replace(path)
+        put_in_place(unfinished, path)
     except OSError as error:
         with suppress(OSError):
             unfinished.unlink(missing_ok=True)

@@ -10,6 +10,7 @@ from contextlib import closing, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
+from core.file_placing import put_in_place
 from core.store import damaged_rows, database, program_records
 from core.store.database import WriterLock, make_folder
 from core.store.store_errors import Cause, StoreError, cause_of, why
@@ -90,7 +91,7 @@ def _keep(path: Path) -> Path:
         if log.exists() and log.stat().st_size:
             shutil.copy2(log, database.companions(kept)[0])
         shutil.copy2(path, unfinished)
-        database.put_in_place(unfinished, kept)
+        put_in_place(unfinished, kept)
     except OSError as error:
         raise _unwritable(kept, error) from error
     return kept
@@ -120,7 +121,7 @@ def _copy(source: Path, target: Path) -> None:
         ):
             reading.backup(writing)
             writing.execute("PRAGMA journal_mode = DELETE")
-        database.put_in_place(unfinished, target)
+        put_in_place(unfinished, target)
     except (OSError, sqlite3.Error) as error:
         raise _unwritable(target, error) from error
     finally:

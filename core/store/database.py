@@ -11,6 +11,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from core.file_lock import lock
+from core.file_placing import put_in_place
 from core.store import row_sums
 from core.store.store_errors import Cause, StoreError, cause_of, why
 
@@ -169,20 +170,6 @@ def create(path: Path) -> None:
         put_in_place(unfinished, path)
     except (OSError, sqlite3.Error) as error:
         raise why(path, error) from error
-
-
-def put_in_place(finished: Path, path: Path) -> None:
-    """``finished`` gets the name ``path`` in one step that survives a power cut."""
-    with finished.open("rb") as file:
-        os.fsync(file.fileno())
-    finished.replace(path)
-    if os.name != "posix":
-        return  # Windows opens no folders; its own journal keeps the name
-    folder = os.open(path.parent, os.O_RDONLY)
-    try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)
 
 
 def empty() -> sqlite3.Connection:

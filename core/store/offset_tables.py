@@ -330,10 +330,10 @@ def history(connection: sqlite3.Connection, kind: Kind | None, limit: int) -> tu
 
 
 def history_any(connection: sqlite3.Connection, limit: int) -> tuple[Change, ...]:
-    """The last changes of all tables, newest first."""
+    """The last changes of all tables, newest first; a limit below nought, as SQLite has it, is none."""
     tail = "ORDER BY id DESC LIMIT ?"
     found = [each for log in _LOGS for each in _select(connection, log, tail, (limit,))]
-    return tuple(sorted(found, key=lambda each: each.at, reverse=True)[:limit])
+    return tuple(sorted(found, key=lambda each: each.at, reverse=True)[: limit if limit >= 0 else None])
 
 
 def as_of(connection: sqlite3.Connection, kind: Kind, moment: str) -> dict[int, Row]:

@@ -8,6 +8,7 @@ import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from core.file_placing import folder_in_place
 from core.store.offset_fields import Field, Sort
 from core.store.store import Store
 from core.store.store_errors import Cause, StoreError, cause_of, why
@@ -41,7 +42,7 @@ def export(store: Store, folder: Path) -> int:
         with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as scratch:
             unfinished = Path(scratch, folder.name)
             count = _write_all(store, unfinished)
-            unfinished.replace(folder)
+            folder_in_place(unfinished, folder)
     except OSError as error:
         if cause_of(folder, error) is Cause.FULL:
             raise why(folder, error) from error

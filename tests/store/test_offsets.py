@@ -106,3 +106,14 @@ def test_secondary_has_the_narrower_range(store: Store) -> None:
 @pytest.mark.parametrize("entered", [1.25, -0.0005, 0.00005, 3.99995, 0.015])
 def test_inches_come_back_as_entered(entered: float) -> None:
     assert inches(entered * 25.4) == entered
+
+
+def test_no_limit_tells_the_oldest_change_of_all_tables_too(store: Store) -> None:
+    store.set_tool(3, "first", x=1.0)
+    store.set_secondary(1, "second", x=-0.01)
+    store.set_offset(Kind.ZERO, 54, "third", {"z": -120.0}).result()
+    assert {change.why for change in store.history_of_all(limit=-1)} == {"first", "second", "third"}
+    assert [change.why for change in store.history_of_all(limit=2)] == [
+        change.why for change in store.history_of_all(limit=-1)[:2]
+    ]
+    assert store.history_of_all(limit=0) == ()

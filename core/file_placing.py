@@ -1,0 +1,69 @@
+"""Files that are there whole or not at all, whatever cuts the writing off: a full disk, a kill, the mains."""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from pathlib import Path
+
+
+def put_in_place(finished: Path, path: Path) -> None:
+    """``finished`` gets the name ``path`` in one step that survives a power cut.
+
+    Its bytes are on the disk before it has the name, and the name before this is back. Raises OSError.
+    """
+    _bytes_to_disk(finished)
+    finished.replace(path)
+    folder_to_disk(path.parent)
+
+
+def write_in_place(path: Path, data: bytes) -> None:
+    """A file with these bytes, in a folder that is made where it is missing. Raises OSError.
+
+    At every moment the old one or the new one has the name; what could not be written leaves nothing.
+    """
+    make_folder(path.parent)
+    unfinished = path.with_name(f".{path.name}.new")
+    try:
+        unfinished.write_bytes(data)
+        put_in_place(unfinished, path)
+    except OSError:
+        with suppress(OSError):
+            unfinished.unlink(missing_ok=True)
+        raise
+
+
+def folder_in_place(finished: Path, folder: Path) -> None:
+    """The same for a folder with all that is in it; ``folder`` is not there, or empty. Raises OSError."""
+    for inside in (*finished.rglob("*"), finished):
+        if inside.is_dir():
+            folder_to_disk(inside)
+        else:
+            _bytes_to_disk(inside)
+    finished.replace(folder)
+    folder_to_disk(folder.parent)
+
+
+def make_folder(folder: Path) -> None:
+    """The folder, and those above it, each on the disk under its name. Raises OSError."""
+    if folder.is_dir():
+        return
+    make_folder(folder.parent)
+    folder.mkdir(exist_ok=True)
+    folder_to_disk(folder.parent)
+
+
+def folder_to_disk(folder: Path) -> None:
+    """The names in a folder are on the disk. Raises OSError."""
+    if os.name != "posix":
+        return  # Windows opens no folders; its own journal keeps the names
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def _bytes_to_disk(path: Path) -> None:
+    with path.open("rb") as file:
+        os.fsync(file.fileno())

@@ -1,0 +1,185 @@
+"""What is kept beside the store is the old or the new one after a power cut, at every step and every byte."""
+
+from __future__ import annotations
+
+import resource
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.desk.latest import Latest
+from app.editor.document import Document
+from app.editor.drafts import Drafts
+from app.editor.versions import NoArchive
+from app.programs.whole_file import FileError, write_new, write_out, write_whole
+from app.quality.parts_book import PartsData
+from app.quality.readings_file import write_readings
+from app.shopfloor.status_file import StatusFile
+from core.file_placing import write_in_place
+from core.records.record import Channel, Record
+from core.records.record_file import open_record, save_csv, save_record
+from core.store import store_export
+from core.store.store import Store
+from tests.power_cut import cut_everywhere, mains
+
+OLD, NEW = b"G90\nG01 X.5 F6\n", b"G90\nG01 X.25 F6\nM30\n"
+Write = Callable[[Path, bytes], object]
+
+
+class _Busy(Latest):
+    """A worker that never comes round: what is left is written at the end."""
+
+    @property
+    def busy(self) -> bool:
+        return True
+
+
+def _draft(path: Path, data: bytes) -> None:
+    drafts = Drafts(path.parent, NoArchive(), worker=_Busy("editing-drafts"))
+    drafts.look(Document(path.parent / path.stem, ""), data.decode())
+    drafts.close()
+
+
+def _status(path: Path, data: bytes) -> None:
+    StatusFile(path, lambda: "12:00").show({"execution": data.decode()})
+
+
+WRITERS: dict[str, Write] = {
+    "any": write_in_place,
+    "draft": _draft,
+    "status": _status,
+    "saved program": write_whole,
+    "setup sheet": write_out,
+}
+
+
+@contextmanager
+def no_longer_than(size: int) -> Iterator[None]:
+    """A disk that takes so many bytes of a file."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.mark.parametrize("writer", WRITERS)
+def test_a_cut_at_every_step_leaves_the_old_one_or_the_new_one(tmp_path: Path, writer: str) -> None:
+    path, write = tmp_path / "part.nc.draft", WRITERS[writer]
+    write(path, NEW)
+    after = path.read_bytes()
+    write(path, OLD)
+    before = path.read_bytes()
+
+    def again() -> None:
+        path.write_bytes(before)
+        write(path, NEW)
+
+    told = cut_everywhere(again, path.read_bytes)
+    assert set(told) == {before, after}
+    assert told[-1] == after
+
+
+@pytest.mark.parametrize("writer", WRITERS)
+def test_a_disk_that_ends_at_any_byte_leaves_the_old_one(tmp_path: Path, writer: str) -> None:
+    path, write = tmp_path / "part.nc.draft", WRITERS[writer]
+    write(path, OLD)
+    before = path.read_bytes()
+    for size in range(len(NEW)):
+        with no_longer_than(size), suppress(OSError, FileError):  # a draft, the status tell it elsewhere
+            write(path, NEW)
+        assert path.read_bytes() == before
+        assert [each.name for each in tmp_path.iterdir()] == [path.name]
+
+
+def test_what_an_earlier_cut_has_left_is_written_over(tmp_path: Path) -> None:
+    path = tmp_path / "status.json"
+    path.with_name(".status.json.new").write_bytes(b"{half")
+    write_in_place(path, NEW)
+    assert {each.name: each.read_bytes() for each in tmp_path.iterdir()} == {"status.json": NEW}
+
+
+def test_a_folder_that_is_made_for_a_file_is_on_the_disk_too(tmp_path: Path) -> None:
+    with mains() as at:
+        write_in_place(tmp_path / "home" / "drafts" / "a.draft", NEW)
+    assert at.lost == []
+    assert at.steps == ["fsync", "fsync", "fsync", "rename", "fsync"]  # two folders, the bytes, the name
+
+
+def test_a_new_program_is_there_whole_or_not(tmp_path: Path) -> None:
+    path = tmp_path / "new.nc"
+
+    def again() -> None:
+        path.unlink(missing_ok=True)
+        write_new(path, NEW)
+
+    told = cut_everywhere(again, lambda: path.read_bytes() if path.exists() else None)
+    assert set(told) == {None, NEW}
+    assert told[-1] == NEW
+
+
+def test_readings_for_a_spreadsheet_stay_whole(tmp_path: Path) -> None:
+    path = tmp_path / "pin-readings.csv"
+
+    def again() -> None:
+        path.write_bytes(OLD)
+        write_readings(PartsData("pin.nc"), tmp_path)
+
+    told = cut_everywhere(again, path.read_bytes)
+    assert len(set(told)) == 2
+    assert told[0] == OLD
+
+
+def test_a_record_of_the_scope_stays_whole(tmp_path: Path) -> None:
+    def record(at: float) -> Record:
+        return Record((Channel("X", "mm"),), np.arange(3.0), {"X": np.full(3, at)}, at, 1000.0)
+
+    for path, save in ((tmp_path / "a.scope", save_record), (tmp_path / "a.csv", save_csv)):
+        save(record(2.0), path)
+        new = path.read_bytes()
+        save(record(1.0), path)
+        old = path.read_bytes()
+
+        def again(path: Path = path, old: bytes = old, save: Callable[..., None] = save) -> None:
+            path.write_bytes(old)
+            save(record(2.0), path)
+
+        assert set(cut_everywhere(again, path.read_bytes)) == {old, new}
+    assert open_record(tmp_path / "a.scope").started == 2.0
+
+
+def test_an_export_is_a_whole_folder_or_none(tmp_path: Path, store: Store) -> None:
+    store.save_program("pin.nc", NEW, "saved").result()
+    folder, number = tmp_path / "export", iter(range(99))
+
+    def again() -> None:
+        folder.exists() and folder.rename(tmp_path / f"before {next(number)}")
+        store_export.export(store, folder)
+
+    def seen() -> object:
+        return sorted(each.name for each in folder.rglob("*")) if folder.exists() else None
+
+    told = cut_everywhere(again, seen)
+    assert told[0] is None
+    assert all(each in (None, told[-1]) for each in told)
+    assert (folder / "programs" / "pin.nc").read_bytes() == NEW
+    assert (folder / "runs.csv").read_text().startswith("program,parts,started,")
+
+
+def test_a_writer_that_forgets_the_disk_is_found_out(tmp_path: Path) -> None:
+    beside = tmp_path / "beside"
+
+    def careless() -> None:
+        beside.write_bytes(NEW)
+        beside.replace(tmp_path / "place")
+
+    with mains() as at:
+        careless()
+    assert at.lost == [
+        "beside got its name before its bytes were on the disk",
+        "the name of place is not on the disk",
+    ]
