@@ -360,9 +360,8 @@ def _path_sheet(title: str, found: Found, metric: bool, marked: int) -> Sheet:
     notes = (
         tr("Greatest: {far}").format(far=_length(path.greatest, metric)),
         *((tr("Positive lies to the left of the way the tool goes."),) if lathe else ()),
-        tr("The worst place of each line; slides are counted from home, X as a radius.")
-        if lathe
-        else tr("The worst place of each line; slides are counted from home."),
+        tr("The worst place of each line."),
+        tr("Slides are counted from home, X as a radius.") if lathe else tr("Slides are counted from home."),
     )
     heads = (tr("LINE"), tr("OFF THE PATH"), *found.slides)
     shares = (0.16, 0.3, 0.27, 0.27) if lathe else (0.11, 0.23, 0.22, 0.22, 0.22)

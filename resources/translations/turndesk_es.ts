@@ -10290,6 +10290,16 @@
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
+      <source>Slides are counted from home, X as a radius.</source>
+      <translation>Los carros se cuentan desde el origen, X como radio.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
+      <source>Slides are counted from home.</source>
+      <translation>Los carros se cuentan desde el origen.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
       <source>THREAD</source>
       <translation>ROSCA</translation>
     </message>
@@ -10300,13 +10310,8 @@
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
-      <source>The worst place of each line; slides are counted from home, X as a radius.</source>
-      <translation>El peor punto de cada línea; los carros se cuentan desde el origen, X como radio.</translation>
-    </message>
-    <message>
-      <location filename="app/scope/analyses.py" />
-      <source>The worst place of each line; slides are counted from home.</source>
-      <translation>El peor lugar de cada línea; los carros se cuentan desde el origen.</translation>
+      <source>The worst place of each line.</source>
+      <translation>El peor punto de cada línea.</translation>
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
