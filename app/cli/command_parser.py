@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
+from pathlib import Path
 from typing import Any, NoReturn
 
 from app.desk.command_errors import EXIT_USAGE, CommandError
@@ -51,6 +52,10 @@ class Parser(argparse.ArgumentParser):
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         """A command, an action or a choice that is none is told with the nearest that is."""
         if action.choices is not None and value not in action.choices:
+            if isinstance(action, argparse._SubParsersAction) and Path(str(value)).is_file():
+                self.error(
+                    f"{value} is a file: prove {value} proves it, --program {value} opens it on the screen"
+                )
             near = get_close_matches(str(value), map(str, action.choices), n=1)
             if near:
                 raise argparse.ArgumentError(action, f"invalid choice: {value!r}; did you mean {near[0]}?")

@@ -341,3 +341,12 @@ def test_a_program_from_stdin_is_proved_as_from_a_file(
     assert turndesk("prove", "-", part).status == 2
     monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(b"")))
     assert turndesk("prove", "-").status == 2  # nothing came
+
+
+def test_a_program_where_a_command_belongs_is_told_both_ways(turndesk: Turndesk, tmp_path: Path) -> None:
+    program = tmp_path / "part.nc"
+    program.write_text("M30\n")
+    told = turndesk(program)
+    assert told.status == 2
+    assert f"prove {program} proves it, --program {program} opens it on the screen" in told.err
+    assert told.err.count("\n") == 1
