@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from dataclasses import fields as fields_of
-from difflib import get_close_matches
 from enum import Enum, StrEnum
 from math import inf
 from typing import TYPE_CHECKING, NamedTuple, TypeGuard, TypeVar
+
+from core.nearest import nearest
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -218,8 +219,8 @@ def unknown_keys(table: Mapping[str, object], known: list[str], path: str) -> li
     found = []
     for key in table:
         if key not in known:
-            near = get_close_matches(key, known, n=1)
-            hint = f"did you mean {near[0]}?" if near else f"known here: {', '.join(known)}"
+            near = nearest(key, known)
+            hint = f"did you mean {near}?" if near else f"known here: {', '.join(known)}"
             found.append(Finding(joined(path, key), "", f"unknown key; {hint}"))
     return found
 

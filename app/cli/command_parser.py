@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn
 
 from app.desk.command_errors import EXIT_USAGE, CommandError
+from core.nearest import nearest
 
 BEFORE = ("machine", "program", "offsets")
 """Options of the screen."""
@@ -56,17 +56,17 @@ class Parser(argparse.ArgumentParser):
                 self.error(
                     f"{value} is a file: prove {value} proves it, --program {value} opens it on the screen"
                 )
-            near = get_close_matches(str(value), map(str, action.choices), n=1)
+            near = nearest(str(value), map(str, action.choices))
             if near:
-                raise argparse.ArgumentError(action, f"invalid choice: {value!r}; did you mean {near[0]}?")
+                raise argparse.ArgumentError(action, f"invalid choice: {value!r}; did you mean {near}?")
         super()._check_value(action, value)
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
         """As argparse does it; an option that nobody knows is told with the nearest that is one."""
         found, rest = self.parse_known_args(args, namespace)
         if rest:
-            near = get_close_matches(rest[0].partition("=")[0], self._all_options(), n=1)
-            meant = f"; did you mean {near[0]}?" if near else ""
+            near = nearest(rest[0].partition("=")[0], self._all_options())
+            meant = f"; did you mean {near}?" if near else ""
             self.error(f"unrecognized arguments: {' '.join(rest)}{meant}")
         return found
 

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
-import tempfile
 import threading
 import time
-import traceback
 from pathlib import Path
 from types import TracebackType
 
@@ -29,6 +27,9 @@ def report_thread(found: threading.ExceptHookArgs) -> None:
 
 def keep_crash(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> str:
     """A crash file of its own in the log folder, else in the system's folder for such; where it lies."""
+    import tempfile
+    import traceback
+
     text = "".join(traceback.format_exception(kind, error, trace))
     head = (
         f"{time.strftime('%Y-%m-%d %H:%M:%S%z')}  {' '.join(sys.argv)}  {threading.current_thread().name}\n"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -36,4 +35,6 @@ class ProofJob:
     @cached_property
     def packed(self) -> bytes:
         """The job as it is sent."""
+        import pickle
+
         return pickle.dumps(self)

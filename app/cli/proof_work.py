@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import pickle
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -115,6 +113,8 @@ def _record(job: ProofJob) -> RunRecord | None:
 
 @lru_cache(maxsize=4)
 def _unpacked(packed: bytes) -> ProofJob:
+    import pickle
+
     job: ProofJob = pickle.loads(packed)
     return job
 
@@ -122,6 +122,8 @@ def _unpacked(packed: bytes) -> ProofJob:
 @lru_cache(maxsize=1)
 def code_version() -> str:
     """A hash of the program text of TurnDesk itself: a version number does not change while it is mended."""
+    from hashlib import sha256
+
     total = sha256()
     for room in _ROOMS:
         for path in sorted((_ROOT / room).rglob("*.py")):

@@ -113,9 +113,10 @@ def _import(args: argparse.Namespace) -> int:
 
 
 def _verify(args: argparse.Namespace) -> int:
-    from core.store import backup, database
+    from core.store import backup
+    from core.store.store_file import FILE_NAME
 
-    path = data_folder() / database.FILE_NAME
+    path = data_folder() / FILE_NAME
     with store_refusals():
         problems = backup.problems(path) if path.exists() else ()
     if args.json:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields
 from typing import Any
 
-from app.compose.machine_files import BACKENDS
+from app.compose.machine_drivers import BACKENDS
 from app.desk.station_hands import StationPanel
 from core.machine.machine_model import Axis, Machine
 from core.ports import Clock, DriverError, MachinePorts

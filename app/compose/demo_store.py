@@ -13,9 +13,9 @@ from app.desk.command_errors import CommandError
 from app.desk.data_folder import HOME, data_folder
 from app.desk.screen_settings import KEY as SCREEN
 from app.offsets.offsets_file import read_rows
-from core.store.database import FILE_NAME
 from core.store.store import Store
 from core.store.store_errors import StoreError
+from core.store.store_file import has_store
 
 FOLDER = "demo"  # within the data folder
 _WHY = "offsets of the sample programs"
@@ -31,7 +31,7 @@ def open_demo(machine_file: str | None) -> Path:
     if not played(machine) or has_inverter(machine):
         raise CommandError(f"--demo is for simulated machines, and {machine.source} drives a real one")
     folder = data_folder() / FOLDER
-    if not (folder / FILE_NAME).exists():
+    if not has_store(folder):
         _seed(folder)
     os.environ[HOME] = str(folder)
     return folder

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from app.desk.kept_part import NOTHING_KEPT, KeptPart, kept_part
+from core.store.store_file import has_store
 
 if TYPE_CHECKING:
     from core.store.store import Store
@@ -25,7 +26,7 @@ def kept_with(program: str) -> KeptPart:
 def kept_with_all(programs: Iterable[str]) -> dict[str, KeptPart]:
     """Of those with which the store remembers something what is kept. Raises CommandError, as above."""
     folder = data_folder()
-    if not folder.is_dir():
+    if not has_store(folder):
         return {}
     from core.store.store import Store, StoreError
 

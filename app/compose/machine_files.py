@@ -1,4 +1,4 @@
-"""Machine files with everything that drivers add to them: the one list of drivers."""
+"""Machine files by their names: what is read, and what of the shipped ones was read before."""
 
 from __future__ import annotations
 
@@ -6,64 +6,18 @@ from functools import lru_cache
 from pathlib import Path
 
 import resources
-from core.machine import (
-    backup_table,
-    gauge_table,
-    machine_file,
-    serial_table,
-    setter_table,
-    shop_network_tables,
-)
+from app.compose import kept_machines
 from core.machine.machine_model import Machine
-from core.table_schema import Driver, Finding, MachineFileError, written
-from drivers.canopen import canopen_table
-from drivers.grblhal import grblhal_table
-from drivers.hal import hal_table
-from drivers.hal.boards import board_table
-from drivers.inverter import inverter_table
-from drivers.mtconnect import mtconnect_table
-from drivers.pendant import pendant_table
-from drivers.simulated import simulated_table
 
 SHIPPED = "gt75.toml"
-# One entry a driver, in the order in which a machine file's owner is told of them: what it adds to the file
-# and, of a backend, the module of this room that puts it together (``backend_entry``).
-_ENTRIES = (
-    (simulated_table.DRIVER, "simulated_backend"),
-    (canopen_table.DRIVER, "canopen_backend"),
-    (inverter_table.DRIVER, ""),
-    (grblhal_table.DRIVER, "grblhal_backend"),
-    (hal_table.DRIVER, "hal_backend"),
-    (board_table.DRIVER, ""),
-    (serial_table.DRIVER, ""),
-    (gauge_table.DRIVER, ""),
-    (setter_table.DRIVER, ""),
-    (pendant_table.DRIVER, ""),
-    (mtconnect_table.DRIVER, ""),
-    (shop_network_tables.DRIVER, ""),
-    (backup_table.DRIVER, ""),
-)
-DRIVERS: tuple[Driver, ...] = tuple(driver for driver, _ in _ENTRIES)
-BACKENDS = {driver.backend: module for driver, module in _ENTRIES if module}
 
 
 @lru_cache(maxsize=8)  # by the text itself: a folder of proofs and its workers ask for the same one
 def parse_machine(text: str, source: str) -> Machine:
     """The machine that the TOML ``text`` describes; ``source`` names it. Raises MachineFileError."""
-    machine = machine_file.parse_machine(text, source, DRIVERS)
-    if machine.silenced:
-        _known_checks(machine.silenced, source)
-    return machine
+    from app.compose.machine_drivers import read_machine_file
 
-
-def _known_checks(silenced: tuple[str, ...], source: str) -> None:
-    from core.proving.part_checks import CHECKS
-
-    wrong = [name for name in silenced if name not in CHECKS]
-    if wrong:
-        expected = f"expected checks of the part: {', '.join(CHECKS)}"
-        found = [Finding("checks.silenced", written(name), expected) for name in wrong]
-        raise MachineFileError(found, source)
+    return read_machine_file(text, source)
 
 
 def load_machine(path: Path | None = None) -> Machine:
@@ -72,8 +26,10 @@ def load_machine(path: Path | None = None) -> Machine:
     Raises MachineFileError with everything that is wrong, also where the file cannot be read at all.
     """
     if path is None:
-        return parse_machine(resources.machine_file(SHIPPED), SHIPPED)
-    return parse_machine(machine_file.text_of(path), str(path))
+        return _shipped(SHIPPED)
+    from core.machine.machine_file import text_of
+
+    return parse_machine(text_of(path), str(path))
 
 
 def named_machine(name: str | None) -> Machine:
@@ -85,4 +41,14 @@ def named_machine(name: str | None) -> Machine:
 
 def shipped_machine(name: str) -> Machine:
     """One of the machines that come with the product. Raises FileNotFoundError for another name."""
-    return parse_machine(resources.machine_file(f"{name}.toml"), f"{name}.toml")
+    return _shipped(f"{name}.toml")
+
+
+@lru_cache(maxsize=8)
+def _shipped(name: str) -> Machine:
+    file, text = resources.machine_path(name), resources.machine_file(name)
+    machine = kept_machines.find(file, text)
+    if machine is None:
+        machine = parse_machine(text, name)
+        kept_machines.keep(file, text, machine)
+    return machine

@@ -17,9 +17,9 @@ from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from core.file_placing import put_in_place, write_in_place
 from core.store import backup
-from core.store.database import FILE_NAME
 from core.store.store import Store
 from core.store.store_errors import StoreError
+from core.store.store_file import FILE_NAME
 
 FORMAT = "turndesk setup 1"
 MANIFEST, STORE, PROGRAMS, MACHINE = "manifest.json", "store.db", "programs", "machine"

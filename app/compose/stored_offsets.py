@@ -11,12 +11,14 @@ from app.compose.machine_setup import setup_for
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from app.offsets.mill_offsets import MillOffsets, with_mill
-from app.offsets.offset_book import PRESET, OffsetBook, preset_of, secondary_offsets, tool_offsets
+from app.offsets.offsets_in_force import PRESET, preset_of, secondary_offsets, tool_offsets
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
+from core.store.store_file import has_store
 from core.store.store_rows import SecondaryRow, ToolRow, ZeroRow
 
 if TYPE_CHECKING:
     from app.compose.journal import Journal
+    from app.offsets.offset_book import OffsetBook
     from core.machine.machine_model import Machine
     from core.part.tool_shape import ToolShape
     from core.store.store import Store
@@ -66,7 +68,7 @@ def stored_offsets() -> Offsets:
     Raises CommandError when the store cannot be trusted, an offset of it not either.
     """
     folder = data_folder()
-    if not folder.is_dir():
+    if not has_store(folder):
         return NONE
     from core.store.damaged_rows import OF_PROGRAMS
     from core.store.store import Store, StoreError
@@ -87,7 +89,7 @@ def stored_shapes() -> dict[int, ToolShape]:
     Raises CommandError when the store cannot be trusted, or for shapes that cannot be.
     """
     folder = data_folder()
-    if not folder.is_dir():
+    if not has_store(folder):
         return {}
     from app.desk.stored_shapes import tool_shapes, wrong_shapes
     from core.store.store import Store, StoreError
@@ -137,6 +139,8 @@ def book_of(offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBo
     """
     if journal is not None and offsets is stored_offsets:
         return journal.book()
+    from app.offsets.offset_book import OffsetBook
+
     tools, secondary, zero, _ = offsets()
     return OffsetBook(
         locked=OF_A_FILE,

@@ -5,8 +5,6 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from platformdirs import user_data_path
-
 HOME = "TURNDESK_HOME"
 BACKUPS = "backups"  # the folder of backups, within it
 RECORDS = "records"  # the folder of what the scope has recorded, within it
@@ -38,4 +36,6 @@ def data_folder() -> Path:
     named = os.environ.get(HOME, "")
     if named:
         return Path(named).expanduser().absolute()
+    from platformdirs import user_data_path  # noqa: PLC0415  asked only where nobody has named a folder
+
     return user_data_path("turndesk", appauthor=False)

@@ -14,7 +14,8 @@ from app.desk.latest import AbandonedError, Latest, Request
 from app.desk.program_loading import Loaded, Phase, ProgramLoader, settled
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.translation import tr
-from app.offsets.offset_book import OffsetBook, secondary_offsets, tool_offsets
+from app.offsets.offset_book import OffsetBook
+from app.offsets.offsets_in_force import secondary_offsets, tool_offsets
 from core.executor.commands import Command, GiveProof, Renew, UseOffsets
 from core.executor.job import Job, Proof, outdated
 from core.executor.snapshot import Snapshot, State

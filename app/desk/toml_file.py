@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterable
-from difflib import get_close_matches
 from pathlib import Path
 
 from app.desk.command_errors import CommandError
+from core.nearest import nearest
 
 _POINT_FIRST = re.compile(r"^(\s*[\w.\"-]+\s*=\s*[-+]?)(?=\.\d)", re.MULTILINE)
 
@@ -31,8 +31,8 @@ def read_toml(path: Path) -> dict[str, object]:
 def unknown(key: str, known: Iterable[str]) -> str:
     """The sentence for a key that nobody reads, with the nearest that somebody does."""
     names = list(known)
-    near = get_close_matches(key, names, n=1)
-    return f"{key} is unknown; " + (f"did you mean {near[0]}?" if near else f"known here: {', '.join(names)}")
+    near = nearest(key, names)
+    return f"{key} is unknown; " + (f"did you mean {near}?" if near else f"known here: {', '.join(names)}")
 
 
 def refuse(path: Path, mistakes: list[str]) -> None:

@@ -22,7 +22,7 @@ from core.executor.snapshot import Snapshot
 from core.language.diagnostics import Severity
 from core.store import job_queue
 from core.store.job_queue import NOTE_LONGEST, JobRow
-from core.store.program_records import notes_key
+from core.store.program_settings import notes_key
 from core.store.store_errors import StoreError
 
 NONE_YET = "NO JOB WAITS: F3 ADDS THE PROGRAM ON THE DESK, F10 OF THE LIST OF PROGRAMS (F1, F6) ANY OTHER"

@@ -7,7 +7,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from app.offsets.offsets_in_force import PRESET, preset_of
 from core.store.store_errors import StoreError
 from core.store.store_rows import (
     Change,
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from core.store.store import Store
 
 NONE_KEPT = "NO OFFSETS ARE KEPT HERE"
-PRESET = "preset"  # the setting that keeps which one is in force
 SAVING = "STILL SAVING THE CHANGE BEFORE: PRESS RETURN AGAIN"
 
 
@@ -164,21 +163,3 @@ class OffsetBook:
         except StoreError as error:
             return str(error)
         return ""
-
-
-def preset_of(kept: object, presets: Mapping[int, PresetRow]) -> int:
-    """The number of the preset in force; one that is not in the table is none."""
-    return kept if isinstance(kept, int) and kept in presets else 0
-
-
-# --- from the rows of the store to what the interpreter counts with --------------------------------------
-
-
-def tool_offsets(rows: Mapping[int, ToolRow]) -> dict[int, ToolOffset]:
-    """Of the tools: geometry and wear together."""
-    return {n: ToolOffset(*row.offset, row.nose_radius, row.quadrant, row.remark) for n, row in rows.items()}
-
-
-def secondary_offsets(rows: Mapping[int, SecondaryRow]) -> dict[int, SecondaryOffset]:
-    """X, Z and nose radius of the secondary offsets."""
-    return {n: SecondaryOffset(*row) for n, row in rows.items()}

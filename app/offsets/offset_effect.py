@@ -16,8 +16,8 @@ import numpy as np
 from app.desk.formats import length
 from app.desk.latest import Latest, Watch
 from app.desk.translation import tr
-from app.offsets.offset_book import secondary_offsets, tool_offsets
 from app.offsets.offset_table import OffsetTable
+from app.offsets.offsets_in_force import secondary_offsets, tool_offsets
 from core.executor.job import Job
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.store.store_rows import Change, Kind, SecondaryRow, ToolRow

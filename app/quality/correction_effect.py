@@ -9,9 +9,9 @@ from typing import Any
 from app.desk.desk import Desk
 from app.desk.sheet import Sheet
 from app.desk.translation import tr
-from app.offsets.offset_book import secondary_offsets, tool_offsets
 from app.offsets.offset_effect import Effect, Tables
 from app.offsets.offset_values import Mode
+from app.offsets.offsets_in_force import secondary_offsets, tool_offsets
 from app.offsets.part_effect import part_table
 from app.quality.plots import ChartDrawing, correction_plot
 from app.quality.section import signed_size

@@ -19,7 +19,7 @@ from app.special.special_functions import SpecialFunction
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
-from core.store.program_records import notes_key
+from core.store.program_settings import notes_key
 from core.store.store_errors import StoreError
 
 if TYPE_CHECKING:

@@ -14,6 +14,7 @@ from core.file_placing import put_in_place
 from core.store import damaged_rows, database, program_records
 from core.store.database import WriterLock, make_folder
 from core.store.store_errors import Cause, StoreError, cause_of, why
+from core.store.store_file import FILE_NAME
 
 
 def problems(path: Path) -> tuple[str, ...]:
@@ -47,7 +48,7 @@ def backup(folder: Path, target: Path) -> None:
 
     Raises StoreError when there is no good store, or ``target`` is a file that is no backup of ours.
     """
-    path = folder / database.FILE_NAME
+    path = folder / FILE_NAME
     if not path.exists():
         raise StoreError(f"there is no store in {folder} yet, so there is nothing to back up")
     if target.exists():
@@ -69,7 +70,7 @@ def restore(folder: Path, source: Path) -> Path | None:
     if found:
         raise StoreError(f"{source} cannot be restored: {found[0]}; nothing was changed. Take another backup")
     make_folder(folder)
-    path = folder / database.FILE_NAME
+    path = folder / FILE_NAME
     with closing(WriterLock(folder)):
         if path.exists() and path.samefile(source):
             raise StoreError(f"{source} is the store itself; name a backup")

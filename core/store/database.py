@@ -7,16 +7,16 @@ import sqlite3
 from collections.abc import Sequence
 from contextlib import ExitStack, closing, suppress
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 
 from core.file_lock import lock
 from core.file_placing import put_in_place
 from core.store import row_sums
 from core.store.store_errors import Cause, StoreError, cause_of, why
+from core.store.store_file import FILE_NAME, has_store
 
-FILE_NAME = "turndesk.db"
 APPLICATION_ID = 0x5475724E  # "TurN": tells a store of ours from any other SQLite file
+_MIGRATIONS = Path(__file__).with_name("migrations")
 _MAGIC = b"SQLite format 3\0"
 _BUSY_SECONDS = 5.0
 _NO_ROOM = frozenset({Cause.FULL, Cause.FORBIDDEN})
@@ -25,10 +25,7 @@ _SUMS_SINCE = 11  # the version that brought them
 
 def migrations() -> tuple[str, ...]:
     """The SQL of every version, the first one first."""
-    folder = files(__package__).joinpath("migrations")
-    scripts = sorted(
-        (entry for entry in folder.iterdir() if entry.name.endswith(".sql")), key=lambda e: e.name
-    )
+    scripts = sorted(_MIGRATIONS.glob("*.sql"))
     numbers = [int(script.name.partition("_")[0]) for script in scripts]
     if numbers != list(range(1, len(numbers) + 1)):  # a store counts them: one put in later would be left out
         raise RuntimeError(f"migrations are numbered from 1 on, each once and without a gap: {numbers}")
@@ -241,7 +238,7 @@ class Opened:
 def open_to_read(folder: Path) -> Opened:
     """The store as it is; an empty one where there is no file. Raises StoreError for a bad file."""
     path = folder / FILE_NAME
-    if not path.exists():
+    if not has_store(folder):
         return Opened(path, empty())
     version = check_file(path, thorough=False)
     if version < len(migrations()):
@@ -256,7 +253,7 @@ def open_to_write(folder: Path) -> Opened:
     with ExitStack() as undo:
         lock = WriterLock(folder)
         undo.callback(lock.close)
-        if not path.exists():
+        if not has_store(folder):
             _refuse_lost_file(path)
             create(path)
         version = check_file(path, thorough=True)

@@ -6,6 +6,7 @@ import sqlite3
 from hashlib import sha256
 
 from core.store import row_sums
+from core.store.program_settings import notes_key, part_key, stock_key
 from core.store.store_errors import StoreError
 from core.store.store_rows import ProgramRow, RunRow, VersionRow, utc_now
 
@@ -190,21 +191,6 @@ def renamed(connection: sqlite3.Connection, old: str, new: str) -> None:
     for key in (stock_key, part_key, notes_key):
         connection.execute("DELETE FROM settings WHERE key = ?", (key(new),))
         connection.execute("UPDATE settings SET key = ? WHERE key = ?", (key(new), key(old)))
-
-
-def stock_key(program: str) -> str:
-    """The setting that holds the stock of a program."""
-    return f"stock:{program}"
-
-
-def notes_key(program: str) -> str:
-    """The setting that holds what the setup person has noted about a program."""
-    return f"notes:{program}"
-
-
-def part_key(program: str) -> str:
-    """The setting that holds what else is kept of a program's part: stick-out and silenced checks."""
-    return f"part:{program}"
 
 
 def _row(connection: sqlite3.Connection, program: str) -> None:

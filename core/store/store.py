@@ -5,16 +5,16 @@ from __future__ import annotations
 import sqlite3
 import threading
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from concurrent.futures import Future
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
-from typing import Concatenate, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 
 from core.store import damaged_rows, event_log, job_queue, offset_tables, program_records, touch_off
 from core.store.database import Opened, open_to_read, open_to_write
 from core.store.job_queue import JobRow
 from core.store.offset_tables import Reason
+from core.store.program_settings import stock_key
 from core.store.row_sums import KEYS
 from core.store.store_errors import StoreError, why
 from core.store.store_rows import (
@@ -34,8 +34,12 @@ from core.store.store_rows import (
     ZeroRow,
     utc_now,
 )
-from core.store.store_writer import Backlog, Keeping, Operation, StoreWriter, Unwritten
 from core.store.touch_off import Touch
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
+
+    from core.store.store_writer import Backlog, Keeping, Operation, StoreWriter, Unwritten
 
 __all__ = ["Store", "StoreError"]
 
@@ -58,7 +62,7 @@ class Store:
         self._reading = threading.Lock()
         self._opened = opened
         self.repaired = _repaired(opened.writer) if opened.writer else ()  # what was damaged, in sentences
-        self._writer = StoreWriter(opened.writer, opened.path) if opened.writer else None
+        self._writer = _writer(opened.writer, opened.path) if opened.writer else None
 
     @classmethod
     def open(cls, folder: Path, *, read_only: bool = False) -> Store:
@@ -187,12 +191,12 @@ class Store:
 
     def stock_of(self, program: str) -> str:
         """What was last said about the stock of a program; empty: nothing."""
-        text = self.setting(program_records.stock_key(program))
+        text = self.setting(stock_key(program))
         return text if isinstance(text, str) else ""
 
     def keep_stock(self, program: str, text: str) -> Future[None]:
         """Remembers the stock of a program; an empty text forgets it."""
-        return self.set_setting(program_records.stock_key(program), text or None)
+        return self.set_setting(stock_key(program), text or None)
 
     def parts(self, program: str) -> int:
         """Parts of this program that were counted, those that are still to be written too."""
@@ -380,6 +384,12 @@ class Store:
                     offset_tables.change(connection, kind, number, reason, values)
 
         return self.write(operation)
+
+
+def _writer(connection: sqlite3.Connection, path: Path) -> StoreWriter:
+    from core.store.store_writer import StoreWriter  # noqa: PLC0415  who only reads needs no thread, no queue
+
+    return StoreWriter(connection, path)
 
 
 def _repaired(connection: sqlite3.Connection) -> tuple[str, ...]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import sqlite3
-import tempfile
 from enum import Enum
 from pathlib import Path
 
@@ -80,8 +79,10 @@ def why(path: Path, error: sqlite3.Error | OSError) -> StoreError:
 
 def _trial(folder: Path) -> OSError | None:
     """SQLite does not hand on what the system said; a file of our own beside the store asks it again."""
+    from tempfile import TemporaryFile  # noqa: PLC0415  rarely wanted, and slow to load
+
     try:
-        with tempfile.TemporaryFile(dir=folder) as file:
+        with TemporaryFile(dir=folder) as file:
             file.write(bytes(_ROOM))
             file.flush()
     except OSError as error:

@@ -109,9 +109,9 @@ def _table(file: FileReading) -> SimulatedTable:
 
 
 def _faults(file: FileReading) -> Iterator[PlannedFault]:
-    from drivers.lookalikes.plant_config import PlannedFault  # noqa: PLC0415  few files plan any
-
     for path in _paths(file):
+        from drivers.lookalikes.plant_config import PlannedFault  # noqa: PLC0415  few files plan any
+
         yield file.values.model(PlannedFault, path)
 
 

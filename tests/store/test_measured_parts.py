@@ -218,10 +218,9 @@ def test_a_migration_that_is_put_in_between_is_refused(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """A store that has counted past it would never get it."""
-    (tmp_path / "migrations").mkdir()
     for name in ("0001_a.sql", "0003_b.sql"):
-        (tmp_path / "migrations" / name).write_text("SELECT 1;")
-    monkeypatch.setattr(database, "files", lambda _package: tmp_path)
+        (tmp_path / name).write_text("SELECT 1;")
+    monkeypatch.setattr(database, "_MIGRATIONS", tmp_path)
     with pytest.raises(RuntimeError, match=r"without a gap: \[1, 3\]"):
         database.migrations()
 

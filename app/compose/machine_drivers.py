@@ -1,0 +1,63 @@
+"""The one list of drivers: what each adds to a machine file, and who puts it together."""
+
+from __future__ import annotations
+
+from core.machine import (
+    backup_table,
+    gauge_table,
+    machine_file,
+    serial_table,
+    setter_table,
+    shop_network_tables,
+)
+from core.machine.machine_model import Machine
+from core.table_schema import Driver, Finding, MachineFileError, written
+from drivers.canopen import canopen_table
+from drivers.grblhal import grblhal_table
+from drivers.hal import hal_table
+from drivers.hal.boards import board_table
+from drivers.inverter import inverter_table
+from drivers.mtconnect import mtconnect_table
+from drivers.pendant import pendant_table
+from drivers.simulated import simulated_table
+
+# One entry a driver, in the order in which a machine file's owner is told of them: what it adds to the file
+# and, of a backend, the module of this room that puts it together (``backend_entry``).
+_ENTRIES = (
+    (simulated_table.DRIVER, "simulated_backend"),
+    (canopen_table.DRIVER, "canopen_backend"),
+    (inverter_table.DRIVER, ""),
+    (grblhal_table.DRIVER, "grblhal_backend"),
+    (hal_table.DRIVER, "hal_backend"),
+    (board_table.DRIVER, ""),
+    (serial_table.DRIVER, ""),
+    (gauge_table.DRIVER, ""),
+    (setter_table.DRIVER, ""),
+    (pendant_table.DRIVER, ""),
+    (mtconnect_table.DRIVER, ""),
+    (shop_network_tables.DRIVER, ""),
+    (backup_table.DRIVER, ""),
+)
+DRIVERS: tuple[Driver, ...] = tuple(driver for driver, _ in _ENTRIES)
+BACKENDS = {driver.backend: module for driver, module in _ENTRIES if module}
+
+
+def read_machine_file(text: str, source: str) -> Machine:
+    """The machine that the TOML ``text`` describes, with everything that drivers add; ``source`` names it.
+
+    Raises MachineFileError naming every mistake.
+    """
+    machine = machine_file.parse_machine(text, source, DRIVERS)
+    if machine.silenced:
+        _known_checks(machine.silenced, source)
+    return machine
+
+
+def _known_checks(silenced: tuple[str, ...], source: str) -> None:
+    from core.proving.part_checks import CHECKS
+
+    wrong = [name for name in silenced if name not in CHECKS]
+    if wrong:
+        expected = f"expected checks of the part: {', '.join(CHECKS)}"
+        found = [Finding("checks.silenced", written(name), expected) for name in wrong]
+        raise MachineFileError(found, source)

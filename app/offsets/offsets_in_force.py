@@ -1,0 +1,25 @@
+"""From the rows of the store to what the interpreter counts with: tools, secondary offsets, the preset."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.store.store_rows import PresetRow, SecondaryRow, ToolRow
+
+PRESET = "preset"  # the setting that keeps which one is in force
+
+
+def preset_of(kept: object, presets: Mapping[int, PresetRow]) -> int:
+    """The number of the preset in force; one that is not in the table is none."""
+    return kept if isinstance(kept, int) and kept in presets else 0
+
+
+def tool_offsets(rows: Mapping[int, ToolRow]) -> dict[int, ToolOffset]:
+    """Of the tools: geometry and wear together."""
+    return {n: ToolOffset(*row.offset, row.nose_radius, row.quadrant, row.remark) for n, row in rows.items()}
+
+
+def secondary_offsets(rows: Mapping[int, SecondaryRow]) -> dict[int, SecondaryOffset]:
+    """X, Z and nose radius of the secondary offsets."""
+    return {n: SecondaryOffset(*row) for n, row in rows.items()}

@@ -1,0 +1,64 @@
+"""What a short command loads: every module that it does not use is waited for at each call."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+import resources
+from app.compose import kept_machines
+from app.compose.machine_files import SHIPPED, parse_machine
+
+PROGRAM = "G90G94F300G72\nM03S2000\nT1\nX1Z.1\nG95F.003\nX.5Z0\nX.6Z-.1\nG00X1\nZ1\nM30\n"
+OF_THE_REST = (
+    *("PySide6", "app.screen", "app.report", "app.compose.machine_drivers", "app.offsets.offset_book"),
+    *("core.executor", "core.alarms", "core.drawings", "core.ports", "core.records", "core.shapes"),
+    *("core.machine.machine_file", "core.machine.driver_tables", "core.store.store", "core.quality"),
+    *("core.interpreter.klartext", "core.interpreter.sinumerik", "core.part.milled_part"),
+    *("drivers.canopen", "drivers.grblhal", "drivers.hal", "drivers.inverter", "drivers.lookalikes"),
+    *("drivers.mtconnect", "drivers.pendant", "drivers.setpoint_queue"),
+)
+OF_PYTHON = (
+    *("concurrent", "difflib", "hashlib", "importlib.resources", "logging", "random", "socket", "sqlite3"),
+    *("tempfile", "traceback", "urllib.request", "xml"),
+)
+PROVE = """
+import sys
+from pathlib import Path
+from app.compose import kept_machines, machine_files
+kept_machines._place = lambda _file: Path(sys.argv[1])
+from app.cli.main import main
+status = main(["prove", sys.argv[2]])
+print(status, *sys.modules, file=sys.stderr)
+"""
+
+
+@pytest.fixture(scope="module")
+def loaded(tmp_path_factory: pytest.TempPathFactory) -> frozenset[str]:
+    """The modules of a process that has proved a short program, on the shipped lathe, without a store."""
+    folder = tmp_path_factory.mktemp("cold")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(kept_machines, "_place", lambda _file: folder / "kept")
+        patch.setattr(sys, "dont_write_bytecode", False)
+        text = resources.machine_file(SHIPPED)
+        kept_machines.keep(folder, text, parse_machine(text, SHIPPED))
+        patch.setenv("TURNDESK_HOME", str(folder / "home"))
+        program = folder / "part.nc"
+        program.write_text(PROGRAM)
+        command = [sys.executable, "-c", PROVE, str(folder / "kept"), str(program)]
+        done = subprocess.run(command, check=True, capture_output=True, text=True)
+    status, *names = done.stderr.split()
+    assert status == "0", done
+    return frozenset(names)
+
+
+@pytest.mark.parametrize("unused", OF_THE_REST + OF_PYTHON)
+def test_prove_does_not_load_what_it_does_not_use(loaded: frozenset[str], unused: str) -> None:
+    assert not [name for name in loaded if f"{name}.".startswith(f"{unused}.")]
+
+
+def test_it_loads_what_it_does_use(loaded: frozenset[str]) -> None:
+    used = {"core.interpreter.omniturn", "core.motion.window_planner", "core.proving.part_proof"}
+    assert used <= loaded
