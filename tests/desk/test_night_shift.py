@@ -1,0 +1,69 @@
+"""A night shift in small: every counter has what the slides have made, and a place stays the same place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from core.executor.snapshot import State
+from tests.benchmarks import night_operator
+from tests.benchmarks.bench_night_shift import counted, disagreeing, drift
+from tests.benchmarks.night_operator import Operator
+from tests.benchmarks.night_shift import INCH, TOOLS, NightShift, night_shift
+
+
+@pytest.fixture
+def shift(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[NightShift]:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    with night_shift() as shift:
+        yield shift
+
+
+def test_what_was_made_is_what_everybody_counts_and_nothing_drifts(shift: NightShift) -> None:
+    operator = Operator(shift, 1, {})
+    operator.begin()
+    operator.make(2)
+    operator.meets("E-stop")
+    operator.make(1)
+    operator.meets("no count")
+    operator.make(1)
+    operator.meets("slide jams", after=3.0)
+    operator.make(1)
+    operator.finish()
+    counts = counted(shift)
+    assert disagreeing(shift, operator, counts) == []
+    assert counts["seen at the slides"] >= 5
+    assert counts["pins without count"] == 1
+    assert operator.did["start"] == 3  # in the evening, behind the E-stop and the alarm
+    assert shift.witness.truth.alarms == {"encoder-still": 1}  # it was sent on, and stood
+    assert len(shift.witness.truth.at_stop) == 1
+    assert shift.witness.truth.turned == {TOOLS[1][0] * INCH: {TOOLS[1][0] * INCH + 0.2 * INCH}}
+    assert drift(shift)["turned radii with one offset, spread mm"] == 0.0
+
+
+def test_a_count_that_is_not_what_was_made_is_told(shift: NightShift) -> None:
+    operator = Operator(shift, 1, {})
+    operator.begin()
+    operator.make(1)
+    operator.finish()
+    made = counted(shift)["seen at the slides"]
+    shift.desk.counter.correct(1)
+    shift.saved()
+    assert disagreeing(shift, operator, counted(shift)) == [
+        f"desk: {made + 1} of {made}",
+        f"store: {made + 1} of {made}",
+    ]
+
+
+def test_whoever_cannot_get_a_part_says_so_instead_of_going_on_for_ever(
+    shift: NightShift, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(night_operator, "STUCK", 5.0)
+    operator = Operator(shift, 1, {})
+    operator.begin()
+    shift.lathe.spindle_fault("overvoltage")  # nobody mends it
+    with pytest.raises(AssertionError, match="no part for"):
+        operator.make(1)
+    assert shift.shot.state is not State.RUN
