@@ -815,8 +815,18 @@
     </message>
     <message>
       <location filename="" />
+      <source>CYCLE92: %1 %2.</source>
+      <translation>CYCLE92: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>CYCLE93: %1 %2.</source>
       <translation>CYCLE93: %1 %2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CYCLE940: %1 %2.</source>
+      <translation>CYCLE940: %1 %2.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1655,11 +1665,6 @@
     </message>
     <message>
       <location filename="" />
-      <source>Is refused: it is written by a mask of the newer controls, whose digits differ from edition to edition; write forms E and F with CYCLE94, A to D with CYCLE96.</source>
-      <translation>Se rechaza: lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba las formas E y F con CYCLE94, A a D con CYCLE96.</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>Is refused: it is written by a mask of the newer controls, whose digits differ from edition to edition; write the contour with CYCLE95.</source>
       <translation>Se rechaza: lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba el contorno con CYCLE95.</translation>
     </message>
@@ -1667,11 +1672,6 @@
       <location filename="" />
       <source>Is refused: it is written by a mask of the newer controls, whose digits differ from edition to edition; write the groove with CYCLE93.</source>
       <translation>Se rechaza: lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba la ranura con CYCLE93.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Is refused: it is written by a mask of the newer controls, whose digits differ from edition to edition; write the parting off as G1 blocks, with a slower F near the centre.</source>
-      <translation>Se rechaza: lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba el tronzado como bloques G1, con un F más lento cerca del centro.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2127,6 +2127,11 @@
       <location filename="" />
       <source>PLANE not permitted with M128: %1</source>
       <translation>PLANE no permitido con M128: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Parts off at SPL with the edge in force, from the diameter SPD: to _DIAG1 at _FF1, from there to _DIAG2 at _FF2 and _SS2 rpm. _SV1 beside its limit _SV2 is a surface speed, else rpm; _SDAC 3 or 4. Depths are diameters.</source>
+      <translation>Trocea en SPL con el filo activo, desde el diámetro SPD: hasta _DIAG1 con _FF1, de allí hasta _DIAG2 con _FF2 y _SS2 rpm. _SV1 junto a su límite _SV2 es una velocidad de corte, si no, rpm; _SDAC 3 o 4. Las profundidades son diámetros.</translation>
     </message>
     <message>
       <location filename="" />
@@ -3255,6 +3260,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Undercut E or F (DIN 509), A or B (DIN 76) at the shoulder SPL of the diameter SPD. _LAGE 0 and 1 lie outside, 2 and 3 inside; 0 and 2 have the shoulder towards plus Z. A and B: _PITI counts the leads of DIN 76 from 0.2; _VARI 1 roughs, 2 finishes, 3 does both in passes of _MID.</source>
+      <translation>Garganta E o F (DIN 509), A o B (DIN 76) en el hombro SPL del diámetro SPD. _LAGE 0 y 1 quedan por fuera, 2 y 3 por dentro; 0 y 2 tienen el hombro hacia Z positivo. A y B: _PITI cuenta los pasos de DIN 76 desde 0.2; _VARI 1 desbasta, 2 acaba, 3 hace ambos en pasadas de _MID.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Unit of length</source>
       <translation>Unidad de longitud</translation>
     </message>
@@ -3790,11 +3800,6 @@
     </message>
     <message>
       <location filename="" />
-      <source>it is written by a mask of the newer controls, whose digits differ from edition to edition; write forms E and F with CYCLE94, A to D with CYCLE96</source>
-      <translation>lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba las formas E y F con CYCLE94, A a D con CYCLE96</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>it is written by a mask of the newer controls, whose digits differ from edition to edition; write the contour with CYCLE95</source>
       <translation>lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba el contorno con CYCLE95</translation>
     </message>
@@ -3802,11 +3807,6 @@
       <location filename="" />
       <source>it is written by a mask of the newer controls, whose digits differ from edition to edition; write the groove with CYCLE93</source>
       <translation>lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba la ranura con CYCLE93</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>it is written by a mask of the newer controls, whose digits differ from edition to edition; write the parting off as G1 blocks, with a slower F near the centre</source>
-      <translation>lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba el tronzado como bloques G1, con un F más lento cerca del centro</translation>
     </message>
     <message>
       <location filename="" />
@@ -20899,6 +20899,61 @@
       <translation>ningún parámetro</translation>
     </message>
     <message>
+      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <source>3 is M3, 4 is M4.</source>
+      <translation>3 es M3, 4 es M4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <source>Write S and M3 before it.</source>
+      <translation>Escriba S y M3 antes.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <source>Write _DIAG1 and _DIAG2 as diameters, and no _AMODE.</source>
+      <translation>Escriba _DIAG1 y _DIAG2 como diámetros, y ningún _AMODE.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <source>Write _FF1.</source>
+      <translation>Escriba _FF1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <source>Write diameters, SPD the largest.</source>
+      <translation>Escriba diámetros, SPD el mayor.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <source>asks for depths that count from SPD</source>
+      <translation>pide profundidades que cuentan desde SPD</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <source>cut the chamfer or the radius with G1 before it</source>
+      <translation>corte antes el chaflán o el radio con G1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <source>is %1, and lies between SPD %2 and _DIAG2 %3</source>
+      <translation>es %1, y queda entre SPD %2 y _DIAG2 %3</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <source>is %1, no speed of this spindle</source>
+      <translation>es %1, que no es una velocidad de este husillo</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <source>the spindle stands, and neither _SV1 with _SDAC nor S with M3 starts it.</source>
+      <translation>el husillo está parado, y ni _SV1 con _SDAC ni S con M3 lo ponen en marcha.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <source>the tool goes back out, and no drawer catches the part</source>
+      <translation>la herramienta vuelve a salir, y ninguna bandeja recoge la pieza</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/sinumerik/radius_compensation.py" />
       <source>%1 while G%2 is on.</source>
       <translation>%1 con G%2 activo.</translation>
@@ -22145,6 +22200,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>1 roughs, 2 finishes, 3 does both.</source>
+      <translation>1 desbasta, 2 acaba, 3 hace ambos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
       <source>Correct it, or take another tool.</source>
       <translation>Corríjalo, o tome otra herramienta.</translation>
     </message>
@@ -22155,13 +22215,28 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>Write "A", "B", "E" or "F"; C and D with CYCLE96, a free form T as lines.</source>
+      <translation>Escriba "A", "B", "E" o "F"; C y D con CYCLE96, una forma libre T como rectas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
       <source>Write the undercut as lines.</source>
       <translation>Escriba la garganta como rectas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>asks for a lead of %1, whose undercut is not known here</source>
+      <translation>pide un paso de %1, cuya garganta no se conoce aquí</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
       <source>is %1, and no size of the coarse threads M3 to M%2</source>
       <translation>es %1, y no es medida de las roscas gruesas M3 a M%2</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>is %1, which is not executed here</source>
+      <translation>es %1, que no se ejecuta aquí</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
@@ -22192,6 +22267,11 @@
       <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
       <source>the tip quadrant of the tool is %1, and an undercut is cut with 1 to 4.</source>
       <translation>el cuadrante de punta de la herramienta es %1, y una garganta se corta con 1 a 4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>write the undercut as lines</source>
+      <translation>escriba la garganta como rectas</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/variables.py" />

@@ -16,7 +16,8 @@ The program stands between the book's head and tail, or on its own where the ent
 count from 1. ``rows`` are those of ``golden_rows.py`` for its lines alone; ``...`` stands for any number of
 them, ``extent X X Y Y Z Z`` for the least and the greatest ends of all moves at feed (``extent X X Z Z`` on a
 lathe), ``way MM`` for the length of them all. ``warning`` and ``note LINE CODE`` are all that is told beside.
-``refused LINE COLUMN CODE`` is the first error of the lines that the book has as the entry's refusal. Lines
+``refused LINE COLUMN CODE`` is the first error of the lines that the book has as the entry's refusal, with
+``on MACHINE`` behind it where it is another one that refuses. Lines
 that begin with ``#`` say how a figure was reckoned; ``machine NAME`` and ``axes`` ask for another shipped
 machine and for the rotary axes in the rows.
 """
@@ -73,6 +74,7 @@ class Golden:
     sums: dict[str, list[float]] = field(default_factory=dict)
     told: list[str] = field(default_factory=list)
     refused: str = ""
+    refusing: str = ""
 
     def tell(self, text: str) -> None:
         """Take a line behind ``--``."""
@@ -82,7 +84,8 @@ class Golden:
         elif words == ["axes"]:
             self.axes = True
         elif words[0] == "refused":
-            self.refused = " ".join(words[1:])
+            self.refused, _, machine = " ".join(words[1:]).partition(" on ")
+            self.refusing = machine or self.machine
         elif words[0] in ("warning", "note"):
             self.told.append(" ".join(words))
         elif words[0] in ("extent", "way"):

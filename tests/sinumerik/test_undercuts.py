@@ -149,3 +149,33 @@ def test_a_tool_and_a_feed_are_needed() -> None:
     assert [each.code for each in without.errors] == ["61003"]
     without = run("S900 M3 G95 F0.1\nT1 D0\n" + 'CYCLE94(40,-30,"E")', with_tool(3))
     assert [each.code for each in without.errors] == ["61000"]
+
+
+@pytest.mark.parametrize(("place", "quadrant", "out", "side"), [(0, 4, 1, -1), (1, 3, 1, 1), (3, 2, -1, 1)])
+def test_cycle940_says_where_it_lies(place: int, quadrant: int, out: int, side: int) -> None:
+    before = OUTSIDE if out > 0 else INSIDE
+    blocks = cuts(before + f'CYCLE940(40,-30,"E",{place},2,0.2)', with_tool(quadrant))
+    assert blocks[2].x == pytest.approx(20 - out * 0.3)
+    assert blocks[2].z == pytest.approx(-30 + side * 0.6)
+    assert {b.feed for b in blocks} == {0.2}
+
+
+def test_cycle940_behind_a_thread_in_passes() -> None:
+    """A lead of 2 (_PITI 15): 1.5 deep, 7 wide. 0.1 left of 1.5 in passes of 0.5: 0.467 each, then all."""
+    call = 'CYCLE940(30,-20,"A",1,2,0.1,3,,,,,,,0.5,0.1,,,15)'
+    floors = [b.x for b in good(OUTSIDE + call, with_tool(3)) if b.kind is Kind.FEED and b.x == b.x0]
+    assert [15 - x for x in floors] == pytest.approx([1.4 / 3, 2.8 / 3, 1.4, 1.5])
+
+
+@pytest.mark.parametrize(
+    ("call", "code"),
+    [
+        ('CYCLE940(40,-30,"C",2,2,0.1)', "61609"),
+        ('CYCLE940(40,-30,"E",4,2,0.1)', "cycle-parameter"),
+        ('CYCLE940(40,-30,"E",1,2,0.1,,,,1,0.4)', "not-in-subset"),
+        ('CYCLE940(40,-30,"A",1,2,0.1,3,,,,,,,,,,,0)', "61601"),
+        ('CYCLE940(30,-30,"A",1,2,0.1,4)', "61002"),
+    ],
+)
+def test_cycle940_refuses_what_is_told_nowhere(call: str, code: str) -> None:
+    assert refused(OUTSIDE + call, with_tool(3)).code == code

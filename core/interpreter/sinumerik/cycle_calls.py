@@ -12,13 +12,14 @@ from core.interpreter.sinumerik.cycle_contour import WRONG_CONTOUR, contour_line
 from core.interpreter.sinumerik.cycle_parameters import Cycle
 from core.interpreter.sinumerik.drilling_cycles import bore, drill, peck
 from core.interpreter.sinumerik.groove_cycle import groove
+from core.interpreter.sinumerik.parting_cycle import part_off
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.stock_removal import stock_removal
 from core.interpreter.sinumerik.subprogram_flow import Flow
 from core.interpreter.sinumerik.tapping_cycles import compensating, rigid
 from core.interpreter.sinumerik.thread_chain_cycle import thread_chain
 from core.interpreter.sinumerik.thread_cycle import thread_cycle
-from core.interpreter.sinumerik.undercut_cycles import shoulder_undercut, thread_undercut
+from core.interpreter.sinumerik.undercut_cycles import shoulder_undercut, thread_undercut, undercut
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.sinumerik.sinumerik_words import Line
 
@@ -33,8 +34,10 @@ _RUN: Mapping[str, Callable[[Cycle], Iterator[Block]]] = {
     "CYCLE87": stop,
     "CYCLE88": stop,
     "CYCLE89": bore,
+    "CYCLE92": part_off,
     "CYCLE93": groove,
     "CYCLE94": shoulder_undercut,
+    "CYCLE940": undercut,
     "CYCLE96": thread_undercut,
     "CYCLE97": thread_cycle,
     "CYCLE98": thread_chain,

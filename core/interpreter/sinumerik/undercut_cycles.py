@@ -1,4 +1,4 @@
-"""CYCLE94 and CYCLE96: undercuts E and F at a shoulder (DIN 509), and A to D behind a thread (DIN 76).
+"""CYCLE94, CYCLE96, CYCLE940: undercuts E, F at a shoulder (DIN 509), A to D behind a thread (DIN 76).
 
 The sizes are those of the standards by diameter and by lead. The nose runs beside the profile, so that the
 undercut has these sizes whatever the nose radius is.
@@ -7,14 +7,21 @@ undercut has these sizes whatever the nose radius is.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import cos, radians, sin, tan
+from math import ceil, cos, radians, sin, tan
 from typing import NamedTuple
 
 from core.geometry.chamfer_and_rounding import rounding
 from core.geometry.contour_offset import GougeError, Offset
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, left_of, shifted
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.sinumerik.cycle_parameters import NO_FEED, RETRACT, Cycle, Step
+from core.interpreter.sinumerik.cycle_parameters import (
+    MACHINING_TYPE,
+    MOST_PASSES,
+    NO_FEED,
+    RETRACT,
+    Cycle,
+    Step,
+)
 from core.interpreter.sinumerik.thread_cycle import COARSE_LEADS
 from core.tool_edges import TIP_DIRECTIONS
 
@@ -57,6 +64,12 @@ _DIN_76 = {
     4.5: (6.4, 16.0, 11.0, 2.0, 23.0, 16.0), 5.0: (7.0, 17.5, 12.5, 2.5, 26.0, 18.5),
     5.5: (7.7, 19.0, 14.0, 3.2, 28.0, 20.0), 6.0: (8.3, 21.0, 15.0, 3.2, 30.0, 21.0),
 }  # fmt: skip
+_LEADS = (
+    0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.7, 0.75, 0.8, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 3.5, 4.0,
+    4.5, 5.0, 5.5, 6.0,
+)  # fmt: skip
+"""Leads of DIN 76 in the order in which _PITI counts them from 0."""
+
 _CORE = 1.0825  # core diameter of a thread inside: nominal less so many leads
 _LARGEST_OF_ALL = 68
 
@@ -79,15 +92,21 @@ def shoulder_undercut(cycle: Cycle) -> Iterator[Block]:
     form = cycle.text("FORM")
     if form not in {"E", "F"}:
         raise cycle.wrong("FORM", 'is none of "E" and "F"', "Correct it.", WRONG_FORM)
+    size = _at_shoulder(cycle, form)
+    out, side = position(cycle, cycle.whole("VARI", 0, 0, 4))
+    place = Place(cycle.needed("SPD") / 2.0, cycle.needed("SPL"), out, side)
+    return cycle.blocks(_cut(cycle, place, size, _feed(cycle.state.modal.feed, cycle), _CLEAR))
+
+
+def _at_shoulder(cycle: Cycle, form: str) -> Size:
+    """Form E or F of DIN 509 by the diameter SPD. Raises ProgramError."""
     diameter = cycle.over_zero("SPD", TOO_SMALL)
     if diameter <= 3.0:
         text = f"is {diameter:g}: undercuts begin over 3 mm"
         raise cycle.wrong("SPD", text, "Write the undercut as lines.", TOO_SMALL)
     sizes = next((row[1:] for row in _DIN_509 if diameter <= row[0]), _DIN_509_OVER)
     depth, width, radius, face = sizes
-    out, side = position(cycle)
-    place = Place(diameter / 2.0, cycle.needed("SPL"), out, side)
-    return _cut(cycle, place, Size(depth, width, radius, 15.0, face if form == "F" else 0.0))
+    return Size(depth, width, radius, 15.0, face if form == "F" else 0.0)
 
 
 def thread_undercut(cycle: Cycle) -> Iterator[Block]:
@@ -101,28 +120,93 @@ def thread_undercut(cycle: Cycle) -> Iterator[Block]:
         text = f"is {nominal:g}, and no size of the coarse threads M3 to M{_LARGEST_OF_ALL}"
         raise cycle.wrong("DIATH", text, "Write the undercut as lines.", TOO_SMALL)
     lacks, long, short, radius, long_inside, short_inside = _DIN_76[lead]
-    out, side = position(cycle)
+    out, side = position(cycle, cycle.whole("VARI", 0, 0, 4))
     inside = form in {"C", "D"}
     if inside is (out > 0.0):
         where, other = ("inside", "outside") if inside else ("outside", "inside")
         text = f"{form} lies {where}, and the tool's edge is one for {other}"
         raise cycle.wrong("FORM", text, "Correct it, or take another tool.", WRONG_EDGE)
+    feed = _feed(cycle.state.modal.feed, cycle)
     if not inside:
         size = Size(lacks / 2.0, long if form == "A" else short, radius, 30.0)
-        return _cut(cycle, Place(nominal / 2.0, cycle.needed("SPL"), out, side), size)
+        place = Place(nominal / 2.0, cycle.needed("SPL"), out, side)
+        return cycle.blocks(_cut(cycle, place, size, feed, _CLEAR))
     more = 0.3 if lead < 1.0 else 0.5
     depth = (more + _CORE * lead) / 2.0
     place = Place(nominal / 2.0 + more / 2.0 - depth, cycle.needed("SPL"), out, side)
-    return _cut(cycle, place, Size(depth, long_inside if form == "C" else short_inside, radius, 30.0))
+    size = Size(depth, long_inside if form == "C" else short_inside, radius, 30.0)
+    return cycle.blocks(_cut(cycle, place, size, feed, _CLEAR))
 
 
-def position(cycle: Cycle) -> tuple[float, float]:
-    """On which side of the part and of the shoulder: VARI 1 to 4, or 0 by the tool's tip quadrant.
+_OF_PLACE = {0: 4, 1: 3, 2: 1, 3: 2}
+"""Tip quadrants by _LAGE: 0 and 1 outside, 2 and 3 inside; 0 and 2 with the shoulder towards plus Z."""
+
+_NOT_BUILT = "write the undercut as lines"
+
+
+def undercut(cycle: Cycle) -> Iterator[Block]:
+    """CYCLE940: E and F in one pass, A and B in passes of _MID. Raises ProgramError before the first block.
+
+    Its first seven parameters, and the order of all of them, are those of the maker's programming manual.
+    """
+    form = cycle.text("FORM")
+    if form not in {"A", "B", "E", "F"}:
+        hint = 'Write "A", "B", "E" or "F"; C and D with CYCLE96, a free form T as lines.'
+        raise cycle.wrong("FORM", f"is {form or 'missing'}, which is not executed here", hint, WRONG_FORM)
+    for name in ("_EPD", "_EPL", "_R1", "_R2", "_STA", "_VRT"):
+        cycle.zero_only(name, _NOT_BUILT)
+    out, side = position(cycle, _OF_PLACE[cycle.whole("_LAGE", 0, 0, 3)])
+    size = _at_shoulder(cycle, form) if form in {"E", "F"} else _behind_thread(cycle, form)
+    place = Place(cycle.over_zero("SPD", TOO_SMALL) / 2.0, cycle.needed("SPL"), out, side)
+    clear, feed = cycle.size("_SDIS") or _CLEAR, _feed(cycle.feed("_FFP"), cycle)
+    if form in {"E", "F"}:
+        return cycle.blocks(_cut(cycle, place, size, feed, clear))
+    return cycle.blocks(_in_passes(cycle, place, size, feed, clear))
+
+
+def _behind_thread(cycle: Cycle, form: str) -> Size:
+    """Form A or B of DIN 76 by _PITI, or by the coarse thread of SPD. Raises ProgramError."""
+    if cycle.given("_PITI"):
+        lead = _LEADS[cycle.whole("_PITI", 0, 0, len(_LEADS) - 1)]
+    else:
+        lead = COARSE_LEADS.get(round(cycle.needed("SPD")), 0.0)
+    if lead not in _DIN_76:
+        text = f"asks for a lead of {lead:g}, whose undercut is not known here"
+        raise cycle.wrong("_PITI", text, "Write the undercut as lines.", TOO_SMALL)
+    lacks, long, short, radius, *_ = _DIN_76[lead]
+    return Size(lacks / 2.0, long if form == "A" else short, radius, 30.0)
+
+
+def _in_passes(cycle: Cycle, place: Place, size: Size, feed: float, clear: float) -> list[Step]:
+    """_VARI 1 roughs, 2 finishes, 3 does both: the profile at depths of _MID at most, above _FALX, _FALZ."""
+    kind = cycle.whole("_VARI", 3, 1, 13)
+    if kind % 10 not in {1, 2, 3}:
+        raise cycle.wrong("_VARI", f"is {kind}", "1 roughs, 2 finishes, 3 does both.", MACHINING_TYPE)
+    left = cycle.size("_FAL")
+    up, off = max(left, cycle.size("_FALX")), max(left, cycle.size("_FALZ"))
+    infeed = cycle.size("_MID") or size.depth
+    steps: list[Step] = []
+    if kind % 10 != _FINISHES:
+        count = max(ceil((size.depth - up) / infeed - _SAME), 1)
+        if count > MOST_PASSES:
+            raise cycle.wrong("_MID", f"would make {count:,} passes", "Look for a lost decimal point.")
+        for k in range(1, count + 1):
+            above = up + (size.depth - up) * (count - k) / count
+            moved = place._replace(radius=place.radius + place.out * above, shoulder=place.shoulder
+                                   + place.side * off)  # fmt: skip
+            steps += _cut(cycle, moved, size, feed, clear)
+    return steps if kind % 10 == _ROUGHS else steps + _cut(cycle, place, size, feed, clear)
+
+
+_ROUGHS, _FINISHES = 1, 2
+
+
+def position(cycle: Cycle, chosen: int) -> tuple[float, float]:
+    """On which side of the part and of the shoulder: 1 to 4, or 0 by the tool's tip quadrant.
 
     Raises ProgramError.
     """
     state = cycle.state
-    chosen = cycle.whole("VARI", 0, 0, 4)
     if not state.modal.edge:
         text = f"{cycle.line.call} needs a tool with its offset."
         raise cycle.refused(61000, text, "Write T and D before it.")
@@ -148,12 +232,16 @@ def profile(place: Place, size: Size) -> list[Element]:
     return [Line(begin, foot), Line(foot, low), Line(low, place.point(top, 0.0))]
 
 
-def _cut(cycle: Cycle, place: Place, size: Size) -> Iterator[Block]:
-    feed = cycle.state.modal.feed
+def _feed(feed: float | None, cycle: Cycle) -> float:
     if feed is None:
         raise cycle.refused(NO_FEED, "no feedrate is programmed.", "Write F before it.")
+    return feed
+
+
+def _cut(cycle: Cycle, place: Place, size: Size, feed: float, beside: float) -> list[Step]:
+    """Beside the part, down the slope, along and up; ``beside``: how far off the surface that begins, mm."""
     way = _of_tip(cycle, place, _rounded(profile(place, size), size.radius, _nose(cycle, size)))
-    clear = place.radius + place.out * _CLEAR
+    clear = place.radius + place.out * beside
     (x0, z0), (_, z1) = way[0].start, way[-1].end
     steps = [] if place.out * cycle.x >= place.out * clear else [Step(clear, cycle.z)]
     steps += [Step(clear, z0), Step(x0, z0, feed)]
@@ -161,7 +249,7 @@ def _cut(cycle: Cycle, place: Place, size: Size) -> Iterator[Block]:
         centre, clockwise = (each.centre, each.clockwise) if isinstance(each, Arc) else (None, False)
         steps.append(Step(*each.end, feed, centre, clockwise))
     off = z1 + place.side * RETRACT  # not along the shoulder in rapid
-    return cycle.blocks([*steps, Step(clear, off), Step(clear, z0)])
+    return [*steps, Step(clear, off), Step(clear, z0)]
 
 
 def _nose(cycle: Cycle, size: Size) -> float:

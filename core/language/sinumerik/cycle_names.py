@@ -21,8 +21,12 @@ CYCLES: Mapping[str, tuple[str, ...]] = {
         "CYCLE87": f"{_DRILL} SDIR",
         "CYCLE88": f"{_DRILL} DTB SDIR",
         "CYCLE89": f"{_DRILL} DTB",
+        "CYCLE92": "SPD SPL _DIAG1 _DIAG2 _RC _SDIS _SV1 _SV2 _SDAC _FF1 _FF2 _SS2 _DIAGM _VARI _DN "
+        "_DMODE _AMODE",
         "CYCLE93": "SPD SPL WIDG DIAG STA1 ANG1 ANG2 RCO1 RCO2 RCI1 RCI2 FAL1 FAL2 IDEP DTB VARI _VRT _DN",
         "CYCLE94": "SPD SPL FORM VARI",
+        "CYCLE940": "SPD SPL FORM _LAGE _SDIS _FFP _VARI _EPD _EPL _R1 _R2 _STA _VRT _MID _FAL _FALX _FALZ "
+        "_PITI _PTAB _PTABA _DMODE _AMODE",
         "CYCLE95": "NPP MID FALZ FALX FAL FF1 FF2 FF3 VARI DT DAM _VRT",
         "CYCLE96": "DIATH SPL FORM VARI",
         "CYCLE97": "PIT MPIT SPL FPL DM1 DM2 APP ROP TDEP FAL IANG NSP NRC NID VARI NUMT _VRT",
@@ -43,9 +47,7 @@ _SWIVEL = "this lathe has no head that swivels; take it out"
 
 CYCLES_OUTSIDE: Mapping[str, str] = {
     "CYCLE62": f"{_MASK}; name the contour in CYCLE95",
-    "CYCLE92": f"{_MASK}; write the parting off as G1 blocks, with a slower F near the centre",
     "CYCLE930": f"{_MASK}; write the groove with CYCLE93",
-    "CYCLE940": f"{_MASK}; write forms E and F with CYCLE94, A to D with CYCLE96",
     **dict.fromkeys(("CYCLE950", "CYCLE951", "CYCLE952"), f"{_MASK}; write the contour with CYCLE95"),
     **dict.fromkeys(("LONGHOLE", "SLOT1", "SLOT2", "POCKET1", "POCKET2", "POCKET3", "POCKET4"), _MILL),
     **dict.fromkeys(("CYCLE60", "CYCLE61", "CYCLE63", "CYCLE64", "CYCLE70", "CYCLE71", "CYCLE72"), _MILL),

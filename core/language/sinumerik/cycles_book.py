@@ -71,6 +71,14 @@ STANDARD_CYCLES = (
         "G18\nCYCLE89(5, 0, 2, -12)", "G17",
     ),
     _entry(
+        "CYCLE92",
+        "Parts off at SPL with the edge in force, from the diameter SPD: to _DIAG1 at _FF1, from there to "
+        "_DIAG2 at _FF2 and _SS2 rpm. _SV1 beside its limit _SV2 is a surface speed, else rpm; _SDAC 3 or 4. "
+        "Depths are diameters.",
+        _CUT + "T1 D1\nG0 X50 Z-30\nCYCLE92(40, -30, 10, -1, , 1, 0, 0, 0, 0.1, 0.05, 500)",
+        _CUT + "T1 D1\nCYCLE92(40, -30, 60, -1, , 1, 0, 0, 0, 0.1, 0.05, 500)", "_DIAG1",
+    ),
+    _entry(
         "CYCLE93",
         "A groove with square flanks from the point SPD (a diameter), SPL: WIDG wide, DIAG deep; VARI 5 "
         "towards minus Z, 1 towards plus, 7 and 3 inside. Its width is the way from D to _DN, or to D+1.",
@@ -83,6 +91,14 @@ STANDARD_CYCLES = (
         "3 outside with the shoulder towards minus Z, 4 towards plus; 2 and 1 inside. VARI 1 to 4 says it in "
         "its place.",
         _CUT + 'T1 D1\nG0 X50 Z5\nCYCLE94(40, -12, "E")', _CUT + 'T1 D1\nCYCLE94(40, -12, "G")', "FORM",
+    ),
+    _entry(
+        "CYCLE940",
+        "Undercut E or F (DIN 509), A or B (DIN 76) at the shoulder SPL of the diameter SPD. _LAGE 0 and 1 "
+        "lie outside, 2 and 3 inside; 0 and 2 have the shoulder towards plus Z. A and B: _PITI counts the "
+        "leads of DIN 76 from 0.2; _VARI 1 roughs, 2 finishes, 3 does both in passes of _MID.",
+        _CUT + 'T1 D1\nG0 X50 Z5\nCYCLE940(40, -12, "E", 1, 2, 0.1)',
+        _CUT + 'T1 D1\nCYCLE940(40, -12, "T", 1, 2, 0.1)', "FORM",
     ),
     _entry(
         "CYCLE96",

@@ -1,0 +1,113 @@
+"""CYCLE92: the part is parted off, slower near the axis.
+
+What its parameters mean is told by the maker's operating manuals, their names and order by public lists of
+them; what the digits of ``_DMODE`` and ``_AMODE`` mean is told nowhere, so that only depths as diameters are
+taken. The edge in force goes down at SPL.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from core.interpreter.actions import SpindleRun
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.modal_state import Modal
+from core.interpreter.sinumerik.boring_cycles import NO_DIRECTION
+from core.interpreter.sinumerik.cycle_parameters import NO_FEED, RETRACT, Cycle, Step
+from core.interpreter.units import METRES_PER_MINUTE
+
+WRONG_DEPTH = 61604
+_DIRECTION = {3: 1, 4: -1}  # of _SDAC
+
+
+def part_off(cycle: Cycle) -> Iterator[Block]:
+    """Down to _DIAG1 at _FF1, from there to _DIAG2 at _FF2 and _SS2 rpm. Raises ProgramError before a block.
+
+    A speed _SV1 is one of the surface beside its limit _SV2, else rpm; behind the cycle the speed of before
+    is in force again.
+    """
+    cycle.zero_only("_RC", "cut the chamfer or the radius with G1 before it")
+    cycle.zero_only("_VARI", "the tool goes back out, and no drawer catches the part")
+    if cycle.whole("_AMODE", 0, 0, 10**8) % 100:
+        hint = "Write _DIAG1 and _DIAG2 as diameters, and no _AMODE."
+        raise cycle.wrong("_AMODE", "asks for depths that count from SPD", hint, "not-in-subset")
+    slow, last = _depths(cycle)
+    first, second = _feeds(cycle)
+    before = cycle.state.modal
+    fast = _speed(cycle, before)
+    rpm = cycle.number("_SS2")
+    if rpm < 0.0 or rpm > cycle.state.setup.limits.max_rpm:
+        raise cycle.wrong("_SS2", f"is {rpm:g}, no speed of this spindle", "Correct it.")
+    place, surface = cycle.needed("SPL"), cycle.needed("SPD") / 2.0
+    clear = surface + (cycle.size("_SDIS") or RETRACT)
+    out = [Step(clear, cycle.z)] if cycle.x < clear else []
+    down = [*out, Step(max(clear, cycle.x), place), Step(clear, place), Step(slow, place, first)]
+    return _blocks(cycle, (fast, before, rpm), down, [Step(last, place, second), Step(clear, place)])
+
+
+def _depths(cycle: Cycle) -> tuple[float, float]:
+    """Radii at which the tool slows down and stands still. Raises ProgramError."""
+    surface, last = cycle.over_zero("SPD"), cycle.needed("_DIAG2")
+    slow = cycle.length("_DIAG1", last) if cycle.given("_DIAG1") else last
+    if not last <= slow <= surface:
+        text = f"is {slow:g}, and lies between SPD {surface:g} and _DIAG2 {last:g}"
+        raise cycle.wrong("_DIAG1", text, "Write diameters, SPD the largest.", WRONG_DEPTH)
+    return slow / 2.0, last / 2.0
+
+
+def _feeds(cycle: Cycle) -> tuple[float, float]:
+    first = cycle.feed("_FF1")
+    if first is None:
+        raise cycle.refused(NO_FEED, "no feedrate is programmed.", "Write _FF1.")
+    second = cycle.feed("_FF2") if cycle.number("_FF2") else first
+    return first, second or first
+
+
+def _speed(cycle: Cycle, before: Modal) -> Modal:
+    """What is in force down to _DIAG1. Raises ProgramError where the spindle would stand."""
+    value, most = cycle.number("_SV1"), cycle.number("_SV2")
+    direction = cycle.whole("_SDAC", 0, 0, 4)
+    if direction and direction not in _DIRECTION:
+        raise cycle.wrong("_SDAC", f"is {direction}", "3 is M3, 4 is M4.", NO_DIRECTION)
+    modal = before._replace(spindle=_DIRECTION.get(direction, before.spindle))
+    highest = cycle.state.setup.limits.max_rpm
+    if value < 0.0 or most < 0.0 or (value > highest and not most):
+        raise cycle.wrong("_SV1", f"is {value:g}, no speed of this spindle", "Correct it.")
+    if value and most:
+        modal = modal._replace(css=True, surface_speed=value * METRES_PER_MINUTE, css_max=most)
+    elif value:
+        modal = modal._replace(css=False, rpm=value)
+    if not modal.spindle or not (modal.surface_speed if modal.css else modal.rpm):
+        text = "the spindle stands, and neither _SV1 with _SDAC nor S with M3 starts it."
+        raise cycle.refused(NO_DIRECTION, text, "Write S and M3 before it.")
+    return modal
+
+
+def _blocks(
+    cycle: Cycle, speeds: tuple[Modal, Modal, float], down: list[Step], through: list[Step]
+) -> Iterator[Block]:
+    """Both halves, each at its speed. The first asks for all that can be refused."""
+    fast, before, rpm = speeds
+    state = cycle.state
+    slow = fast._replace(css=False, rpm=rpm) if rpm else fast
+    if fast != before:
+        state.adopt(fast)
+        yield _turning(cycle)
+    yield from cycle.blocks(down)
+    cycle.x, cycle.z = down[-1].x, down[-1].z
+    if slow != fast:
+        state.adopt(slow)
+        yield _turning(cycle)
+    yield from cycle.blocks(through)
+    if slow != before:
+        state.adopt(state.modal._replace(css=before.css, surface_speed=before.surface_speed, rpm=before.rpm,
+                                         css_max=before.css_max))  # fmt: skip
+        if state.rpm:
+            yield _turning(cycle)
+
+
+def _turning(cycle: Cycle) -> Block:
+    """The spindle at the speed that is in force now."""
+    state = cycle.state
+    text = f"G96 S{(state.css or 0.0) / METRES_PER_MINUTE:g}" if state.css else f"S{abs(state.rpm):g}"
+    return state.action(cycle.line.number, text, SpindleRun(state.rpm, state.css))

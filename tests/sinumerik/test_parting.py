@@ -1,0 +1,62 @@
+"""CYCLE92: down at two feeds and two speeds, and what its parameters refuse."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from core.interpreter.actions import SpindleRun
+from core.interpreter.elementary_blocks import Kind
+from core.interpreter.job_setup import ToolOffset
+from tests.sinumerik.lathe import refused, run, setup
+
+TOOLS = replace(setup(), tools={1: ToolOffset(quadrant=3)})
+START = "S900 M3 G95 F0.1\nT1 D1\nG0 X50 Z-30\n"
+
+
+def test_two_feeds_and_two_speeds() -> None:
+    """From 1 mm beside the diameter of 40 to that of 10, then on at half the feed, 0.5 beyond the axis."""
+    passed = run(START + "CYCLE92(40,-30,10,-1,,1,,,,0.1,0.05,500)", TOOLS)
+    assert passed.found == []
+    moves = [(b.kind, b.x, b.feed, b.rpm) for b in passed.moves if b.line == 4]
+    assert moves[1:3] == [(Kind.FEED, 5.0, 0.1, 900.0), (Kind.FEED, -0.5, 0.05, 500.0)]
+    assert (moves[0][1], moves[3][1]) == (21.0, 21.0)
+
+
+def test_a_surface_speed_beside_its_limit() -> None:
+    """120 m/min at most 2000 rpm: at 42 mm 909.457 rpm; behind the cycle S900 again."""
+    passed = run(START + "CYCLE92(40,-30,10,-1,,1,120,2000,3,0.1,0.05,500)", TOOLS)
+    ran = [b.action for b in passed.blocks if isinstance(b.action, SpindleRun)]
+    assert [each.surface_speed for each in ran] == [None, pytest.approx(2000.0), None, None]
+    assert (ran[2].rpm, ran[3].rpm) == (500.0, 900.0)
+    begun = next(b for b in passed.moves if b.line == 4 and b.kind is Kind.FEED)
+    assert begun.css == pytest.approx(2000.0)
+    assert begun.modal.css_max == 2000.0
+
+
+def test_from_inside_it_goes_out_first() -> None:
+    passed = run("S900 M3 G95 F0.1\nT1 D1\nG0 X36 Z2\nCYCLE92(40,-30,0,0)", TOOLS)
+    assert [(b.x, b.z) for b in passed.moves if b.line == 4][:2] == [(21.0, 2.0), (21.0, -30.0)]
+
+
+@pytest.mark.parametrize(
+    ("call", "code"),
+    [
+        ("CYCLE92(40,-30,50,-1)", "61604"),
+        ("CYCLE92(40,-30,10,12)", "61604"),
+        ("CYCLE92(40,-30,10)", "cycle-parameter"),
+        ("CYCLE92(40,-30,10,-1,0.2)", "not-in-subset"),
+        ("CYCLE92(40,-30,10,-1,,1,,,,,,,,1)", "not-in-subset"),
+        ("CYCLE92(40,-30,10,20,,1,,,,,,,,,,,11)", "not-in-subset"),
+        ("CYCLE92(40,-30,10,-1,,1,9000)", "cycle-parameter"),
+        ("CYCLE92(40,-30,10,-1,,1,500,,5)", "cycle-parameter"),
+        ("M5\nCYCLE92(40,-30,10,-1)", "61102"),
+    ],
+)
+def test_what_it_refuses(call: str, code: str) -> None:
+    assert refused(START + call, TOOLS).code == code
+
+
+def test_without_a_feed() -> None:
+    assert refused("S900 M3 G95\nT1 D1\nCYCLE92(40,-30,10,-1)", TOOLS).code == "61003"
