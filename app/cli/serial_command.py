@@ -153,11 +153,13 @@ def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> 
     from app.compose.program_transfer import SerialLines, proving
     from app.compose.stored_offsets import chosen_offsets
     from app.compose.workshop import workshop
+    from core.language.source import Dialect, usual_ending
 
     if args.out and Path(args.out).exists():  # before anything is waited for: it could not be stored
         sys.stderr.write(f"turndesk: {args.out} is there already and is never replaced; take another name\n")
         return EXIT_ERRORS
-    lines = SerialLines(proving(workshop(machine, chosen_offsets(None), pictures=False)))
+    ending = usual_ending(Dialect(machine.language))
+    lines = SerialLines(proving(workshop(machine, chosen_offsets(None), pictures=False)), ending)
     received = carry(lines.receive(settings), f"receiving from {settings.port}")
     if received is None:
         return EXIT_ERRORS
@@ -172,7 +174,7 @@ def _store(args: argparse.Namespace, received: Received) -> int:
     out = Path(args.out) if args.out else None
     folder = out.parent if out else data_folder() / "programs"
     try:
-        path = store_new(received.text, folder, out.name if out else free_name(folder, received.name))
+        path = store_new(received, folder, out.name if out else free_name(folder, received.name))
     except FileError as error:
         sys.stderr.write(f"turndesk: {error}\n")
         return EXIT_ERRORS

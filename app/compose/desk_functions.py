@@ -34,6 +34,7 @@ from app.special.setup_sheet_function import SetupSheetFunction
 from app.special.special_functions import SpecialFunction, SpecialFunctions
 from app.special.spindle_limit import SpindleSpeedLimit
 from app.transfer.serial_transfer import SerialTransfer
+from core.language.source import Dialect, usual_ending
 from core.machine.backup_table import BackupTable
 from core.machine.machine_model import Machine
 from core.machine.serial_table import DncModel
@@ -62,8 +63,7 @@ def _transfer(
     desk: Desk, machine: Machine, persistence: Persistence, workshop: LoadingSteps, own: Path
 ) -> SpecialFunction:
     """RS-232, at first as [dnc] of the machine file says. What comes in is proved as an import is."""
-    ending = {"mill": ".h"}.get(machine.kind, ".nc")
-    lines = SerialLines(proving(workshop), ending)
+    lines = SerialLines(proving(workshop), usual_ending(Dialect(machine.language)))
     return SerialTransfer(desk, persistence, lines, machine.hardware.table(DncModel) or PLAIN, own)
 
 

@@ -102,11 +102,12 @@ class ReceivingProgram(_Carried):
 
     def _looked_at(self, program: Program) -> Received:
         name = program.name or "RECEIVED"
-        source = _read(program.text, name if Path(name).suffix else name + self._ending)
+        name = name if Path(name).suffix else name + self._ending
+        source = _read(program.text, name)
         findings, cycle = self._check(source)
         return Received(
             text=source.text.encode("utf-8"),
-            name=program.name,
+            name=name,
             lines=program.lines,
             digest=program.digest,
             seven=program.seven,

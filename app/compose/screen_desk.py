@@ -56,6 +56,7 @@ from core.executor.recorder import Recorder, recorded_of
 from core.executor.snapshot import Event, Snapshot
 from core.executor.watchdog import ExecutorThread, Watchdog
 from core.interpreter.modal_state import Modal
+from core.language.source import Dialect, usual_ending
 from core.machine.backup_table import BackupTable
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError
@@ -273,7 +274,7 @@ def _desk(
     )
     desk.attach(Effect(drawer(machine), part_comparer(machine, shapes_at_hand, kept)))
     beside = workshop(machine, offsets, left=left, shapes=shapes_at_hand, kept=kept)
-    desk.attach(_editor(beside, journal))
+    desk.attach(_editor(beside, journal, machine))
     small = thumbnails(machine, shapes_at_hand, kept)
     furnish(desk, machine, keep, workshop(machine, offsets, left=left), thumbnail=small)
     give_mdi(desk, machine, offsets, keep)
@@ -314,9 +315,10 @@ def _drives(machine: Machine) -> str:
     return "SIMULATED SLIDES · REAL SPINDLE" if has_inverter(machine) else "SIMULATED"
 
 
-def _editor(work: LoadingSteps, journal: Journal | None) -> Editor:
+def _editor(work: LoadingSteps, journal: Journal | None, machine: Machine) -> Editor:
     """The editor proves what is being typed without keeping a version of every key."""
-    return Editor(work, journal or NoArchive(), data_folder() / "programs", samples())
+    ending = usual_ending(Dialect(machine.language))
+    return Editor(work, journal or NoArchive(), data_folder() / "programs", samples(), usual_ending=ending)
 
 
 def step_clock() -> StepClock:

@@ -12,7 +12,6 @@ from core.language.source import SourceError, load_source
 from core.store.program_records import check_name
 from core.store.store_errors import StoreError
 
-USUAL_ENDING = ".nc"
 MOST_LINES = 50_000  # the text field takes .7 s of the screen's time for them
 _DOS = "\r\n"
 
@@ -75,13 +74,13 @@ def _text(path: Path) -> str:
         raise
 
 
-def new_document(folder: Path, typed: str) -> Document:
+def new_document(folder: Path, typed: str, usual: str) -> Document:
     """A new and empty document of this name. Raises NameRefusedError with a sentence."""
-    return Document(folder / program_name(typed), fresh=True)
+    return Document(folder / program_name(typed, usual), fresh=True)
 
 
-def program_name(typed: str) -> str:
-    """The file name that was meant: a name without an ending gets the usual one."""
+def program_name(typed: str, usual: str) -> str:
+    """The file name that was meant: a name without an ending gets the ``usual`` one."""
     name = typed.strip()
     if not name:
         raise NameRefusedError("NO NAME WAS TYPED: A PROGRAM NEEDS ONE")
@@ -97,7 +96,7 @@ def program_name(typed: str) -> str:
     if ending.lower() not in ENDINGS:
         allowed = " ".join(sorted(ENDINGS - {""}))
         raise NameRefusedError(f"{ending} IS NO ENDING OF A PROGRAM: TAKE NONE, OR ONE OF {allowed}")
-    return name if ending else name + USUAL_ENDING
+    return name if ending else name + usual
 
 
 # --- saving: the file first, then the version; what stood there before is kept too -------------------------

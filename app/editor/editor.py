@@ -75,6 +75,7 @@ class Editor:
     wanted: str = ""  # a name typed where a program is chosen: it is what the editor is entered for
     restored: bool = False  # it takes the place of what was typed, as one step that can be undone
     block_delete: bool = False
+    usual_ending: str = ".nc"  # of a new program: that of the language that this machine is typed in
     proof: LiveProof = field(init=False)
     drafts: Drafts = field(init=False)
     worker: Latest = field(default_factory=lambda: Latest("editing-files"))
@@ -122,7 +123,7 @@ class Editor:
         if self.stage is not Stage.OFFERED:
             return
         try:
-            document = new_document(self.programs, self._offered)
+            document = new_document(self.programs, self._offered, self.usual_ending)
         except NameRefusedError as error:
             self.notice = f"{error}; ESC"
             return
@@ -207,7 +208,7 @@ class Editor:
         if document is None or self.stage is not Stage.NAMING:
             return False
         try:
-            path = new_document(self.programs, typed).path
+            path = new_document(self.programs, typed, document.path.suffix or self.usual_ending).path
         except NameRefusedError as error:
             self.notice = str(error)
             return False

@@ -40,8 +40,8 @@ class TransferProgress(Protocol):
 class Received:
     """A whole program that has come in and was looked at; it is not stored yet.
 
-    ``name`` as it calls itself, empty: it does not. ``digest``: SHA-256 of ``text``. ``seven``: it came in
-    seven bits although eight are set. ``findings``: errors of the proof.
+    ``name``: the file name under which it was proved: as it calls itself, with an ending. ``digest``: SHA-256
+    of ``text``. ``seven``: it came in seven bits although eight are set. ``findings``: errors of the proof.
     """
 
     text: bytes
@@ -87,24 +87,24 @@ class SerialPorts(Protocol):
 
 # --- a received program becomes a new file; nothing that is there is ever touched ------------------------
 
-ENDING = ".nc"
 
+def store_new(received: Received, folder: Path, name: str) -> Path:
+    """The new file; ``name`` gets the ending of what was proved where it has none.
 
-def store_new(text: bytes, folder: Path, name: str) -> Path:
-    """The new file. Raises FileError: the name is none, or is taken, or the disk does not take it."""
-    name = checked_name(name, Path(f"x{ENDING}"))
+    Raises FileError: the name is none, or is taken, or the disk does not take it.
+    """
+    name = checked_name(name, Path(received.name))
     if other := same_name_in(folder, name):
         raise FileError(f"{other} IS THERE ALREADY; TAKE ANOTHER NAME")
-    write_new(folder / name, text)
+    write_new(folder / name, received.text)
     return folder / name
 
 
 def free_name(folder: Path, name: str) -> str:
     """``name``, or the first of ``name-2``, ``name-3`` … that is not taken."""
-    base = Path(name or "RECEIVED")
-    suffix = base.suffix or ENDING
-    tried, number = f"{base.stem}{suffix}", 1
+    base = Path(name)
+    tried, number = name, 1
     while same_name_in(folder, tried):
         number += 1
-        tried = f"{base.stem}-{number}{suffix}"
+        tried = f"{base.stem}-{number}{base.suffix}"
     return tried

@@ -257,7 +257,7 @@ class SerialTransfer(SpecialFunction):
     def _store(self) -> None:
         assert self.received is not None
         try:
-            path = store_new(self.received.text, self.own, self.entry.text)
+            path = store_new(self.received, self.own, self.entry.text)
         except FileError as error:
             self.desk.refuse(str(error))
             return

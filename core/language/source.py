@@ -23,6 +23,14 @@ class Dialect(StrEnum):
 _BY_ENDING = {".h": Dialect.KLARTEXT, ".mpf": Dialect.SINUMERIK, ".spf": Dialect.SINUMERIK}
 
 
+_USUAL_ENDINGS = {Dialect.OMNITURN: ".nc", Dialect.KLARTEXT: ".h", Dialect.SINUMERIK: ".mpf"}
+
+
+def usual_ending(dialect: Dialect) -> str:
+    """What the name of a program of this dialect ends with where nobody says otherwise."""
+    return _USUAL_ENDINGS[dialect]
+
+
 def dialect_of(name: str) -> Dialect:
     """The dialect that a file of this name holds where nobody says otherwise."""
     return _BY_ENDING.get(PurePath(name).suffix.lower(), Dialect.OMNITURN)

@@ -127,6 +127,25 @@ def test_a_sample_is_saved_under_a_free_name_only(editor: Editor, left: list[Lef
     assert sample.read_text() == GOOD
 
 
+def test_a_sample_of_another_language_keeps_its_ending(editor: Editor) -> None:
+    sample = editor.samples / "plate.h"
+    sample.write_text("BEGIN PGM PLATE MM\nEND PGM PLATE MM\n")
+    editor.open(sample)
+    settle(editor)
+    editor.leave(editor.text + "; X\n")
+    assert editor.take_name("mine")
+    settle(editor)
+    assert (editor.programs / "mine.h").exists()
+
+
+def test_a_new_program_has_the_ending_of_the_language_of_the_machine(editor: Editor) -> None:
+    editor.usual_ending = ".h"
+    editor.offer("roof")
+    editor.create()
+    assert editor.document is not None
+    assert editor.document.name == "roof.h"
+
+
 def test_a_version_that_cannot_be_kept_is_told_after_leaving(editor: Editor, memory: Memory) -> None:
     own(editor, "part.nc")
     memory.full = True

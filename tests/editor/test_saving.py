@@ -104,7 +104,7 @@ def test_a_full_archive_does_not_keep_the_file_from_being_saved(part: Path) -> N
 
 
 def test_a_file_that_has_come_meanwhile_is_not_overwritten_by_a_new_one(tmp_path: Path) -> None:
-    document = new_document(tmp_path, "part")
+    document = new_document(tmp_path, "part", ".nc")
     (tmp_path / "part.nc").write_text("M02\n")
     assert save_document(document, "M30\n", Memory(), replacing=False) == CHANGED
 

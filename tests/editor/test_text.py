@@ -8,6 +8,7 @@ from app.editor.document import NameRefusedError, program_name
 from app.editor.find_replace import Search, following, preceding
 from app.editor.versions import DifferenceRow as Row
 from app.editor.versions import differences
+from core.language.source import Dialect, dialect_of, usual_ending
 
 TEXT = "F100\nX1F1000\nf100(F100.)\nF100.5 F100X2\n"
 
@@ -68,13 +69,26 @@ def test_a_huge_text_is_compared_from_both_ends() -> None:
 
 
 @pytest.mark.parametrize(
-    ("typed", "name"), [("pin", "pin.nc"), (" pin 2 ", "pin 2.nc"), ("pin.TXT", "pin.TXT")]
+    ("typed", "usual", "name"),
+    [
+        ("pin", ".nc", "pin.nc"),
+        (" pin 2 ", ".nc", "pin 2.nc"),
+        ("pin.TXT", ".nc", "pin.TXT"),
+        ("roof", ".h", "roof.h"),
+        ("ring", ".mpf", "ring.mpf"),
+        ("ring.spf", ".mpf", "ring.spf"),
+    ],
 )
-def test_a_name_gets_the_usual_ending(typed: str, name: str) -> None:
-    assert program_name(typed) == name
+def test_a_name_gets_the_usual_ending(typed: str, usual: str, name: str) -> None:
+    assert program_name(typed, usual) == name
+
+
+@pytest.mark.parametrize("dialect", Dialect)
+def test_the_usual_ending_of_a_language_is_read_as_that_language(dialect: Dialect) -> None:
+    assert dialect_of(f"part{usual_ending(dialect)}") is dialect
 
 
 @pytest.mark.parametrize("typed", ["", "  ", ".pin", "a/b", "..", "a\\b", "pin.exe", "a:b", "x" * 300])
 def test_a_name_that_no_program_can_have_is_refused(typed: str) -> None:
     with pytest.raises(NameRefusedError):
-        program_name(typed)
+        program_name(typed, ".nc")

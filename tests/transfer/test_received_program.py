@@ -7,21 +7,29 @@ from pathlib import Path
 import pytest
 
 from app.programs.whole_file import FileError
-from app.transfer.line_transfer import free_name, store_new
+from app.transfer.line_transfer import Received, free_name, store_new
+
+
+def received(name: str = "O77.nc") -> Received:
+    return Received(b"M30\n", name, 1, "", False, 0, (), 0.0)
 
 
 def test_a_new_file_with_its_ending(tmp_path: Path) -> None:
-    path = store_new(b"M30\n", tmp_path / "programs", "O77")
+    path = store_new(received(), tmp_path / "programs", "O77")
     assert path == tmp_path / "programs" / "O77.nc"
     assert path.read_bytes() == b"M30\n"
     assert [each.name for each in path.parent.iterdir()] == ["O77.nc"]
+
+
+def test_a_klartext_program_that_is_given_another_name_stays_one(tmp_path: Path) -> None:
+    assert store_new(received("PLATE.h"), tmp_path, "ROOF").name == "ROOF.h"
 
 
 @pytest.mark.parametrize("name", ["O77", "O77.nc", "o77.NC"])
 def test_what_is_there_stays(tmp_path: Path, name: str) -> None:
     (tmp_path / "O77.nc").write_bytes(b"OLD\n")
     with pytest.raises(FileError, match="IS THERE ALREADY; TAKE ANOTHER NAME"):
-        store_new(b"M30\n", tmp_path, name)
+        store_new(received(), tmp_path, name)
     assert (tmp_path / "O77.nc").read_bytes() == b"OLD\n"
     assert len(list(tmp_path.iterdir())) == 1
 
@@ -29,20 +37,19 @@ def test_what_is_there_stays(tmp_path: Path, name: str) -> None:
 @pytest.mark.parametrize("name", ["", "  ", "../O77", "a/b", ".hidden"])
 def test_names_that_are_none(tmp_path: Path, name: str) -> None:
     with pytest.raises(FileError):
-        store_new(b"M30\n", tmp_path, name)
+        store_new(received(), tmp_path, name)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_disk_that_takes_nothing_is_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "file").write_bytes(b"")
     with pytest.raises(FileError, match="CANNOT BE WRITTEN"):
-        store_new(b"M30\n", tmp_path / "file", "O77")
+        store_new(received(), tmp_path / "file", "O77")
 
 
 def test_a_name_that_is_free_is_offered(tmp_path: Path) -> None:
-    assert free_name(tmp_path, "O77") == "O77.nc"
-    assert free_name(tmp_path, "") == "RECEIVED.nc"
+    assert free_name(tmp_path, "O77.nc") == "O77.nc"
     assert free_name(tmp_path, "RING.mpf") == "RING.mpf"
     (tmp_path / "o77.NC").write_bytes(b"")
     (tmp_path / "O77-2.nc").write_bytes(b"")
-    assert free_name(tmp_path, "O77") == "O77-3.nc"
+    assert free_name(tmp_path, "O77.nc") == "O77-3.nc"
