@@ -28,6 +28,7 @@ COMMANDS = (
     "alarms",
     "parts",
     "jobs",
+    "share",
     "shift",
     "scope",
     "setup",

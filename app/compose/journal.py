@@ -125,15 +125,15 @@ class Journal(Persistence):
 
     def versions(self, name: str) -> tuple[VersionRow, ...]:
         """Every version of a program, newest first. Raises StoreError; not for the screen's thread."""
-        return self._opened().versions(name)
+        return self.opened().versions(name)
 
     def text_of(self, name: str, version: int) -> bytes:
         """A version as it was kept. Raises StoreError; not for the screen's thread."""
-        return self._opened().load_program(name, version)
+        return self.opened().load_program(name, version)
 
     def save_version(self, name: str, text: bytes, why: str) -> int:
         """Another version; its number once it is kept. Raises StoreError; not for the screen's thread."""
-        return self._opened().save_program(name, text, why).result()
+        return self.opened().save_program(name, text, why).result()
 
     def setting(self, key: str) -> object:
         """A setting; None: not set, or nothing is kept."""
@@ -146,7 +146,7 @@ class Journal(Persistence):
 
     def keep_settings(self, values: Mapping[str, object]) -> None:
         """Settings that are on the disk when this is back. Raises StoreError; not for the screen's thread."""
-        store = self._opened()
+        store = self.opened()
         for written in [store.set_setting(key, value) for key, value in values.items()]:
             written.result()
 
@@ -165,15 +165,15 @@ class Journal(Persistence):
 
     def events(self, search: str, kinds: Collection[str], limit: int) -> tuple[EventRow, ...]:
         """The log, newest first."""
-        return self._opened().events(search, limit, kinds)
+        return self.opened().events(search, limit, kinds)
 
     def runs(self) -> tuple[RunRow, ...]:
         """What each program has done."""
-        return self._opened().runs()
+        return self.opened().runs()
 
     def tools_of_last_run(self, program: str) -> tuple[str, dict[int, ToolRow]]:
         """When it was started last (UTC), and its tools as they were then; on a worker. Raises StoreError."""
-        store = self._opened()
+        store = self.opened()
         started = next((row.started for row in store.runs() if row.program == program), None)
         return (started, store.tools_at(started)) if started is not None else ("", {})
 
@@ -201,7 +201,7 @@ class Journal(Persistence):
 
     def backup(self, target: Path) -> None:
         """A copy of the store, also while it is written. Raises StoreError."""
-        self._opened()
+        self.opened()
         backup.backup(self._folder, target)
 
     def restore(self, source: Path) -> Path | None:
@@ -210,7 +210,7 @@ class Journal(Persistence):
         Whatever happens a store is open again afterwards: the restored one, or the one before.
         """
         with self._lock:
-            store, self._store = self._opened(), None
+            store, self._store = self.opened(), None
             self._held = deque(maxlen=HELD)
         store.close()
         try:
@@ -248,7 +248,8 @@ class Journal(Persistence):
         if store is not None:
             write(store)
 
-    def _opened(self) -> Store:
+    def opened(self) -> Store:
+        """The store of this moment: another after a restore. Raises StoreError while there is none."""
         store = self._store
         if store is None:
             raise StoreError(self._trouble or "the store is closed")

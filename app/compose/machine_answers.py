@@ -11,10 +11,14 @@ from app.compose.backend_entry import backend_of, played
 from app.compose.backends import connect, real_time
 from app.compose.inverter_backend import has_inverter
 from app.compose.page_server import listening_at
+from app.compose.sharing_desk import place_of
 from app.compose.shop_floor import try_shop_floor
+from app.desk.data_folder import data_folder
 from core.machine.machine_model import Axis, Machine
+from core.machine.sharing_table import SharingTable
 from core.machine.shop_network_tables import AnnounceTable, StatusPageTable, broker_of
 from core.ports import Clock, DriverError, MachinePorts, StationState
+from core.sharing.sharing_errors import SharingError
 from core.table_schema import Unit, shown
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import RealClock, StepClock
@@ -77,6 +81,7 @@ def check_ports(machine: Machine) -> Answers:
         answers.trouble.append(str(error))
     _ask_shop_floor(machine, answers)
     _ask_office(machine, answers)
+    _ask_sharing(machine, answers)
     return answers
 
 
@@ -116,6 +121,22 @@ def _ask_office(machine: Machine, answers: Answers) -> None:
             answers.trouble.append(why)
         else:
             answers.rows.append(Row("announce", told.mqtt, "ok", told.topic))
+
+
+def _ask_sharing(machine: Machine, answers: Answers) -> None:
+    """Whether the place of shared programs is there and laid out."""
+    table = machine.hardware.table(SharingTable)
+    if table is None:
+        return
+    place = place_of(table, data_folder())
+    try:
+        found = place.look({})
+    except SharingError as error:
+        answers.rows.append(Row("sharing", place.name, "no answer", str(error)))
+        answers.trouble.append(str(error))
+    else:
+        desks = ", ".join(sorted(each.desk for each in found.desks)) or "no desk yet"
+        answers.rows.append(Row("sharing", place.name, "ok", desks))
 
 
 def _ask_nodes(machine: Machine, clock: Clock, answers: Answers) -> None:

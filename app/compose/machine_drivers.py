@@ -8,6 +8,7 @@ from core.machine import (
     machine_file,
     serial_table,
     setter_table,
+    sharing_table,
     shop_network_tables,
 )
 from core.machine.machine_model import Machine
@@ -37,6 +38,7 @@ _ENTRIES = (
     (mtconnect_table.DRIVER, ""),
     (shop_network_tables.DRIVER, ""),
     (backup_table.DRIVER, ""),
+    (sharing_table.DRIVER, ""),
 )
 DRIVERS: tuple[Driver, ...] = tuple(driver for driver, _ in _ENTRIES)
 BACKENDS = {driver.backend: module for driver, module in _ENTRIES if module}

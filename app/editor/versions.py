@@ -129,7 +129,7 @@ class VersionHistory:
         name, now, number = self.name, self.now, self.rows[self.marked].number
 
         def compare(_watch: Watch) -> tuple[str, tuple[DifferenceRow, ...]]:
-            text = _lines(self.archive.text_of(name, number))
+            text = lines_of(self.archive.text_of(name, number))
             return text, differences(text, now)
 
         self.worker.ask(compare, self._compared, self._failed)
@@ -160,7 +160,7 @@ class VersionHistory:
         self.trouble = why
 
 
-def _lines(data: bytes) -> str:
+def lines_of(data: bytes) -> str:
     """A version's text as an editor shows it; bytes of old codes stay apart from each other."""
     try:
         text = data.decode("utf-8-sig")

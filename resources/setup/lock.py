@@ -24,7 +24,7 @@ PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 # The tests' first: what the others share with them has the same versions then.
 SETS: dict[str, tuple[str, ...]] = {
     "tests": ("dev",),
-    "desk": ("canopen", "shop"),
+    "desk": ("canopen", "shop", "postgresql"),
     "scheduler": ("scheduler",),
 }
 """The locked files and the optional dependencies that are in them."""

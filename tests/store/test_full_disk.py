@@ -100,7 +100,7 @@ def test_an_offset_is_refused_and_the_reason_is_the_disk(disk: Disk) -> None:
 
 def test_an_interrupted_job_is_kept_as_soon_as_there_is_room(disk: Disk) -> None:
     journal = Journal(disk.path / "home")
-    store = journal._opened()
+    store = journal.opened()
     fill_up(store, disk)
     journal.note(broken_off())
     disk.make_room()
@@ -113,7 +113,7 @@ def test_an_interrupted_job_is_kept_as_soon_as_there_is_room(disk: Disk) -> None
 def test_closing_says_what_is_lost(disk: Disk) -> None:
     journal = Journal(disk.path / "home")
     journal.hear(Event(0.0, "load", "pin.nc"))
-    fill_up(journal._opened(), disk)
+    fill_up(journal.opened(), disk)
     for number in range(20):
         journal.hear(part(number))
     lost = journal.close()

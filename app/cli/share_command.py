@@ -1,0 +1,246 @@
+"""``turndesk share``: programs shared with other desks: what is newer elsewhere, publish, take, compare."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from app.cli.store_command import opened_store
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+    from app.sharing.sharing import Shared, Sharing
+    from core.store.shared_versions import Family, SharedVersion
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """The subcommand with its actions."""
+    parser = subparsers.add_parser("share", help="programs shared with other desks: publish, take, compare")
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    begin = actions.add_parser("begin", help="lay out the place that [sharing] names, once for all desks")
+    status = actions.add_parser("status", help="what is newer elsewhere, who has what; changes nothing here")
+    publish = actions.add_parser("publish", help="publish what is new here now, and learn what is new there")
+    publish.add_argument("--claim", action="store_true", help="go on as the desk of this name that is gone")
+    compare = actions.add_parser("compare", help="what taking a version would change, line by line")
+    take = actions.add_parser("take", help="put a version of another desk into the program folder")
+    keep = actions.add_parser("keep", help="what is here stands against what was changed elsewhere")
+    for action in (compare, take, keep):
+        action.add_argument("name", metavar="PROGRAM")
+    for action in (compare, take):
+        action.add_argument("--id", metavar="ID", help="its first letters, as 'status' shows them")
+    for action in (begin, status, publish, compare, take, keep):
+        action.add_argument("--machine", metavar="FILE", help="machine file with [sharing]")
+        action.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Does what ``args`` asks; raises CommandError with one sentence."""
+    from app.compose.machine_setup import read_machine
+    from app.compose.sharing_desk import sharing_of
+
+    machine = read_machine(args.machine)
+    with _refusals(), opened_store(read_only=args.action in _READING) as store:
+        sharing = sharing_of(machine, lambda: store)
+        if sharing is None:
+            raise CommandError(
+                "the machine file has no [sharing]; name a folder, a git remote or a database there"
+            )
+        return _ACTIONS[args.action](sharing, args)
+
+
+@contextmanager
+def _refusals() -> Iterator[None]:
+    from app.sharing.sharing import TakeError
+    from core.sharing.sharing_errors import SharingError
+
+    try:
+        yield
+    except (SharingError, TakeError) as error:
+        raise CommandError(str(error)) from error
+
+
+# --- the actions -----------------------------------------------------------------------------------------
+
+
+def _begin(sharing: Sharing, args: argparse.Namespace) -> int:
+    sharing.place.begin()
+    _say(args, f"{sharing.place.name} is laid out for shared programs", {"place": sharing.place.name})
+    return EXIT_OK
+
+
+def _status(sharing: Sharing, args: argparse.Namespace) -> int:
+    shared = sharing.peek()
+    sys.stdout.write(json.dumps(told(sharing, shared)) + "\n" if args.json else _table(sharing, shared))
+    if shared.trouble:
+        sys.stderr.write(f"turndesk: {shared.trouble}\n")
+    return EXIT_ERRORS if shared.trouble else EXIT_OK
+
+
+def _publish(sharing: Sharing, args: argparse.Namespace) -> int:
+    if args.claim:
+        _claim(sharing)
+    shared = _looked(sharing)
+    if shared.trouble:
+        raise CommandError(shared.trouble)
+    count = sum(bool(family.here) for family in shared.families.values())
+    _say(args, f"{sharing.place.name} has all {count} programs of {sharing.desk}", told(sharing, shared))
+    return EXIT_OK
+
+
+def _claim(sharing: Sharing) -> None:
+    from app.compose.sharing_desk import claim
+    from app.desk.data_folder import data_folder
+    from core.store.shared_versions import key_of
+
+    found = sharing.place.look({}).desks
+    homes = [each.home for each in found if key_of(each.desk) == key_of(sharing.desk)]
+    if homes:
+        sharing.home = claim(data_folder(), homes[0])
+
+
+def _compare(sharing: Sharing, args: argparse.Namespace) -> int:
+    from app.editor.versions import differences, lines_of
+
+    version = _chosen(sharing.peek(), args)
+    rows = differences(lines_of(sharing.text_here(version.key)), lines_of(sharing.text(version)))
+    if args.json:
+        changes = [{"sign": row.sign, "here": row.old, "there": row.new, "text": row.text} for row in rows]
+        sys.stdout.write(json.dumps({"version": _of(version), "changes": changes}) + "\n")
+        return EXIT_OK
+    sys.stdout.write(
+        "".join(f"{row.old or '':>5} {row.new or '':>5} {row.sign} {row.text}\n" for row in rows)
+    )
+    return EXIT_OK
+
+
+def _take(sharing: Sharing, args: argparse.Namespace) -> int:
+    version = _chosen(_looked(sharing), args)
+    name = sharing.take(version)
+    _looked(sharing)
+    said = f"{name} is that of {version.desk} now; what was here is kept among its versions"
+    _say(args, said, {"taken": _of(version), "file": name})
+    return EXIT_OK
+
+
+def _keep(sharing: Sharing, args: argparse.Namespace) -> int:
+    from core.store.shared_versions import key_of
+
+    _looked(sharing)
+    sharing.keep(key_of(args.name))
+    shared = _looked(sharing)
+    wait = f"; it waits: {shared.trouble}" if shared.trouble else ""
+    _say(args, f"{args.name} stands as it is here{wait}", {"kept": args.name, "trouble": shared.trouble})
+    return EXIT_OK
+
+
+_ACTIONS = {
+    "begin": _begin,
+    "status": _status,
+    "publish": _publish,
+    "compare": _compare,
+    "take": _take,
+    "keep": _keep,
+}
+_READING = frozenset({"begin", "status", "compare"})  # beside a desk that runs
+
+
+def _looked(sharing: Sharing) -> Shared:
+    shared = sharing.look()
+    for name, why in shared.refused.items():
+        sys.stderr.write(f"turndesk: {name} is not shared: {why}\n")
+    return shared
+
+
+def _chosen(shared: Shared, args: argparse.Namespace) -> SharedVersion:
+    from core.store.shared_versions import key_of
+
+    family = shared.families.get(key_of(args.name))
+    if family is None:
+        raise CommandError(
+            f"no desk shares a program {args.name}; {shared.trouble or 'see turndesk share status'}"
+        )
+    if args.id:
+        found = [each for each in family.versions.values() if each.id.startswith(args.id)]
+        if len(found) != 1:
+            which = "no version" if not found else f"{len(found)} versions"
+            raise CommandError(
+                f"{which} of {args.name} begin with {args.id}; see turndesk share status --json"
+            )
+        return found[0]
+    if not family.elsewhere:
+        raise CommandError(f"{args.name} is nowhere newer than here; {shared.trouble or 'nothing to take'}")
+    if len(family.elsewhere) > 1:
+        which = ", ".join(f"{each.id[:8]} of {each.desk}" for each in family.elsewhere)
+        raise CommandError(f"{args.name} has {len(family.elsewhere)} newest versions: {which}; say --id ID")
+    return family.elsewhere[0]
+
+
+# --- how it is told --------------------------------------------------------------------------------------
+
+
+def _say(args: argparse.Namespace, words: str, values: dict[str, object]) -> None:
+    sys.stdout.write((json.dumps(values) if args.json else words) + "\n")
+
+
+def told(sharing: Sharing, shared: Shared) -> dict[str, object]:
+    """All that is known, for scripts."""
+    return {
+        "place": sharing.place.name,
+        "desk": sharing.desk,
+        "trouble": shared.trouble or None,
+        "waiting": shared.waiting,
+        "programs": [_program(shared, family) for _, family in sorted(shared.families.items())],
+        "desks": [{"desk": each.desk, "told": each.at, "has": dict(each.has)} for each in shared.desks],
+        "strays": list(shared.strays),
+        "not_shared": dict(shared.refused),
+    }
+
+
+def _program(shared: Shared, family: Family) -> dict[str, object]:
+    here = family.versions.get(family.here)
+    newest = family.newest
+    return {
+        "program": (here or newest[0]).program,
+        "state": family.state,
+        "here": _of(here) if here is not None else None,
+        "elsewhere": [_of(each) | {"on": list(shared.who_has(each.id))} for each in family.elsewhere],
+        "versions": len(family.versions),
+    }
+
+
+def _of(version: SharedVersion) -> dict[str, object]:
+    return {
+        "id": version.id,
+        "desk": version.desk,
+        "saved": version.saved,
+        "size": version.size,
+        "why": version.why,
+        "follows": list(version.follows),
+    }
+
+
+_STATES = {
+    "same": "the newest",
+    "newer": "newer elsewhere",
+    "both": "changed here and elsewhere",
+    "new": "not here",
+}
+
+
+def _table(sharing: Sharing, shared: Shared) -> str:
+    lines = [f"{sharing.desk} shares in {sharing.place.name}; versions that wait: {shared.waiting}\n"]
+    for _, family in sorted(shared.families.items()):
+        name = (family.versions.get(family.here) or family.newest[0]).program
+        lines.append(f"{name:24}  {_STATES[family.state]}\n")
+        for each in family.elsewhere:
+            on = ", ".join(shared.who_has(each.id)) or "no desk"
+            lines.append(f"    {each.id[:8]}  {each.desk}  {each.saved}  {each.size} bytes  on {on}\n")
+    lines += [f"{name} is not shared: {why}\n" for name, why in shared.refused.items()]
+    if shared.strays:
+        lines.append(f"no versions, left as they are: {', '.join(shared.strays[:5])}\n")
+    return "".join(lines)

@@ -1,0 +1,57 @@
+"""[sharing] of the machine file: where the programs of this desk are shared with other desks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from core.table_schema import Driver, DriverTable, Field, FileReading, Finding, Kind, Unit, written
+
+KINDS = ("folder", "git", "postgresql")
+_LONGEST = 40  # letters of a desk's name
+_FIELDS = (
+    Field("folder", Kind.TEXT, default=""),
+    Field("git", Kind.TEXT, default=""),
+    Field("postgresql", Kind.TEXT, default=""),
+    Field("desk", Kind.TEXT, default=""),
+    Field("look", Kind.NUMBER, Unit.SECONDS, 2.0, 3600.0, default=30.0),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SharingTable:
+    """One of ``folder``, ``git`` (a remote) and ``postgresql`` (what libpq takes); the others are empty.
+
+    ``desk`` is what this desk is called among the others; empty: as the machine. ``look``: seconds between
+    two looks at what is new there.
+    """
+
+    folder: str
+    git: str
+    postgresql: str
+    desk: str
+    look: float
+
+
+def _rules(file: FileReading) -> Iterator[Finding]:
+    values = file.values
+    if not values.has("sharing.folder", "sharing.git", "sharing.postgresql", "sharing.desk"):
+        return
+    named = [kind for kind in KINDS if values.text(f"sharing.{kind}")]
+    if len(named) != 1:
+        said = " and ".join(named) if named else "none"
+        yield Finding("sharing", said, f"one place: {', '.join(KINDS[:-1])} or {KINDS[-1]}")
+    git, desk = values.text("sharing.git"), values.text("sharing.desk")
+    if git.startswith("-"):
+        yield Finding("sharing.git", written(git), "the address of a repository")
+    if desk.strip() != desk or len(desk) > _LONGEST or not desk.isprintable():
+        yield Finding("sharing.desk", written(desk), f"a name of {_LONGEST} letters at most")
+
+
+DRIVER = Driver(
+    tables=(
+        DriverTable(
+            "sharing", _FIELDS, lambda file: file.values.model(SharingTable, "sharing"), rules=_rules
+        ),
+    )
+)

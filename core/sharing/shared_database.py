@@ -1,0 +1,171 @@
+"""Programs shared in a PostgreSQL database: rows are added in one transaction, and never changed."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from core.sharing.shared_place import Found, Published
+from core.sharing.sharing_errors import Cause, SharingError
+from core.sharing.version_record import (
+    FORMAT,
+    DeskState,
+    RecordError,
+    checked_text,
+    read_state,
+    read_version,
+    written,
+)
+from core.store.shared_versions import SharedVersion
+
+if TYPE_CHECKING:
+    import psycopg
+
+_LAYOUT = """
+CREATE SCHEMA IF NOT EXISTS turndesk;
+CREATE TABLE IF NOT EXISTS turndesk.layout (format integer PRIMARY KEY);
+CREATE TABLE IF NOT EXISTS turndesk.versions (
+    id text PRIMARY KEY, record bytea NOT NULL, program_text bytea NOT NULL
+);
+CREATE TABLE IF NOT EXISTS turndesk.desks (home text PRIMARY KEY, state bytea NOT NULL);
+"""
+_ADD = "INSERT INTO turndesk.versions VALUES (%s, %s, %s) ON CONFLICT DO NOTHING"
+_TELL = "INSERT INTO turndesk.desks VALUES (%s, %s) ON CONFLICT (home) DO UPDATE SET state = excluded.state"
+_AT_ONCE = 500  # records a question
+# What a server says that is asked but refuses to begin: libpq hands on its sentence and no code.
+_AT_THE_DOOR: tuple[tuple[Cause, tuple[str, ...]], ...] = (
+    (
+        Cause.NO_RIGHT,
+        ("authentication failed", "no pg_hba.conf entry", "permission denied", "no password supplied"),
+    ),
+    (Cause.NOT_THERE, ("does not exist",)),
+    (Cause.FULL, ("no space left",)),
+)
+# By the server's error codes, the first letters of them.
+_CODES: tuple[tuple[Cause, tuple[str, ...]], ...] = (
+    (Cause.NO_RIGHT, ("42501", "28", "25006")),
+    (Cause.NOT_BEGUN, ("42P01", "3F000")),
+    (Cause.OTHER, ("42", "22")),
+    (Cause.FULL, ("53100",)),
+    (Cause.NOT_THERE, ("3D000",)),
+)
+
+
+class SharedDatabase:
+    """``conninfo`` is what libpq takes: ``host=shop-pc dbname=shop user=lathe3``, or an address.
+
+    A connection is made for each call and ended by it: a server that is started anew, or killed, costs one
+    look and nothing else.
+    """
+
+    def __init__(self, conninfo: str) -> None:
+        self.name = f"the database {_named(conninfo)}"
+        self._conninfo = conninfo
+
+    def begin(self) -> None:
+        """Schema and tables, in one transaction."""
+        with self._asked(demand=False) as connection:
+            connection.execute(_LAYOUT)
+            connection.execute(
+                "INSERT INTO turndesk.layout SELECT %s WHERE NOT EXISTS (SELECT 1 FROM turndesk.layout)",
+                (FORMAT,),
+            )
+            self._demand(connection)
+
+    def look(self, known: Mapping[str, SharedVersion]) -> Found:
+        """Ids of all, records of those that are not known."""
+        with self._asked() as connection:
+            there = {str(row[0]) for row in connection.execute("SELECT id FROM turndesk.versions")}
+            wanted, fresh, strays = sorted(there - known.keys()), list[SharedVersion](), list[str]()
+            for first in range(0, len(wanted), _AT_ONCE):
+                query = "SELECT id, record FROM turndesk.versions WHERE id = ANY(%s)"
+                for name, record in connection.execute(query, (wanted[first : first + _AT_ONCE],)):
+                    try:
+                        fresh.append(read_version(name, bytes(record)))
+                    except RecordError:
+                        strays.append(name)
+            desks = self._desks(connection, strays)
+        return Found(frozenset(there - set(strays)), tuple(fresh), desks, tuple(strays))
+
+    def put(self, versions: Sequence[Published], state: DeskState) -> None:
+        """All in one transaction: back when the server has it on its disk."""
+        with self._asked() as connection:
+            rows = [(each.version.id, written(each.version), each.text) for each in versions]
+            if rows:
+                connection.cursor().executemany(_ADD, rows)
+            connection.execute(_TELL, (state.home, state.written()))
+
+    def text(self, version: SharedVersion) -> bytes:
+        """One row."""
+        query = "SELECT program_text FROM turndesk.versions WHERE id = %s"
+        with self._asked() as connection:
+            row = connection.execute(query, (version.id,)).fetchone()
+        try:
+            return checked_text(version, bytes(row[0]) if row is not None else b"")
+        except RecordError as error:
+            raise Cause.DAMAGED.error(self.name, error) from error
+
+    def close(self) -> None:
+        """Nothing is kept open; a question that is under way ends by its own time."""
+
+    @staticmethod
+    def _desks(connection: psycopg.Connection, strays: list[str]) -> tuple[DeskState, ...]:
+        found = []
+        for home, state in connection.execute("SELECT home, state FROM turndesk.desks"):
+            try:
+                found.append(read_state(home, bytes(state)))
+            except RecordError:
+                strays.append(home)
+        return tuple(found)
+
+    def _demand(self, connection: psycopg.Connection) -> None:
+        row = connection.execute("SELECT max(format) FROM turndesk.layout").fetchone()
+        number = row[0] if row is not None else None
+        if number is None:
+            raise Cause.NOT_BEGUN.error(self.name)
+        if number != FORMAT:
+            raise Cause.NEWER.error(self.name, number)
+
+    @contextmanager
+    def _asked(self, *, demand: bool = True) -> Iterator[psycopg.Connection]:
+        """One transaction on a connection of its own; what the server refuses comes as SharingError."""
+        if importlib.util.find_spec("psycopg") is None:
+            raise Cause.NO_PSYCOPG.error(self.name)
+        import psycopg  # noqa: PLC0415  optional, and only for those who share so
+
+        try:
+            with psycopg.connect(
+                self._conninfo,
+                connect_timeout=5,
+                application_name="turndesk",
+                options="-c statement_timeout=30s -c lock_timeout=10s -c synchronous_commit=on",
+                keepalives_idle=10,
+                tcp_user_timeout=15_000,  # ms: a network that has gone is noticed
+            ) as connection:
+                if demand:
+                    self._demand(connection)
+                yield connection
+        except psycopg.Error as error:
+            raise self._refusal(error.sqlstate or "", str(error)) from error
+
+    def _refusal(self, code: str, told: str) -> SharingError:
+        first = next((line for line in told.splitlines() if line.strip()), "it failed")
+        said = told.lower()
+        for cause, begins in _CODES if code else ():
+            if code.startswith(begins):
+                return cause.error(self.name, first)
+        for cause, signs in _AT_THE_DOOR if not code else ():
+            if any(sign in said for sign in signs):
+                return cause.error(self.name, told.rpartition("FATAL:")[2] or first)
+        return Cause.AWAY.error(self.name, first)
+
+
+def _named(conninfo: str) -> str:
+    """Without a password: it stands in sentences and logs."""
+    if "://" in conninfo:
+        scheme, _, rest = conninfo.partition("://")
+        who, at, where = rest.rpartition("@")
+        return f"{scheme}://{who.partition(':')[0]}{at}{where.partition('?')[0]}"
+    return " ".join(word for word in conninfo.split() if not word.startswith(("password", "sslpassword")))

@@ -1,0 +1,58 @@
+"""Why programs cannot be shared just now: one cause a sentence, with what to do."""
+
+from __future__ import annotations
+
+import errno
+from enum import Enum
+
+_FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
+_NO_RIGHT = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
+_NOT_THERE = frozenset({errno.ENOENT, errno.ENOTDIR})
+
+
+class Cause(Enum):
+    """What is in the way, and what to do about it."""
+
+    AWAY = "{place} does not answer ({why}); this desk works on and shares when it does again"
+    NO_RIGHT = "{place} may not be used so by this user ({why}); ask whoever looks after it for the right"
+    NOT_THERE = "{place} is not there ({why}); is it mounted, is its name right?"
+    NOT_BEGUN = (
+        "{place} holds no shared programs; is it mounted, is its name right? Where it is new: "
+        "turndesk share begin"
+    )
+    NEWER = "{place} was laid out by a newer TurnDesk (format {why}); update the one on this desk"
+    OTHER = "{place} is not laid out as shared programs are ({why}); name another place"
+    FULL = "the disk of {place} is full; make room there"
+    REFUSED = "{place} refuses it: {why}"
+    DAMAGED = "{place}: {why}"
+    NO_GIT = "the command git is not on this computer; install git"
+    NO_PSYCOPG = "[sharing] postgresql wants psycopg, which is not installed; install turndesk[postgresql]"
+    NAME_TAKEN = (
+        "{place}: another desk is called {why} too; give this one its own name (desk in [sharing]), "
+        "or, where that computer is gone: turndesk share publish --claim"
+    )
+
+    def error(self, place: str, why: object = "") -> SharingError:
+        """The sentence for it, on one line."""
+        made = SharingError(self.value.format(place=place, why=" ".join(str(why).split())))
+        made.cause = self
+        return made
+
+
+class SharingError(Exception):
+    """Sharing cannot do what it was asked; nothing that was there has changed."""
+
+    cause: Cause
+    told = ""  # all that a command said, where one was asked
+
+
+def of_system(place: str, error: OSError) -> SharingError:
+    """The sentence for what the system says."""
+    why = error.strerror or str(error)
+    if error.errno in _FULL:
+        return Cause.FULL.error(place)
+    if error.errno in _NO_RIGHT:
+        return Cause.NO_RIGHT.error(place, why)
+    if error.errno in _NOT_THERE:
+        return Cause.NOT_THERE.error(place, why)
+    return Cause.AWAY.error(place, why)

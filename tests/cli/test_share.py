@@ -1,0 +1,144 @@
+"""``turndesk share``: two desks by the command line, and what is refused."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import resources
+from app.compose.machine_answers import check_ports
+from app.compose.machine_files import parse_machine
+from core.store.store import Store
+from core.table_schema import MachineFileError
+from tests.cli.conftest import Turndesk
+
+
+class Shop:
+    """Two desks of one computer: data folders and machine files of their own, one shared folder."""
+
+    def __init__(self, folder: Path, turndesk: Turndesk, patch: pytest.MonkeyPatch) -> None:
+        self.folder, self._turndesk, self._patch = folder, turndesk, patch
+        (folder / "shop").mkdir()
+        for number in (1, 2):
+            (folder / f"home{number}" / "programs").mkdir(parents=True)
+            self.sharing(number, f'folder = "{folder / "shop"}"\ndesk = "LATHE {number}"\n')
+
+    def sharing(self, number: int, table: str) -> None:
+        text = resources.machine_file("gt75.toml") + f"\n[sharing]\n{table}"
+        (self.folder / f"lathe{number}.toml").write_text(text)
+
+    def program(self, number: int, name: str) -> Path:
+        return self.folder / f"home{number}" / "programs" / name
+
+    def share(self, number: int, *words: str) -> tuple[int, str, str]:
+        self._patch.setenv("TURNDESK_HOME", str(self.folder / f"home{number}"))
+        return self._turndesk("share", *words, "--machine", str(self.folder / f"lathe{number}.toml"))
+
+
+@pytest.fixture
+def shop(tmp_path: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch) -> Shop:
+    made = Shop(tmp_path, turndesk, monkeypatch)
+    assert made.share(1, "begin")[1].endswith("is laid out for shared programs\n")
+    return made
+
+
+def test_published_seen_compared_taken_and_settled(shop: Shop) -> None:
+    shop.program(1, "CAP.NC").write_text("G00 X1\nM30\n")
+    assert shop.share(1, "publish")[1].endswith("has all 1 programs of LATHE 1\n")
+    told = json.loads(shop.share(2, "status", "--json")[1])
+    (program,) = told["programs"]
+    assert (program["program"], program["state"], program["here"]) == ("CAP.NC", "new", None)
+    assert (program["elsewhere"][0]["desk"], program["elsewhere"][0]["on"]) == ("LATHE 1", ["LATHE 1"])
+    assert not (shop.folder / "home2" / "turndesk.db").exists()  # a look keeps nothing
+    assert shop.share(2, "take", "cap.nc")[1].startswith("CAP.NC is that of LATHE 1 now")
+    assert shop.program(2, "CAP.NC").read_text() == "G00 X1\nM30\n"
+    for number in (1, 2):
+        shop.program(number, "CAP.NC").write_text(f"G00 X1{number}\nM30\n")
+        shop.share(number, "publish")
+    assert "changed here and elsewhere" in shop.share(1, "status")[1]
+    assert shop.share(1, "compare", "CAP.NC")[1] == (
+        "    1       - G00 X11\n          1 + G00 X12\n    2     2   M30\n"
+    )
+    assert shop.share(1, "keep", "CAP.NC")[1] == "CAP.NC stands as it is here\n"
+    assert shop.share(2, "take", "CAP.NC")[0] == 0
+    assert shop.program(2, "CAP.NC").read_text() == "G00 X11\nM30\n"
+    with Store.open(shop.folder / "home2", read_only=True) as store:
+        kept = {store.load_program("CAP.NC", row.number) for row in store.versions("CAP.NC")}
+    assert kept == {b"G00 X1\nM30\n", b"G00 X12\nM30\n", b"G00 X11\nM30\n"}
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (("take", "GONE.NC"), "no desk shares a program GONE.NC"),
+        (("take", "CAP.NC"), "CAP.NC is nowhere newer than here"),
+        (("take", "CAP.NC", "--id", "zz"), "no version of CAP.NC begin with zz"),
+        (("keep", "CAP.NC"), "there is nothing to settle"),
+        (("keep", "GONE.NC"), "there is nothing to settle"),
+    ],
+)
+def test_refusals(shop: Shop, words: tuple[str, ...], why: str) -> None:
+    shop.program(1, "CAP.NC").write_text("G00 X1\n")
+    shop.share(1, "publish")
+    status, out, err = shop.share(1, *words)
+    assert (status, out, why in err, err.count("\n")) == (2, "", True, 1)
+
+
+def test_a_folder_that_is_not_mounted_costs_one_sentence(shop: Shop) -> None:
+    (shop.folder / "shop").rename(shop.folder / "unmounted")
+    status, out, err = shop.share(1, "status")
+    assert (status, "versions that wait: 0" in out, "is not there" in err) == (1, True, True)
+    assert shop.share(1, "publish")[0] == 2
+    (shop.folder / "shop").mkdir()  # the empty mount point: nothing is laid out in it unasked
+    assert "holds no shared programs; is it mounted" in shop.share(1, "publish")[2]
+    assert list((shop.folder / "shop").iterdir()) == []
+
+
+def test_a_new_computer_goes_on_in_the_name_of_the_old_one(shop: Shop) -> None:
+    shop.program(1, "CAP.NC").write_text("G00 X1\n")
+    shop.share(1, "publish")
+    shop.sharing(2, f'folder = "{shop.folder / "shop"}"\ndesk = "Lathe 1"\n')
+    status, _, err = shop.share(2, "publish")
+    assert (status, "--claim" in err) == (2, True)
+    assert shop.share(2, "publish", "--claim")[0] == 0
+    assert shop.share(2, "publish")[0] == 0
+    assert len(list((shop.folder / "shop" / "desks").iterdir())) == 1
+
+
+def test_a_desk_that_runs_publishes_by_itself(shop: Shop) -> None:
+    with Store.open(shop.folder / "home1"):
+        status, _, err = shop.share(1, "publish")
+        assert (status, "in use by another TurnDesk" in err) == (2, True)
+        assert shop.share(1, "status")[0] == 0
+
+
+def test_a_machine_file_without_a_place(turndesk: Turndesk) -> None:
+    told = turndesk("share", "status")
+    assert (told.status, "has no [sharing]" in told.err) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("table", "why"),
+    [
+        ("", "one place: folder, git or postgresql"),
+        ('folder = "/a"\ngit = "b"', "one place"),
+        ('git = "--upload-pack=x"', "the address of a repository"),
+        (f'folder = "/a"\ndesk = "{"x" * 41}"', "40 letters"),
+        ('folder = "/a"\nlook = 1', "sharing.look"),
+        ('folder = "/a"\npassword = "x"', "sharing.password"),
+    ],
+)
+def test_tables_that_are_refused(table: str, why: str) -> None:
+    with pytest.raises(MachineFileError, match=why):
+        parse_machine(resources.machine_file("gt75.toml") + f"[sharing]\n{table}\n", "m.toml")
+
+
+def test_machine_check_has_a_row_for_the_place(shop: Shop) -> None:
+    shop.share(1, "publish")
+    for name, state in (("shop", "ok"), ("gone", "no answer")):
+        table = f'[sharing]\nfolder = "{shop.folder / name}"\n'
+        machine = parse_machine(resources.machine_file("gt75.toml") + table, "m.toml")
+        (row,) = (row for row in check_ports(machine).rows if row.name == "sharing")
+        assert (row.state, "LATHE 1" in row.detail) == (state, state == "ok")
