@@ -94,7 +94,8 @@ class _ProofAndPicture:
         from core.proving.part_history import PartGathering
         from core.proving.prove_program import prove
 
-        self._drawn, sketch = None, PictureBuilder()
+        millimetres = job.setup.metric or job.source.dialect is not Dialect.OMNITURN
+        self._drawn, sketch = None, PictureBuilder(millimetres)
         gathered, waits = None, False
         if self._pictures and self._machine.kind == "lathe":
             setting, self._trouble = self._parts.setting(job, watch)

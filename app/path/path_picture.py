@@ -87,12 +87,12 @@ class Picture(Polyline):
 
 
 class PictureBuilder:
-    """Collects blocks into a picture."""
+    """Collects blocks into a picture. ``metric``: the unit at the start, that of a picture without blocks."""
 
-    def __init__(self) -> None:
+    def __init__(self, metric: bool = False) -> None:
         self._pencil = PolylineBuilder()
         self._turned: FaceAndSideBuilder | None = None
-        self._metric = False
+        self._metric = metric
         self._scene = SceneBuilder()
         self._ends, self._chord, self._line = array("d", [0.0]), array("d"), array("q")
 

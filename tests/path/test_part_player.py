@@ -250,3 +250,13 @@ def test_what_a_live_tool_hits_at_a_rapid_is_red_in_space(
     assert shown.image is not None
     r, g = ((shown.image >> off) & 255 for off in (16, 8))
     assert bool(((r > 90) & (r > 2.5 * g)).sum() > 50) is red
+
+
+@pytest.mark.parametrize(("name", "metric"), [("part.nc", False), ("part.mpf", True), ("part.h", True)])
+def test_a_picture_without_a_path_has_the_unit_that_its_language_begins_with(name: str, metric: bool) -> None:
+    machine = load_machine(None)
+    steps = workshop(machine, lambda: NONE)
+    job = steps.make_job(Source(name, "(NO PROGRAM]\n"), False)
+    steps.prove(job, lambda _count: None)
+    drawn = steps.draw(job, lambda _count: None)
+    assert (drawn.blocks, drawn.metric) == (0, metric)
