@@ -13,13 +13,14 @@
     refused 3 1 Rounding not possible
 
 The program stands between the book's head and tail, or on its own where the entry is ``whole``; its lines
-count from 1. ``rows`` are those of ``golden_rows.py`` for its lines alone; ``...`` stands for any number of
-them, ``extent X X Y Y Z Z`` for the least and the greatest ends of all moves at feed (``extent X X Z Z`` on a
-lathe), ``way MM`` for the length of them all. ``warning`` and ``note LINE CODE`` are all that is told beside.
-``refused LINE COLUMN CODE`` is the first error of the lines that the book has as the entry's refusal, with
-``on MACHINE`` behind it where it is another one that refuses. Lines
-that begin with ``#`` say how a figure was reckoned; ``machine NAME`` and ``axes`` ask for another shipped
-machine and for the rotary axes in the rows.
+count from 1. ``rows`` are those of ``golden_rows.py`` for its lines alone; ``...`` stands for any number
+of them, ``extent X X Y Y Z Z`` for the least and the greatest ends of all moves at feed (``extent X X Z
+Z`` on a lathe), ``way MM`` for the length of them all, ``blank X X Y Y Z Z`` for the corners of BLK FORM;
+``*`` in a row is any figure. ``warning`` and ``note LINE CODE`` are all that is told beside. ``refused
+LINE COLUMN CODE`` is the first error of the lines that the book has as the entry's refusal, with ``on
+MACHINE`` behind it where it is another one that refuses. Lines that begin with ``#`` say how a figure was
+reckoned; ``machine NAME`` asks for another shipped machine, ``axes`` for the rotary axes in the rows,
+``positions`` for those of the machine.
 """
 
 from __future__ import annotations
@@ -70,6 +71,7 @@ class Golden:
     program: str
     machine: str = ""
     axes: bool = False
+    positions: bool = False
     rows: list[list[str]] = field(default_factory=list)
     sums: dict[str, list[float]] = field(default_factory=dict)
     told: list[str] = field(default_factory=list)
@@ -83,12 +85,14 @@ class Golden:
             self.machine = words[1]
         elif words == ["axes"]:
             self.axes = True
+        elif words == ["positions"]:
+            self.positions = True
         elif words[0] == "refused":
             self.refused, _, machine = " ".join(words[1:]).partition(" on ")
             self.refusing = machine or self.machine
         elif words[0] in ("warning", "note"):
             self.told.append(" ".join(words))
-        elif words[0] in ("extent", "way"):
+        elif words[0] in ("extent", "way", "blank"):
             self.sums[words[0]] = [float(each) for each in words[1:]]
         elif words[0] == "..." or words[0].isdigit():
             self.rows.append(words)
@@ -123,12 +127,12 @@ class Ran:
     before: int  # lines of the book's head
     tail: range  # lines of the book's tail
 
-    def rows(self, *, axes: bool) -> list[Row]:
-        """Their elementary blocks."""
+    def rows(self, golden: Golden) -> list[Row]:
+        """Their elementary blocks, as the golden wants to see them."""
         found = []
         for block in self.blocks:
             if block.line > self.before and block.line not in self.tail:
-                _, *words = row(block, axes=axes)
+                _, *words = row(block, axes=golden.axes, machine=golden.positions)
                 found.append([block.line - self.before, *words])
         return found
 
@@ -197,3 +201,9 @@ def extent(blocks: list[Block]) -> list[float]:
 def way(blocks: list[Block]) -> float:
     """Length of these moves on all axes of a mill, mm."""
     return sum(each.travel.length for each in blocks if each.travel is not None)
+
+
+def blank(blocks: list[Block]) -> list[float]:
+    """Corners of the blank that BLK FORM has told, axis by axis; empty without one."""
+    found = next((each.swivel.system.blank for each in blocks if each.swivel is not None), None)
+    return [] if found is None else [figure for axis in zip(*found, strict=True) for figure in axis]

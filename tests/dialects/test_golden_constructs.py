@@ -8,10 +8,7 @@ from core.interpreter.dialects import code_book
 from core.language.code_book import Entry
 from core.language.diagnostics import Severity
 from core.language.source import Dialect
-from tests.dialects.golden_constructs import GROUNDS, Golden, differences, extent, goldens, ran, way
-
-WHOLE = (Dialect.SINUMERIK,)
-"""Languages whose books are told to the last entry."""
+from tests.dialects.golden_constructs import GROUNDS, Golden, blank, differences, extent, goldens, ran, way
 
 CASES = [
     pytest.param(dialect, entry, goldens(dialect)[entry.head], id=f"{dialect}-{entry.head}")
@@ -27,11 +24,13 @@ def test_a_construct_makes_what_its_golden_says(dialect: Dialect, entry: Entry, 
     assert [each.in_one_line("") for each in came.findings if each.severity is Severity.ERROR] == []
     assert golden.rows or golden.sums
     if golden.rows:
-        assert differences(came.rows(axes=golden.axes), golden.rows) == ""
+        assert differences(came.rows(golden), golden.rows) == ""
     if "extent" in golden.sums:
         assert extent(came.feeds) == pytest.approx(golden.sums["extent"], abs=1e-6)
     if "way" in golden.sums:
         assert [way(came.feeds)] == pytest.approx(golden.sums["way"], abs=1e-5)
+    if "blank" in golden.sums:
+        assert blank(came.blocks) == pytest.approx(golden.sums["blank"])
     assert sorted(came.told(Severity.WARNING, Severity.NOTE)) == sorted(golden.told)
 
 
@@ -46,7 +45,7 @@ def test_a_golden_belongs_to_an_entry(dialect: Dialect) -> None:
     assert set(goldens(dialect)) - {entry.head for entry in code_book(dialect).entries} == set()
 
 
-@pytest.mark.parametrize("dialect", WHOLE)
+@pytest.mark.parametrize("dialect", GROUNDS)
 def test_every_entry_has_its_golden_and_its_refusal(dialect: Dialect) -> None:
     """What nothing can be written wrongly of has no refusal; what is refused by its name has no example."""
     entries = [each for each in code_book(dialect).entries if each.example]

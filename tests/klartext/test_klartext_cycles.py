@@ -410,3 +410,29 @@ def test_centring_by_diameter_with_the_point_of_the_table() -> None:
     ran = run(f"L Z+50 R0 FMAX M3\n{q}\nCYCL CALL", mill_tools={1: MillTool(point=90.0)})
     assert min(block.swivel.end[2] for block in ran.blocks if block.swivel) == pytest.approx(-3.0)
     assert run(f"L Z+50 R0 FMAX M3\n{q}\nCYCL CALL").codes == ["Input value incorrect"]
+
+
+TAP = "CYCL DEF 207 RIGID TAPPING Q200=2 Q201=-8 Q239={pitch} Q203=+0 Q204=30\nL X+10 R0 FMAX M99"
+
+
+@pytest.mark.parametrize(
+    ("before", "pitch", "speeds"),
+    [
+        ("", "+1", [1000.0, -1000.0, 0.0]),  # the cycle starts the spindle, and it ends at rest
+        ("M3\n", "+1", [1000.0, -1000.0, 1000.0]),
+        ("M3\n", "-1", [1000.0, -1000.0, 1000.0]),  # out of a left-hand thread it turns as M3
+        ("M4\n", "-1", [-1000.0, 1000.0, -1000.0]),
+    ],
+)
+def test_the_sign_of_the_pitch_turns_the_spindle_of_a_rigid_tap(
+    before: str, pitch: str, speeds: list[float]
+) -> None:
+    ran = run(before + TAP.format(pitch=pitch), tool="TOOL CALL 1 Z S1000\n")
+    assert not ran.errors
+    turned = [block.action for block in ran.blocks if isinstance(block.action, SpindleRun | SpindleStop)]
+    found = [each.rpm if isinstance(each, SpindleRun) else 0.0 for each in turned]
+    assert found == speeds
+
+
+def test_a_rigid_tap_without_a_speed_is_refused() -> None:
+    assert run(TAP.format(pitch="+1"), tool="TOOL CALL 1 Z\n").codes == ["Wrong rpm"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
@@ -137,11 +138,23 @@ class CycleTool:
     @property
     def rpm(self) -> float:
         """Speed of the spindle, signed. Raises ProgramError where it stands."""
-        found = self._state.modal.rpm * self._state.modal.spindle
+        found = self.turns
         if not found:
             text = f"Cycle {self._number} needs the spindle to turn."
             raise self._state.refuse(self._column, WRONG_RPM, text, "Start it with M3 before.")
         return found
+
+    @property
+    def turns(self) -> float:
+        """Speed of the spindle, signed; 0 where it stands."""
+        return self._state.modal.rpm * self._state.modal.spindle
+
+    def thread_speed(self, pitch: float) -> float:
+        """S in the direction of a thread, signed: a pitch under 0 is a left-hand one. Raises ProgramError."""
+        if not self.speed:
+            text = f"Cycle {self._number} needs a speed."
+            raise self._state.refuse(self._column, WRONG_RPM, text, "Write S behind TOOL CALL.")
+        return math.copysign(self.speed, pitch)
 
     def warn_uncoupled(self) -> None:
         """Z follows the spindle by its speed, not by its angle: it stands while the spindle turns round."""
@@ -211,6 +224,12 @@ class CycleTool:
         state = self._state
         state.modal = state.modal._replace(spindle=1 if rpm > 0.0 else -1)
         return replace(state.action(SpindleRun(rpm)), in_hole=in_hole)
+
+    def turning(self, rpm: float) -> list[Block]:
+        """The spindle as this signed speed says, 0 at rest; nothing where it turns so already."""
+        if rpm == self.turns:
+            return []
+        return [self.turn(rpm) if rpm else self.stop()]
 
     def coolant(self, q: int) -> list[Block]:
         """Coolant by the M function that a parameter holds: 8 on, 9 off, 0 nothing. Raises ProgramError."""

@@ -128,50 +128,58 @@ def deep_drilling(tool: CycleTool) -> Iterator[Block]:
 def floating_tapping(tool: CycleTool) -> Iterator[Block]:
     """206: down at Q206, the spindle turned round, out."""
     surface, clear, bottom = heights(tool)
-    yield from _tapped(tool, surface, clear, bottom, tool.lead_of(tool.cut(206)))
+    lead = tool.lead_of(tool.cut(206))
+    yield from _tapped(tool, surface, clear, bottom, lead, tool.rpm)
 
 
 def rigid_tapping(tool: CycleTool) -> Iterator[Block]:
-    """207: as 206, the feed from pitch and speed; a pitch under 0 is a left-hand thread."""
+    """207: as 206, by the pitch, whose sign starts the spindle; at the end it turns as it did before."""
     surface, clear, bottom = heights(tool)
-    yield from _tapped(tool, surface, clear, bottom, _lead(tool))
+    lead, rpm = _thread(tool)
+    yield from _tapped(tool, surface, clear, bottom, lead, rpm)
 
 
 def tapping_with_chip_breaking(tool: CycleTool) -> Iterator[Block]:
     """209: rigid, the spindle turned round at every Q257 of depth."""
     surface, clear, bottom = heights(tool)
-    rpm, lead, back = tool.rpm, _lead(tool), tool.length(256, 0.0)
-    step = tool.length(257, 0.0)
+    (lead, rpm), before = _thread(tool), tool.turns
+    back, step = tool.length(256, 0.0), tool.length(257, 0.0)
     yield tool.to(clear)
+    yield from tool.turning(rpm)
     for depth in infeeds(tool, surface - bottom, step or surface - bottom):
         last = depth >= surface - bottom - SMALLEST
         stays = not last and bool(back)
         yield tool.tap(surface - depth, lead, in_hole=True)
         yield tool.turn(-rpm, in_hole=True)
         yield tool.tap(surface - depth + back if stays else clear, lead, in_hole=stays)
-        yield tool.turn(rpm, in_hole=stays)
+        if not last:
+            yield tool.turn(rpm, in_hole=stays)
+    yield from tool.turning(before)
     yield from out(tool, surface, clear, None)
 
 
-def _lead(tool: CycleTool) -> float:
-    """Millimetres a revolution. Raises ProgramError where there are none."""
+def _thread(tool: CycleTool) -> tuple[float, float]:
+    """Millimetres a revolution, and the signed speed into the thread. Raises ProgramError for no pitch."""
     tool.warn_uncoupled()
-    pitch = abs(tool.length(239))
+    pitch = tool.length(239)
     if pitch == 0.0:
         raise tool.refuse("Q239 is no pitch.", "Write the pitch of the thread.")
-    return pitch
+    return abs(pitch), tool.thread_speed(pitch)
 
 
-def _tapped(tool: CycleTool, surface: float, clear: float, bottom: float, lead: float) -> Iterator[Block]:
-    rpm = tool.rpm
+def _tapped(
+    tool: CycleTool, surface: float, clear: float, bottom: float, lead: float, rpm: float
+) -> Iterator[Block]:
+    before = tool.turns
     yield tool.to(clear)
     if abs(bottom - surface) < SMALLEST:
         return
+    yield from tool.turning(rpm)
     yield tool.tap(bottom, lead, in_hole=True)
     yield from tool.dwell(tool.plain(211, 0.0), in_hole=True)
     yield tool.turn(-rpm, in_hole=True)
     yield tool.tap(clear, lead)
-    yield tool.turn(rpm)
+    yield from tool.turning(before)
     yield from out(tool, surface, clear, None)
 
 

@@ -51,7 +51,7 @@ def check(state: State, codes: Sequence[MCode]) -> None:
     """Raises ProgramError for codes this machine lacks, contradictions, and what M128 forbids."""
     limits = state.setup.limits
     known = BEFORE | _BEHIND | _OF_THE_BLOCK | UNHEEDED | limits.m_outputs.keys() | limits.m_ignored
-    for code in codes:
+    for position, code in enumerate(codes):
         if code.number in {M91, 92} and state.m128:
             text = f"M{code.number} while M128 is on."
             raise state.refuse(code.column, NOT_WITH_M128, text, "Switch it off with M129 before.")
@@ -66,7 +66,7 @@ def check(state: State, codes: Sequence[MCode]) -> None:
             text = "M101 changes to no replacement tool here: the tool that was called goes on."
             hint = "Look at the tool's life before the start."
             state.tell_once(code.column, Severity.WARNING, "no-replacement-tool", text, hint)
-        if sum(other.number == code.number for other in codes) > 1:
+        if any(other.number == code.number for other in codes[:position]):
             text = f"M{code.number} stands twice in the block."
             raise syntax(state.line, code.column, text, "Take one out.")
     turning = [code for code in codes if code.number in {*_TURNS, 5}]

@@ -89,19 +89,21 @@ def _pecking(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterat
 
 
 def _tapping(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
-    """2 at a feed, 17 by a pitch: the spindle turns round at the bottom."""
+    """2 at a feed; 17 by a pitch, whose sign starts the spindle. It turns round at the bottom."""
     told = Told(state, lines, column)
     rigid = next(iter(lines.values())).number == _RIGID
-    clear, rpm = tool.height, tool.rpm
+    clear, before = tool.height, tool.turns
     if rigid:
         tool.warn_uncoupled()
-    lead = abs(told.length(3)) if rigid else tool.lead_of(told.cutting_feed(4))
+    lead = told.length(3) if rigid else tool.lead_of(told.cutting_feed(4))
+    rpm, lead = tool.thread_speed(lead) if rigid else tool.rpm, abs(lead)
+    yield from tool.turning(rpm)
     yield tool.tap(clear - told.length(1) - abs(told.length(2)), lead, in_hole=True)
     if not rigid:
         yield from tool.dwell(told.number(3), in_hole=True)
     yield tool.turn(-rpm, in_hole=True)
     yield tool.tap(clear, lead)
-    yield tool.turn(rpm)
+    yield from tool.turning(before)
 
 
 def _slot(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
