@@ -74,9 +74,19 @@ def _connection(path: Path, how: str) -> sqlite3.Connection:
     )
     try:
         return configured(connection)
+    except UnicodeDecodeError as error:  # SQLite's own sentence quotes what is damaged
+        connection.close()
+        raise _damaged() from error
     except sqlite3.Error:
         connection.close()
         raise
+
+
+def _damaged() -> sqlite3.DatabaseError:
+    """As SQLite says it of a file whose tables cannot be read."""
+    error = sqlite3.DatabaseError("malformed database schema")
+    error.sqlite_errorcode = sqlite3.SQLITE_CORRUPT
+    return error
 
 
 def _has_log(path: Path) -> bool:

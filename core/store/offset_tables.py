@@ -9,7 +9,7 @@ from __future__ import annotations
 import sqlite3
 from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from core.store import row_sums
 from core.store.offset_fields import Field, Sort
@@ -352,7 +352,7 @@ def named(name: str, key: row_sums.Key) -> str:
     """A row of a table with a sum, as people call it."""
     table = next((each for each in _TABLES.values() if each.name == name), None)
     if table is None:
-        return f"{_OTHERS[name]} {key}"
+        return f"{_OTHERS[name]} {' '.join(str(key).split())}"
     if table.letter != "T" or not isinstance(key, int):
         return f"{table.letter}{key}"
     return f"{edge_name(key)}'s shape" if table.row is ShapeRow else edge_name(key)
@@ -389,11 +389,20 @@ def _select(
         f" FROM {log.name} {tail}",
         values,
     )
-    half, found = len(log.columns), list[Change]()
-    for i, step, undoes, at, kind, number, why, who, *both in rows:
+    return tuple(_change(log, row) for row in rows)
+
+
+def _change(log: _Log, row: Sequence[Any]) -> Change:
+    """Raises StoreError for one that holds what was never written: nothing may be undone by it."""
+    half, (i, step, undoes, at, kind, number, why, who, *both) = len(log.columns), row
+    try:
         old, new = _side(kind, both[:half]), _side(kind, both[half:])
-        found.append(Change(i, step, undoes, at, Kind(kind), number, old, new, why, who))
-    return tuple(found)
+        return Change(i, step, undoes, at, Kind(kind), number, old, new, why, who)
+    except (ValueError, TypeError, OverflowError) as error:
+        raise StoreError(
+            f"entry {i} of the history of offsets is damaged; the offsets themselves are looked at by their "
+            "own sums. Restore a backup for the history"
+        ) from error
 
 
 def _side(kind: str, values: list[Value | None]) -> Row | None:

@@ -74,7 +74,7 @@ def load(connection: sqlite3.Connection, name: str, version: int | None) -> byte
         which = "" if version is None else f" version {version}"
         raise StoreError(f"the store has no program {name!r}{which}; see the list of programs and versions")
     number, text, digest = row
-    if sha256(text).hexdigest() != digest:
+    if not _is_whole(text, digest):
         raise StoreError(f"{name!r} version {number} is not what was saved; load another version or a backup")
     return bytes(text)
 
@@ -85,10 +85,13 @@ def spoilt(connection: sqlite3.Connection) -> tuple[str, ...]:
         "SELECT name, number, text, sha256 FROM program_versions JOIN programs ON program = programs.id"
     )
     return tuple(
-        f"{name!r} version {number}"
-        for name, number, text, digest in rows
-        if sha256(text).hexdigest() != digest
+        f"{name!r} version {number}" for name, number, text, digest in rows if not _is_whole(text, digest)
     )
+
+
+def _is_whole(text: object, digest: object) -> bool:
+    """Whether a text is what was saved; bytes are, and what is none was put there by nobody of ours."""
+    return isinstance(text, bytes) and sha256(text).hexdigest() == digest
 
 
 def parts(connection: sqlite3.Connection, program: str) -> int:

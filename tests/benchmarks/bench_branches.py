@@ -1,0 +1,104 @@
+"""Branches that the tests of a room alone take: ``python -m tests.benchmarks.bench_branches [ROOM …]``.
+
+Each room is measured with coverage, with the processes that its tests start. Prints the files with most
+branches that are not taken, and keeps the figures for ``docs/reliability.md``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from tests.benchmarks.footprint import RESULTS, keep_result
+
+ROOMS = {
+    "core/motion": ("tests/motion",),
+    "core/executor": ("tests/executor",),
+    "core/interpreter": ("tests/interpreter", "tests/klartext", "tests/sinumerik"),
+    "drivers": ("tests/drivers",),
+}
+WANTED = 92.0  # per cent of the branches of executor, motion and drivers
+SHOWN = 12  # files
+_HOW = """\
+[run]
+branch = true
+parallel = true
+patch = subprocess
+data_file = {folder}/coverage
+source = {room}
+[report]
+exclude_also =
+    if TYPE_CHECKING:
+    class .*\\(Protocol\\):
+    \\.\\.\\.$
+"""
+
+
+def measured(room: str, more: list[str]) -> dict[str, Any]:
+    """Branches of the room, those that are taken, and the files by what is not."""
+    with tempfile.TemporaryDirectory() as folder:
+        how = Path(folder) / "coveragerc"
+        how.write_text(_HOW.format(folder=folder, room=room))
+        tests = [sys.executable, "-m", "coverage", "run", f"--rcfile={how}", "-m", "pytest", "-q"]
+        told = subprocess.run(
+            [*tests, "-p", "no:cacheprovider", *ROOMS[room], *more],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        report = Path(folder) / "report.json"
+        for words in (["combine", "-q"], ["json", "-q", "-o", str(report)]):
+            subprocess.run([sys.executable, "-m", "coverage", *words, f"--rcfile={how}"], check=True)
+        found = json.loads(report.read_text())
+    lines = told.stdout.strip().splitlines()
+    return figures(found) | {"tests": lines[-1] if lines else "none"}
+
+
+def figures(report: dict[str, Any]) -> dict[str, Any]:
+    """Of a report of coverage."""
+    total = report["totals"]
+    files = sorted(
+        (
+            (each["summary"]["missing_branches"], name, each["missing_branches"])
+            for name, each in report["files"].items()
+            if each["summary"]["missing_branches"]
+        ),
+        reverse=True,
+    )
+    return {
+        "branches": total["num_branches"],
+        "taken": total["covered_branches"],
+        "per cent": round(100.0 * total["covered_branches"] / max(1, total["num_branches"]), 1),
+        "not taken": [{"file": name, "lines": missing} for _, name, missing in files],
+    }
+
+
+def main() -> int:
+    """Print the table, keep the figures beside those of rooms that were measured before."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("rooms", nargs="*", default=tuple(ROOMS), metavar="ROOM", help=", ".join(ROOMS))
+    parser.add_argument("--keep", type=Path, default=RESULTS, help="folder of the figures")
+    parser.add_argument("--pytest", nargs="*", default=[], help="more words for pytest")
+    wanted = parser.parse_args()
+    kept = wanted.keep / "branches.json"
+    rooms = json.loads(kept.read_text())["rooms"] if kept.exists() else {}
+    for room in wanted.rooms:
+        found = rooms[room] = measured(room, wanted.pytest)
+        sys.stdout.write(
+            f"{room:20s}{found['taken']:6d} of {found['branches']:6d} branches, {found['per cent']} %  "
+            f"({found['tests']})\n"
+        )
+        for each in found["not taken"][:SHOWN]:
+            sys.stdout.write(f"    {each['file']}: {each['lines']}\n")
+        sys.stdout.flush()
+        keep_result("branches", {"rooms": rooms}, wanted.keep)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

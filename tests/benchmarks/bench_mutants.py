@@ -1,0 +1,176 @@
+"""Mutation: of how many small changes of a room its fast tests tell.
+
+``python -m tests.benchmarks.bench_mutants ROOM [--number N] [--seed 1] [--keep FOLDER]``: the tests of the
+room run once under coverage, which tells which of them come by a line; then each mutant gets a fork of that
+process and those tests, the quickest first. Survivors are printed, and kept for ``docs/reliability.md``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import random
+import resource
+import signal
+import sys
+import time
+from dataclasses import asdict
+from pathlib import Path
+
+import coverage
+import pytest
+from _pytest.runner import runtestprotocol
+
+from tests.benchmarks.footprint import RESULTS, keep_result
+from tests.benchmarks.mutants import Mutant, mutants_of, put_in
+
+ROOMS = {
+    "core/executor": (120, ("tests/executor",)),
+    "core/motion": (70, ("tests/motion", "tests/executor/test_chords.py",
+        "tests/executor/test_properties.py")),
+    "core/interpreter": (80, ("tests/interpreter", "tests/klartext", "tests/sinumerik")),
+    "drivers/simulated": (30, ("tests/drivers/test_plant.py", "tests/drivers/test_plant_samples.py",
+        "tests/drivers/test_schedule.py", "tests/drivers/test_station.py", "tests/drivers/test_gear.py",
+        "tests/drivers/test_wear.py", "tests/drivers/test_wander.py", "tests/executor/test_jog.py",
+        "tests/executor/test_faults.py", "tests/executor/test_run.py", "tests/executor/test_touch_off.py")),
+}  # fmt: skip
+SLOW = 2.0  # s of processor time; a test that takes longer is none of the fast ones
+BUDGET = 25.0  # s of processor time for the tests of a mutant
+WALL = 240.0  # s; what takes longer hangs
+TOLD, QUIET, HANGS, NOT_PUT = "told", "survives", "hangs", "not put in"
+
+
+class Session:
+    """The plugin: maps lines to tests, then plays the mutants."""
+
+    def __init__(self, room: str, number: int, seed: int, keep: Path) -> None:
+        self.room, self._number, self._seed, self._keep = room, number, seed, keep
+        self._took: dict[str, float] = {}
+        self._failed: set[str] = set()
+        self.results: list[tuple[Mutant, str, int]] = []
+
+    def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        """Instead of pytest's own."""
+        items = {item.nodeid: item for item in session.items}
+        tests_at = self._map(session)
+        chosen = self._chosen()
+        for number, mutant in enumerate(chosen, 1):
+            names = self._tests(tests_at, mutant)
+            outcome = self._play([items[name] for name in names], mutant) if names else QUIET
+            self.results.append((mutant, outcome, len(names)))
+            if outcome != TOLD:
+                say(f"{number:4d} {outcome:10s} {len(names):4d} tests  {mutant.name}\n")
+            self._keep_so_far()
+        return True
+
+    def _tests(self, tests_at: dict[tuple[str, int], list[str]], mutant: Mutant) -> list[str]:
+        """Those that come by any line of the statement as far as the change."""
+        lines = range(mutant.first, mutant.line + 1)
+        names = {name for line in lines for name in tests_at.get((mutant.path, line), ())}
+        return sorted(names, key=self._took.__getitem__)
+
+    def _chosen(self) -> list[Mutant]:
+        paths = sorted(Path(self.room).rglob("*.py"))
+        every = [mutant for path in paths for mutant in mutants_of(path)]
+        return random.Random(self._seed).sample(every, min(self._number, len(every)))
+
+    def _map(self, session: pytest.Session) -> dict[tuple[str, int], list[str]]:
+        """By line the fast tests that come by it."""
+        cover = coverage.Coverage(source=[self.room], data_file=None, config_file=False)
+        cover.start()
+        for item, following in zip(session.items, [*session.items[1:], None], strict=True):
+            cover.switch_context(item.nodeid)
+            begun = time.process_time()
+            reports = runtestprotocol(item, log=False, nextitem=following)
+            self._took[item.nodeid] = time.process_time() - begun
+            if any(report.failed for report in reports):
+                self._failed.add(item.nodeid)
+                say(f"fails without any change: {item.nodeid}\n")
+        cover.stop()
+        data, here = cover.get_data(), f"{Path.cwd()}/"
+        say(f"{len(session.items)} tests, {sum(self._took.values()):.0f} s of processor time\n")
+        return {
+            (file.removeprefix(here), line): [name for name in names if self._is_fast(name)]
+            for file in data.measured_files()
+            for line, names in data.contexts_by_lineno(file).items()
+        }
+
+    def _is_fast(self, name: str) -> bool:
+        return bool(name) and name not in self._failed and self._took[name] < SLOW
+
+    def _play(self, items: list[pytest.Item], mutant: Mutant) -> str:
+        child = os.fork()
+        if child == 0:
+            self._in_fork(items, mutant)
+        end = time.monotonic() + WALL
+        while time.monotonic() < end:
+            ended, status = os.waitpid(child, os.WNOHANG)
+            if ended:
+                if os.WIFSIGNALED(status):  # beyond its processor time, or it has broken the interpreter
+                    return TOLD
+                return (QUIET, TOLD, NOT_PUT)[min(os.WEXITSTATUS(status), 2)]
+            time.sleep(0.005)
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+        return TOLD
+
+    def _in_fork(self, items: list[pytest.Item], mutant: Mutant) -> None:
+        """Never comes back."""
+        resource.setrlimit(resource.RLIMIT_CPU, (int(2 * BUDGET), int(2 * BUDGET) + 1))
+        status = 2
+        try:
+            if put_in(mutant):
+                status = int(self._tells(items))
+        finally:
+            os._exit(status)
+
+    def _tells(self, items: list[pytest.Item]) -> bool:
+        spent = 0.0
+        for item in items:
+            spent += self._took[item.nodeid]
+            if spent > BUDGET:
+                return False
+            item._initrequest()  # type: ignore[attr-defined]  # as it was before it ran
+            if any(report.failed for report in runtestprotocol(item, log=False, nextitem=None)):
+                return True
+        return False
+
+    def _keep_so_far(self) -> None:
+        kept = self._keep / "mutants.json"
+        rooms = json.loads(kept.read_text())["rooms"] if kept.exists() else {}
+        rooms[self.room] = {
+            "seed": self._seed,
+            "mutants": len(self.results),
+            "told": sum(outcome == TOLD for _, outcome, _ in self.results),
+            "not put in": sum(outcome == NOT_PUT for _, outcome, _ in self.results),
+            "survivors": [asdict(m) | {"tests": n} for m, outcome, n in self.results if outcome == QUIET],
+        }
+        keep_result("mutants", {"rooms": rooms}, self._keep)
+
+
+def say(text: str) -> None:
+    """Past what pytest captures."""
+    sys.__stdout__.write(text)
+    sys.__stdout__.flush()
+
+
+def main() -> int:
+    """Play the mutants of one room."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("room", choices=ROOMS)
+    parser.add_argument("--number", type=int)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--keep", type=Path, default=RESULTS, help="folder of the figures")
+    wanted = parser.parse_args()
+    number, tests = ROOMS[wanted.room]
+    plugin = Session(wanted.room, wanted.number or number, wanted.seed, wanted.keep)
+    words = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist", "--capture=fd", *tests]
+    pytest.main(words, plugins=[plugin])
+    told = sum(outcome == TOLD for _, outcome, _ in plugin.results)
+    say(f"{wanted.room}: {told} of {len(plugin.results)} told\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,117 @@
+"""A store whose bytes and cells were changed: refused, or told row by row, and never a traceback."""
+
+from __future__ import annotations
+
+import random
+import shutil
+import sqlite3
+import tempfile
+from collections.abc import Iterable, Iterator
+from contextlib import closing, suppress
+from functools import cache
+from pathlib import Path
+
+from app.quality.parts_book import parts_data
+from core.store import backup, measured_parts, tool_lives
+from core.store.measured_parts import FeatureRow, ReadingRow
+from core.store.store import Store
+from core.store.store_errors import StoreError
+from core.store.store_export import export
+from core.store.store_file import FILE_NAME
+from core.store.store_rows import Kind
+from core.store.tool_lives import LifeRow
+from tests.fuzz.fuzz_target import Target
+
+_EDIT = 6  # bytes of one change
+_CELLS = (None, 0, -1, 2**63 - 1, 1e308, float("inf"), "x", "", "{", b"\xff\x00", "1", True, 33, "a\nb")
+
+
+@cache
+def _good() -> Path:
+    """The folder of a store that has something in each table."""
+    fast = Path("/dev/shm")
+    home = Path(tempfile.mkdtemp(prefix="fuzz-store-", dir=fast if fast.is_dir() else None)) / "good"
+    with Store.open(home) as store:
+        for number in (1, 3, 101):
+            store.set_tool(number % 32 + 1, "touched off", x=1.0 * number, z=-2.0).result()
+        store.set_secondary(2, "worn", x=-0.01).result()
+        store.save_program("part.nc", b"G90\nM30\n" * 100, "written").result()
+        store.log_event("alarm", "alarm 101 x line 3: X", 3).result()
+        store.count_part("part.nc").result()
+        store.run_started("part.nc").result()
+        store.set_setting("target:part.nc", 10).result()
+        row = FeatureRow(0, "part.nc", "PIN", "diameter", 10.0, -0.1, 0.1, "tool", 1, 1, 0, 1)
+        store.write(lambda c: measured_parts.save_feature(c, row)).result()
+        reading = ReadingRow(0, 1, 1, 10.0, "mm", "", "typed", "")
+        store.write(lambda c: measured_parts.add_reading(c, reading)).result()
+        store.write(lambda c: tool_lives.set_limits(c, LifeRow(1, limit_parts=5))).result()
+    return home
+
+
+def _spoilt(data: bytes) -> Path:
+    """A copy with the changes that the bytes tell: of a cell, or of a byte of the file."""
+    home = _good().with_name("spoilt")
+    shutil.rmtree(home, ignore_errors=True)
+    shutil.copytree(_good(), home)
+    path = home / FILE_NAME
+    flips = []
+    with closing(sqlite3.connect(path, isolation_level=None)) as connection:
+        tables = [row[0] for row in connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")]
+        for at in range(0, len(data) - _EDIT + 1, _EDIT):
+            which, table, row, column, value, _ = data[at : at + _EDIT]
+            if which & 1:
+                flips.append(data[at + 1 : at + _EDIT])
+                continue
+            with suppress(sqlite3.Error, ZeroDivisionError):  # a table without rows
+                name = tables[table % len(tables)]
+                columns = [each[1] for each in connection.execute(f"PRAGMA table_info({name})")]
+                rows = [each[0] for each in connection.execute(f"SELECT rowid FROM {name}")]
+                connection.execute(
+                    f"UPDATE {name} SET {columns[column % len(columns)]} = ? WHERE rowid = ?",
+                    (_CELLS[value % len(_CELLS)], rows[row % len(rows)]),
+                )
+    content = bytearray(path.read_bytes())
+    for flip in flips:
+        content[int.from_bytes(flip[:4], "big") % len(content)] ^= flip[4]
+    path.write_bytes(content)
+    return home
+
+
+def _read(data: bytes) -> Iterator[str]:
+    """Opened as the desk opens it, and everything read that a page shows; each may refuse in a sentence."""
+    home = _spoilt(data)
+    with suppress(StoreError):
+        yield from backup.problems(home / FILE_NAME)
+    with Store.open(home) as store:
+        yield from store.repaired
+        yield from store.damaged()
+        readers = (
+            *(lambda kind=kind: store.offsets(kind) for kind in Kind),
+            *(lambda kind=kind: store.history(kind, 50) for kind in Kind),
+            store.programs, lambda: store.versions("part.nc"), lambda: store.load_program("part.nc"),
+            store.events, store.runs, store.jobs, lambda: store.parts("part.nc"),
+            lambda: store.setting("target:part.nc"), lambda: store.setting("under_way"),
+            lambda: store.stock_of("part.nc"), lambda: parts_data(store, "part.nc"),
+            lambda: export(store, home / "out"), lambda: store.set_tool(5, "x", x=1.0).result(),
+            lambda: store.count_part("part.nc").result(), lambda: store.undo_last().result(),
+            lambda: store.rename_program("part.nc", "other.nc").result(),
+            lambda: backup.backup(home, home / "copy.db"),
+        )  # fmt: skip
+        for reader in readers:
+            try:
+                reader()
+            except StoreError as error:
+                yield str(error)
+
+
+def _edits(data: bytes, chance: random.Random) -> bytes:
+    """Another change behind those that are there, mostly of a cell."""
+    edit = bytes([chance.randrange(8) == 0, *(chance.randrange(256) for _ in range(_EDIT - 1))])
+    return data[: chance.randrange(8) * _EDIT] + edit
+
+
+def _seeds() -> Iterable[bytes]:
+    return (bytes(_EDIT), bytes([1, 0, 0, 0, 24, 255]), bytes([0, 1, 0, 2, 6, 0]), b"")
+
+
+STORE = Target("store file", _seeds, _read, (StoreError,), _edits)

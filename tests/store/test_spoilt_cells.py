@@ -1,0 +1,72 @@
+"""Cells that no version of ours wrote, and a schema that SQLite cannot even quote: one sentence each."""
+
+from __future__ import annotations
+
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from core.store import backup
+from core.store.store import Store, StoreError
+from core.store.store_file import FILE_NAME
+from core.store.store_rows import Kind, ToolRow
+
+
+@pytest.fixture
+def kept(folder: Path) -> Path:
+    """T1 with two changes, and a program."""
+    with Store.open(folder) as store:
+        store.set_tool(1, "touched", x=1.0).result()
+        store.set_tool(1, "worn", x=2.0).result()
+        store.save_program("pin.nc", b"G90\nM30\n", "written").result()
+        store.count_part("pin.nc").result()
+    return folder
+
+
+def spoil(folder: Path, statement: str, *values: object) -> None:
+    with closing(sqlite3.connect(folder / FILE_NAME)) as connection:
+        connection.execute(statement, values)
+        connection.commit()
+
+
+@pytest.mark.parametrize("value", ["a\nb", b"\xff", "nought"])
+def test_an_entry_of_the_history_that_is_no_figure_is_told_and_undone_by_nobody(
+    kept: Path, value: object
+) -> None:
+    spoil(kept, "UPDATE offset_changes SET old_x = ? WHERE id = 2", value)
+    with Store.open(kept) as store:
+        with pytest.raises(StoreError, match="entry 2 of the history of offsets is damaged"):
+            store.history(Kind.TOOL)
+        with pytest.raises(StoreError, match="entry 2 of the history"):
+            store.undo_last().result()
+        assert store.tools() == {1: ToolRow(x=2.0)}
+        store.set_tool(1, "worn", x=3.0).result()  # the table itself is whole
+        assert store.tools() == {1: ToolRow(x=3.0)}
+
+
+def test_a_program_that_is_no_bytes_is_not_what_was_saved(kept: Path) -> None:
+    spoil(kept, "UPDATE program_versions SET text = ?", "G90\nM30\n")
+    assert backup.problems(kept / FILE_NAME) == ("'pin.nc' version 1 is not what was saved",)
+    with Store.open(kept) as store, pytest.raises(StoreError, match="version 1 is not what was saved"):
+        store.load_program("pin.nc")
+
+
+def test_a_schema_whose_names_are_no_text_any_more_is_a_damaged_file(kept: Path) -> None:
+    path = kept / FILE_NAME
+    content = path.read_bytes()
+    at = content.index(b"CREATE INDEX") if b"CREATE INDEX" in content else -1
+    assert at > 0
+    name = content.index(b"(", at) + 2
+    path.write_bytes(content[:name] + b"\xd7" + content[name + 1 :])
+    with pytest.raises(StoreError, match="damaged") as told:
+        Store.open(kept)
+    assert "\n" not in str(told.value)
+
+
+def test_a_name_with_a_line_end_stays_in_its_sentence(kept: Path) -> None:
+    spoil(kept, "UPDATE part_counts SET program = ?", "a\nb")
+    with Store.open(kept) as store:
+        [first, *_] = store.damaged()
+        assert first.startswith("the part count of a b is not as it was saved")
