@@ -193,8 +193,9 @@ class _Guard:
 # Offsets of tangent elements are joined over a rounding of the program; a path may be nearer by so much. mm.
 _NEARER = 0.0005
 
-# Pieces of the path follow each other where the end of one is this near to the start of the next. mm.
-_FOLLOWS = 2 * JOINED
+# Pieces of the path follow each other where the end of one is this near to the start of the next: short arcs
+# in rounded words are tangent to some hundredths of a degree, and the path beside them steps by that. mm.
+_FOLLOWS = 5 * JOINED
 
 # What may be left over behind the end of the path: parts that are too near by less than _NEARER. mm.
 _LOST = 0.02
@@ -254,10 +255,12 @@ def _pieces(elements: Sequence[Element], apart: float) -> list[Element]:
 
 
 def _corner(before: Element, after: Element, apart: float) -> list[Element]:
-    first, last = moved(before, apart), moved(after, apart)
-    if not first or not last or dist(first[0].end, last[0].start) < SAME_POINT:
-        return []
-    return [Arc(first[0].end, last[0].start, after.start, clockwise=True)]
+    """Also beside a fillet that is smaller than the distance, which has no path of its own."""
+    first, last = (
+        (after.start[0] + side[0] * apart, after.start[1] + side[1] * apart)
+        for side in (left_of(before.end_direction), left_of(after.start_direction))
+    )
+    return [] if dist(first, last) < SAME_POINT else [Arc(first, last, after.start, clockwise=True)]
 
 
 def moved(element: Element, apart: float) -> list[Element]:

@@ -77,6 +77,20 @@ def test_a_fillet_smaller_than_what_is_left_is_passed_by() -> None:
     assert [element.end for element in path] == [pytest.approx((5.5, 19.5)), pytest.approx((2, 19.5))]
 
 
+def test_behind_a_fillet_that_is_passed_by_the_way_goes_round_the_corner() -> None:
+    """A fillet of .4, less than the .5, up to a wall that is none: a corner outwards right behind it."""
+    contour = [
+        *polyline((4, 0), (4, 9.6)),
+        arc((4, 9.6), (3.6, 10), 0.4, clockwise=False),
+        *polyline((3.6, 10), (3.6, 20)),
+    ]
+    path = trimmed_offset(contour, 0.5)
+    assert path[-1].end == pytest.approx((3.1, 20))
+    assert all(dist(a.end, b.start) < 0.01 for a, b in pairwise(path))
+    round_corner = next(each for each in path if isinstance(each, Arc))
+    assert round_corner.centre == (3.6, 10)
+
+
 def test_a_groove_too_narrow_is_passed_by() -> None:
     groove = polyline((6, 0), (6, 10), (9, 10), (9, 10.8), (6, 10.8), (6, 20))
     path = trimmed_offset(groove, 0.5)
