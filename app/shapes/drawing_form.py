@@ -154,7 +154,7 @@ class DrawingForm(ShapeForm):
         self.troubles = {**plan.troubles, **self.troubles}
         made = plan.made
         self.lines = list(made.lines) if made is not None and not self.troubles else []
-        self.one = replace(self.one, text=tuple(self.lines))  # type: ignore[call-arg]
+        self.one = FromDrawing(self.shape, self.one.values, text=tuple(self.lines))
 
     def tried(self, comparison: Comparison | None, errors: tuple[str, ...]) -> None:
         """The program was proved, and its part held against the drawing."""

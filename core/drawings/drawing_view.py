@@ -14,6 +14,7 @@ from core.geometry.lines_and_arcs import Arc, Element, Line, Point
 
 _SAME = 0.01  # units: centre lines nearer than this are one
 _SQUARE = 1e-3  # rad
+_MEETS = 1e-3  # of the drawing's width: ends nearer than this meet
 
 
 class Front(StrEnum):
@@ -111,12 +112,18 @@ def _same(a: Axis, b: Axis) -> bool:
 
 
 def _lowest(there: Sequence[Drawn], low: float, wide: float) -> float | None:
-    """Y of the lowest line, where one runs along most of the drawing."""
+    """Y of the lowest line, where one runs along most of the drawing and closes it: others meet both ends."""
     for each in there:
         e = each.element
         if isinstance(e, Line) and max(e.start[0], e.end[0]) <= low and abs(e.end[1] - e.start[1]) > wide / 2:
-            return (e.start[0] + e.end[0]) / 2.0
+            others = [o.element for o in there if o.element is not e]
+            if all(_met(end, others, wide) for end in (e.start, e.end)):
+                return (e.start[0] + e.end[0]) / 2.0
     return None
+
+
+def _met(end: Point, others: Iterable[Element], wide: float) -> bool:
+    return any(math.dist(end, p) <= _MEETS * wide for each in others for p in (each.start, each.end))
 
 
 def line_axis(drawing: Drawing, number: int) -> Axis:

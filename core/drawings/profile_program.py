@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from core.drawings.drawing_view import Profile, Side
+from core.drawings.nose_reach import reached_by_nose
 from core.drawings.turning_contour import Groove, TurningContour, joined, reach_of, turning_contour
 from core.geometry.intersections import intersections
 from core.geometry.lines_and_arcs import Arc, Element, Line
@@ -79,15 +80,20 @@ def profile_program(
         contour = replace(
             contour, elements=tuple(_down_to(contour.elements, _number(typed, "HOLE") * mm / 2))
         )
+    if _number(typed, "COMP"):
+        reached = reached_by_nose(contour.elements, nose_of(tool), inside=not outside)
+        contour = replace(contour, elements=reached)
     past = _number(typed, "PAST") * mm if "PAST" in typed else past_end(tool)
-    contour = replace(contour, elements=tuple(joined(_past(contour.elements, past))))
+    beyond = tuple(joined(_past(contour.elements, past, nose_of(tool))))
+    contour = replace(contour, elements=beyond)
     if outside and _number(typed, "STOCK"):
         writer.add(FACE, _face(profile, typed, writer.now))
     rows = tuple(rows_of(contour.elements, mm))
     writer.add(TURN, _turn(profile, contour, typed, writer.now), rows)
     left = [Left(*each) for each in contour.left]
     for groove in contour.grooves:
-        left += writer.groove(_groove(groove, typed, writer.now, outside=outside), groove)
+        over = _way_in(contour.elements, groove, 1.0 if outside else -1.0)
+        left += writer.groove(_groove(groove, typed, writer.now, over, outside=outside), groove)
     shapes, made = tuple(writer.shapes), tuple(writer.lines[len(lines) :])
     nose = nose_offset(tool, int(_number(typed, "COMP")))
     return ProfileProgram(
@@ -192,10 +198,15 @@ def past_end(tool: ToolShape | None) -> float:
     return math.ceil(10.0 * (nose_of(tool) + _ROOM)) / 10.0
 
 
-def _past(elements: Sequence[Element], far: float) -> Iterator[Element]:
-    """With a line along Z behind the end; a wall ends where it stands."""
+def _past(elements: Sequence[Element], far: float, nose: float) -> Iterator[Element]:
+    """With a line along Z behind the end; a wall ends where it stands.
+
+    Behind a fall of angle a the nose R leaves it R tan (a / 2) later, on which compensation needs a way.
+    """
     yield from elements
-    r, z = elements[-1].end
+    (r, z), (dr, dz) = elements[-1].end, elements[-1].end_direction
+    fall = abs(math.atan2(dr, -dz))
+    far += math.ceil(10.0 * nose * math.tan(min(fall, 1.5) / 2.0)) / 10.0 if far > _SAME else 0.0
     if far > _SAME and not _upright(elements[-1]):
         yield Line((r, z), (r, z - far))
 
@@ -236,8 +247,17 @@ def _row(point: tuple[float, float], mm: float, arc: float) -> Row:
 # --- grooves
 
 
-def _groove(groove: Groove, typed: Values, setting: Setting, *, outside: bool) -> dict[str, Value] | str:
-    """The fields of a groove shape; of walls that are not square the widest square groove within."""
+def _way_in(elements: Iterable[Element], groove: Groove, side: float) -> float:
+    """The radius that a blade has to pass on its way from the face, mm; 0 where nothing is in the way."""
+    before = [p[0] for each in elements for p in (each.start, each.end) if p[1] > groove.front[1] - _SAME]
+    widest = side * max((side * r for r in before), default=0.0)
+    return widest if before and side * (widest - groove.front[0]) > _SAME else 0.0
+
+
+def _groove(
+    groove: Groove, typed: Values, setting: Setting, over: float, *, outside: bool
+) -> dict[str, Value] | str:
+    """The fields of a groove shape; of walls that are curved the widest square groove within."""
     mm, blade = setting.mm, _blade(typed, setting)
     if blade is None:
         number = _number(typed, "BLADE")
@@ -245,7 +265,8 @@ def _groove(groove: Groove, typed: Values, setting: Setting, *, outside: bool) -
             f"a groove, and T{number:.0f} has no width" if number else "a groove, and no groove tool is said"
         )
     wide = blade * mm
-    box = _square(groove, wide, 1.0 if outside else -1.0)
+    leaning = _leaning(groove, wide)
+    box = leaning[:4] if leaning else _square(groove, wide, 1.0 if outside else -1.0)
     if box is None:
         return f"a groove narrower than the blade of {wide:.3g} mm"
     front, back, bottom, edge = box
@@ -258,8 +279,36 @@ def _groove(groove: Groove, typed: Values, setting: Setting, *, outside: bool) -
         "WIDE": blade,
         "LONG": round((front - back) / mm, 5),
         "EDGE": round(edge / mm, 5),
+        "OVER": round(2.0 * over / mm, 5),
     }
+    if leaning:
+        found |= {"FANGLE": round(leaning.at_face, 3), "CANGLE": round(leaning.at_chuck, 3)}
     return found
+
+
+class _Leaning(NamedTuple):
+    """A groove of two straight walls and a bottom: Z of both edges and r of the bottom, mm; degrees."""
+
+    front: float
+    back: float
+    bottom: float
+    edge: float
+    at_face: float
+    at_chuck: float
+
+
+def _leaning(groove: Groove, wide: float) -> _Leaning | None:
+    """None where the walls are square or no lines, or the bottom is narrower than the blade."""
+    if len(groove.elements) != 3 or not all(isinstance(each, Line) for each in groove.elements):
+        return None
+    down, bottom, up = groove.elements
+    if not _flat(bottom) or bottom.length < wide - _SAME or (_upright(down) and _upright(up)):
+        return None
+    angles = (
+        math.degrees(math.atan2(abs(each.end[1] - each.start[1]), abs(each.end[0] - each.start[0])))
+        for each in (down, up)
+    )
+    return _Leaning(groove.front[1], groove.back[1], bottom.start[0], 0.0, *angles)
 
 
 def _blade(typed: Values, setting: Setting) -> float | None:

@@ -51,14 +51,14 @@ def _shapes(path: Path) -> Any:
 
 
 def _drawn(root: Any, near: float, left_out: Counter[str]) -> Iterator[Drawn]:
-    from svgelements import Group, Shape
+    from svgelements import Group, Shape, SVGElement
     from svgelements import Path as Outline
 
     for each in root.elements():
         if not isinstance(each, Shape):
-            if not isinstance(each, Group):
+            if not isinstance(each, Group) and type(each) is not SVGElement:
                 left_out[type(each).__name__.lower()] += 1
-            continue
+            continue  # a bare element draws nothing: it is what an editor notes of its window
         values = each.values
         if values.get("visibility") == "hidden" or values.get("display") == "none":
             continue

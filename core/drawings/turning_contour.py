@@ -248,8 +248,13 @@ def _bridged(
                 elements[end] = cut[-1]
                 at = end
         else:
+            already = len(kept)
+            at = _gently(elements, at, most, kept)
+            if len(kept) > already:
+                continue  # what comes now may be a groove of its own
+            edge = elements[at].start[1]
             at = _sloped(elements, at, most, kept)
-            left.append((kept[-1].end[1], each.start[1], "falls too steeply for the tool"))
+            left.append((kept[-1].end[1], edge, "falls too steeply for the tool"))
     return kept, grooves
 
 
@@ -268,6 +273,21 @@ def _recess(elements: Sequence[Element], at: int) -> tuple[int, Point | None]:
             level = Line((edge[0], each.start[1] + 1.0), (edge[0], each.end[1] - 1.0))
             return number, _crossing(each, level) or each.end
     return len(elements), None
+
+
+def _gently(elements: list[Element], at: int, most: float, kept: list[Element]) -> int:
+    """From a fall on, what the tool still follows: up to where the contour falls more steeply than it can."""
+    while _fall(elements[at]) <= most:
+        kept.append(elements[at])
+        at += 1
+    each = elements[at]
+    if isinstance(each, Arc) and each.start[1] > each.centre[1] - _SAME and each.start[0] > each.centre[0]:
+        r, z = each.centre
+        turn = (r + each.radius * math.cos(most), z - each.radius * math.sin(most))
+        if _SAME < each.along(turn) < each.length:
+            before, elements[at] = split(each, [turn])
+            kept.append(before)
+    return at
 
 
 def _sloped(elements: list[Element], at: int, most: float, kept: list[Element]) -> int:
