@@ -9,6 +9,8 @@ from core.shapes.shape_setting import Setting
 class Code:
     """Lines in the modes of a program. X is given as a radius; what is in force is not written again."""
 
+    loops = True  # a group of lines is repeated by LS … LF
+
     def __init__(self, setting: Setting) -> None:
         self.setting = setting
         self.lines: list[str] = []
@@ -77,6 +79,11 @@ class Code:
     def arc(self, x: float, z: float, radius: float, *, convex: bool) -> None:
         """An arc from the last point, convex as the shoulder of a shaft or concave as a fillet."""
         self.write(f"{'G02' if convex else 'G03'}{self.point(x, z)}{self.z(radius, 'R')}")
+
+    def dwell(self, seconds: float) -> None:
+        """A wait; of no seconds none."""
+        if seconds:
+            self.write(f"G04F{plain(seconds)}")
 
     def away(self) -> None:
         """Along Z to where tools change."""

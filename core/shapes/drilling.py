@@ -12,7 +12,7 @@ from core.shapes.shape import Filled, Shape
 from core.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number
 from core.shapes.shape_setting import Setting
 from core.shapes.sketch import Dim, Sketch, cut, part, sketch, tool
-from core.shapes.usual_fields import around, feed_field, per_rev, rpm_field, too_fast, tool_field
+from core.shapes.usual_fields import around, feed_field, per_rev, rpm_field, too_deep, too_fast, tool_field
 
 _DEEP = 5.0  # diameters without pecks
 
@@ -53,9 +53,7 @@ def _drill_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield Refusal("PECK", f"{(deep - start) / across:.1f} diameters in one go clog a drill: type a peck.")
     shape = setting.tool(filled.n("T"))
     name = f"T{filled.n('T'):.0f}"
-    if shape is not None and shape.length and deep > shape.length / setting.mm + 1e-9:
-        words = f"The hole of {deep:g} is deeper than the flutes of {name}, {shape.length / setting.mm:.4g}"
-        yield Refusal("DEEP", f"{words}: take a longer drill.")
+    yield from too_deep(filled, setting)
     if shape is not None and shape.diameter and abs(shape.diameter / setting.mm - across) > 1e-4:
         yield Refusal(
             "DIA", f"{name} is a drill of {shape.diameter / setting.mm:.4g} by its sheet: type that."

@@ -15,7 +15,7 @@ from core.shapes.shape import Filled, Shape
 from core.shapes.shape_fields import Field, Kind, Proposal, Refusal, Value, Values, number
 from core.shapes.shape_setting import Setting
 from core.shapes.sketch import Dim, Outline, Sketch, cut, part, sketch, tool
-from core.shapes.usual_fields import bar, tool_field
+from core.shapes.usual_fields import bar, too_deep, tool_field
 
 _LIVE_RPM = 3000.0  # of a small live tool; nothing commands it
 _TEETH = 2.0
@@ -90,10 +90,7 @@ def _cross_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if filled.n("COUNT") > 1 and abs(filled.n("STEP")) * filled.n("COUNT") > 360.0 + 1e-6:
         words = f"{filled.n('COUNT'):.0f} holes at {filled.n('STEP'):g}° go round more than once: type less."
         yield Refusal("STEP", words)
-    shape = setting.tool(filled.n("T"))
-    if shape is not None and shape.length and deep > shape.length / setting.mm:
-        words = f"{deep:g} is deeper than the flutes of T{filled.n('T'):.0f}, {shape.length / setting.mm:.4g}"
-        yield Refusal("DEEP", f"{words}: take a longer drill.")
+    yield from too_deep(filled, setting)
 
 
 def _cross_sketch(_filled: Filled) -> Sketch:
@@ -290,10 +287,7 @@ def _slot_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield Refusal("LONG", "The slot goes nowhere: type its length, or the angle that it goes round.")
     if filled.n("PASS") > filled.n("DEEP"):
         yield Refusal("PASS", "A pass is deeper than the slot: type less.")
-    shape = setting.tool(filled.n("T"))
-    if shape is not None and shape.length and filled.n("DEEP") > shape.length / setting.mm:
-        words = f"The slot is deeper than the flutes of T{filled.n('T'):.0f}, {shape.length / setting.mm:.4g}"
-        yield Refusal("DEEP", f"{words}: take a longer mill.")
+    yield from too_deep(filled, setting)
 
 
 def _slot_sketch(_filled: Filled) -> Sketch:

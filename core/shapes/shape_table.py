@@ -5,8 +5,9 @@ from __future__ import annotations
 from core.shapes.bar_work import LOOP
 from core.shapes.calculators import SPEED, THREADS, TRIANGLE
 from core.shapes.drilling import DRILL
-from core.shapes.grooving import GROOVE, PART_OFF
+from core.shapes.grooving import GROOVE
 from core.shapes.live_tools import CROSS, FLATS, SLOT
+from core.shapes.parting import PART_OFF
 from core.shapes.program_head import HEAD
 from core.shapes.shape import Shape
 from core.shapes.tapping import TAP

@@ -16,7 +16,7 @@ from core.shapes.sketch import Dim, Sketch, cut, part, sketch, tool
 from core.shapes.thread_limits import in_unit
 from core.shapes.thread_series import TAPERED, Series, size_of
 from core.shapes.threading import INSIDE, LEFT, RIGHT, class_choices, limits_of, series_of
-from core.shapes.usual_fields import MOST_RPM, too_fast, tool_field
+from core.shapes.usual_fields import MOST_RPM, too_deep, too_fast, tool_field
 
 _SLOW = 0.4  # of the speed of a drill: the flanks of a tap rub
 _MOST_RPM = 600.0
@@ -56,8 +56,7 @@ def _tap(filled: Filled, setting: Setting, code: Code) -> None:
     code.begin(filled.n("T"), filled.n("RPM"), 0.0, start, into)
     code.cut(z=-(filled.n("DEEP") - filled.n("SHORT")), feed=pitch)
     code.write(back)
-    if filled.n("DWELL"):
-        code.write(f"G04F{plain(filled.n('DWELL'))}")
+    code.dwell(filled.n("DWELL"))
     code.cut(z=start)
     code.away()
 
@@ -85,9 +84,7 @@ def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if shape is not None and shape.pitch and abs(shape.pitch / setting.mm - pitch) > 0.01 * pitch:
         words = f"{name} has a pitch of {shape.pitch / setting.mm:.5g} by its sheet"
         yield Refusal("T", f"{words}, this is {pitch:.5g}: take another tap.")
-    if shape is not None and shape.length and filled.n("DEEP") * setting.mm > shape.length + 1e-6:
-        reach = shape.length / setting.mm
-        yield Refusal("DEEP", f"{name} cuts {reach:.4g} deep by its sheet: type less, or take a longer tap.")
+    yield from too_deep(filled, setting)
     yield from too_fast(filled, setting)
 
 

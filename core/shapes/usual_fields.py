@@ -90,3 +90,11 @@ def per_rev(filled: Filled, setting: Setting, *words: str) -> Iterator[Refusal]:
         if filled.n(word) > most:
             text = f"A feed of {filled.n(word):g} a turn is more than {most:g}: F.003 is what was meant?"
             yield Refusal(word, text)
+
+
+def too_deep(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    """DEEP beyond what the flutes of the tool reach by its sheet."""
+    shape, deep = setting.tool(filled.n("T")), filled.n("DEEP")
+    if shape is not None and shape.length and deep > shape.length / setting.mm + 1e-9:
+        words = f"{deep:g} is deeper than the flutes of T{filled.n('T'):.0f}, {shape.length / setting.mm:.4g}"
+        yield Refusal("DEEP", f"{words}: take a longer one.")

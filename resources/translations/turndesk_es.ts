@@ -13114,11 +13114,6 @@
       <translation>un tope hasta reiniciar</translation>
     </message>
     <message>
-      <location filename="app/transfer/line_transfer.py" />
-      <source>RECEIVED</source>
-      <translation>RECIBIDO</translation>
-    </message>
-    <message>
       <location filename="app/transfer/serial_settings.py" />
       <source>BITS, PARITY, STOP BITS</source>
       <translation>BITS, PARIDAD, BITS DE PARADA</translation>
@@ -27344,6 +27339,26 @@
       <translation>saca la barra hasta un tope y hace tantas piezas: lo que sigue es la pieza</translation>
     </message>
     <message>
+      <location filename="core/shapes/blade.py" />
+      <source>%1 deep: %2 reaches %3. Take a longer blade.</source>
+      <translation>%1 de hondo: %2 alcanza %3. Tome una cuchilla más larga.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/blade.py" />
+      <source>%1 is %2 wide by its sheet: type that.</source>
+      <translation>%1 tiene %2 de ancho según su ficha: escriba eso.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/blade.py" />
+      <source>CORNER TOUCHED OFF</source>
+      <translation>ESQUINA TOMADA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/blade.py" />
+      <source>WIDTH OF THE BLADE</source>
+      <translation>ANCHO DE LA CUCHILLA</translation>
+    </message>
+    <message>
       <location filename="core/shapes/calculators.py" />
       <source>%1 passes begin with %2: delete one of both.</source>
       <translation>%1 pasadas empiezan con %2: borre una de ambas.</translation>
@@ -27545,11 +27560,6 @@
     </message>
     <message>
       <location filename="core/shapes/drilling.py" />
-      <source>%1: take a longer drill.</source>
-      <translation>%1: tome una broca más larga.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/drilling.py" />
       <source>A peck of %1 is more than the hole: type 0 for none.</source>
       <translation>Un picoteo de %1 es más que el agujero: escriba 0 para ninguno.</translation>
     </message>
@@ -27575,28 +27585,23 @@
     </message>
     <message>
       <location filename="core/shapes/drilling.py" />
-      <source>The hole of %1 is deeper than the flutes of %2, %3</source>
-      <translation>El agujero de %1 es más hondo que las estrías de %2, %3</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/drilling.py" />
       <source>on the axis, in one go or in pecks</source>
       <translation>en el eje, de una vez o con picoteo</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>%1 deep: %2 reaches %3. Take a longer blade.</source>
-      <translation>%1 de hondo: %2 alcanza %3. Tome una cuchilla más larga.</translation>
+      <source>%1 is less than %2: nothing is in the way, type 0.</source>
+      <translation>%1 es menos que %2: nada estorba el paso, escriba 0.</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>%1 is %2 wide by its sheet: type that.</source>
-      <translation>%1 tiene %2 de ancho según su ficha: escriba eso.</translation>
+      <source>%1 is wider than the bore of %2: nothing is in the way, type 0.</source>
+      <translation>%1 es más que el interior de %2: nada estorba el paso, escriba 0.</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>A chamfer of %1 takes all of the wall: type less.</source>
-      <translation>Un chaflán de %1 se lleva toda la pared: escriba menos.</translation>
+      <source>%1: take a narrower one, or look at the angles.</source>
+      <translation>%1: tome una más estrecha, o revise los ángulos.</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
@@ -27620,23 +27625,18 @@
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>CHAMFER OF THE BAR</source>
-      <translation>CHAFLÁN DE LA BARRA</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/grooving.py" />
-      <source>CHAMFER OF THE PART</source>
-      <translation>CHAFLÁN DE LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/grooving.py" />
-      <source>CORNER TOUCHED OFF</source>
-      <translation>ESQUINA TOMADA</translation>
+      <source>DIAMETER TO PASS ON THE WAY</source>
+      <translation>DIÁMETRO QUE HAY QUE PASAR</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
       <source>DWELL AT THE BOTTOM</source>
       <translation>PAUSA EN EL FONDO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>Edges of walls that lean are not chamfered here: type 0.</source>
+      <translation>Las aristas de paredes inclinadas no se achaflanan aquí: escriba 0.</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
@@ -27650,23 +27650,8 @@
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>It parts off from %1 inwards: %2 is not less.</source>
-      <translation>Tronza desde %1 hacia dentro: %2 no es menos.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/grooving.py" />
-      <source>LENGTH OF THE PART</source>
-      <translation>LONGITUD DE LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/grooving.py" />
-      <source>PART OFF</source>
-      <translation>TRONZAR</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/grooving.py" />
-      <source>TO DIAMETER</source>
-      <translation>HASTA EL DIÁMETRO</translation>
+      <source>No blade gets behind a wall that leans over the groove: type 0 or more.</source>
+      <translation>Ninguna cuchilla llega detrás de una pared que cubre la ranura: escriba 0 o más.</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
@@ -27680,18 +27665,18 @@
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>The chamfer is longer than the part: type less.</source>
-      <translation>El chaflán es más largo que la pieza: escriba menos.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/grooving.py" />
       <source>The groove of %1 is narrower than the blade of %2: take a narrower one.</source>
       <translation>La ranura de %1 es más estrecha que la cuchilla de %2: tome una más estrecha.</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>WIDTH OF THE BLADE</source>
-      <translation>ANCHO DE LA CUCHILLA</translation>
+      <source>WALL AT THE CHUCK LEANS BY</source>
+      <translation>INCLINACIÓN DE LA PARED DEL PLATO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>WALL AT THE FACE LEANS BY</source>
+      <translation>INCLINACIÓN DE LA PARED DE LA CARA</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
@@ -27700,13 +27685,13 @@
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>one or several, outside, from behind or in a bore, edges broken</source>
-      <translation>una o varias, por fuera, desde detrás o en un taladro, con cantos matados</translation>
+      <source>With these walls the bottom is %1 wide, the blade %2</source>
+      <translation>Con estas paredes el fondo mide %1 de ancho, la cuchilla %2</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>to the centre or to a bore, chamfers on both sides of the cut</source>
-      <translation>hasta el centro o hasta un taladro, con chaflanes a ambos lados del corte</translation>
+      <source>one or several, outside, from behind or in a bore, edges broken, walls square or leaning</source>
+      <translation>una o varias, por fuera, por detrás o en un interior, con chaflanes, de paredes rectas o inclinadas</translation>
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
@@ -27730,18 +27715,8 @@
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
-      <source>%1 is deeper than the flutes of T%2, %3</source>
-      <translation>%1 es más hondo que las estrías de T%2, %3</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/live_tools.py" />
       <source>%1 is more than the diameter of %2: the drill comes out behind it.</source>
       <translation>%1 es más que el diámetro de %2: la broca sale por detrás.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/live_tools.py" />
-      <source>%1: take a longer mill.</source>
-      <translation>%1: tome una fresa más larga.</translation>
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
@@ -27830,11 +27805,6 @@
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
-      <source>The slot is deeper than the flutes of T%1, %2</source>
-      <translation>La ranura es más honda que las estrías de T%1, %2</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/live_tools.py" />
       <source>a keyway along, around or on a helix, in the plane ZC</source>
       <translation>un chavetero a lo largo, alrededor o en hélice, en el plano ZC</translation>
     </message>
@@ -27847,6 +27817,51 @@
       <location filename="core/shapes/live_tools.py" />
       <source>holes from the side, all around, the spindle held</source>
       <translation>agujeros desde el lado, alrededor, con el husillo retenido</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/parting.py" />
+      <source>A chamfer of %1 takes all of the wall: type less.</source>
+      <translation>Un chaflán de %1 se lleva toda la pared: escriba menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/parting.py" />
+      <source>CHAMFER OF THE BAR</source>
+      <translation>CHAFLÁN DE LA BARRA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/parting.py" />
+      <source>CHAMFER OF THE PART</source>
+      <translation>CHAFLÁN DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/parting.py" />
+      <source>It parts off from %1 inwards: %2 is not less.</source>
+      <translation>Tronza desde %1 hacia dentro: %2 no es menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/parting.py" />
+      <source>LENGTH OF THE PART</source>
+      <translation>LONGITUD DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/parting.py" />
+      <source>PART OFF</source>
+      <translation>TRONZAR</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/parting.py" />
+      <source>TO DIAMETER</source>
+      <translation>HASTA EL DIÁMETRO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/parting.py" />
+      <source>The chamfer is longer than the part: type less.</source>
+      <translation>El chaflán es más largo que la pieza: escriba menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/parting.py" />
+      <source>to the centre or to a bore, chamfers on both sides of the cut</source>
+      <translation>hasta el centro o hasta un taladro, con chaflanes a ambos lados del corte</translation>
     </message>
     <message>
       <location filename="core/shapes/program_head.py" />
@@ -27897,11 +27912,6 @@
       <location filename="core/shapes/shape_fields.py" />
       <source>%1 is not said: type it.</source>
       <translation>%1 no está dicho: escríbalo.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/tapping.py" />
-      <source>%1 cuts %2 deep by its sheet: type less, or take a longer tap.</source>
-      <translation>%1 corta %2 de fondo según su ficha: escriba menos o tome un macho más largo.</translation>
     </message>
     <message>
       <location filename="core/shapes/tapping.py" />
@@ -28222,6 +28232,16 @@
       <location filename="core/shapes/turning.py" />
       <source>square across the end, in one pass or several</source>
       <translation>a escuadra sobre el extremo, en una pasada o en varias</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/usual_fields.py" />
+      <source>%1 is deeper than the flutes of T%2, %3</source>
+      <translation>%1 es más hondo que las estrías de T%2, %3</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/usual_fields.py" />
+      <source>%1: take a longer one.</source>
+      <translation>%1: tome una más larga.</translation>
     </message>
     <message>
       <location filename="core/shapes/usual_fields.py" />

@@ -171,7 +171,7 @@ def test_the_hole_before_a_tap() -> None:
         ({"SIZE": "9/7"}, "UNC has no 9/7"),
         ({"SIZE": "1/4-20", "SHORT": 0.5}, "stops 0.5 short of 0.5"),
         ({"SIZE": "1/4-20", "T": 5.0}, "T5 has a pitch of 0.03937 by its sheet, this is 0.05"),
-        ({"SIZE": "1/4-20", "DEEP": 1.0, "T": 4.0}, "T4 cuts 0.7874 deep by its sheet"),
+        ({"SIZE": "1/4-20", "DEEP": 1.0, "T": 4.0}, "1 is deeper than the flutes of T4, 0.7874"),
     ],
 )
 def test_what_no_tap_does(typed: dict[str, Value], says: str) -> None:

@@ -33,6 +33,22 @@ STEPS: dict[str, list[Step]] = {
         ("K", {"DIAM": 0.25, "EDGE": 0.04, "SIDE": "BORE", "KIND": "RADIUS"}, ()),
     ],
     "groove": [("G", {"TOP": 0.75, "BOTTOM": 0.5, "AT": 0.3, "WIDE": 0.062, "LONG": 0.25, "EDGE": 0.01}, ())],
+    "groove with slanted walls behind a flange": [
+        (
+            "G",
+            {
+                "TOP": 0.75,
+                "BOTTOM": 0.5,
+                "AT": 0.3,
+                "WIDE": 0.062,
+                "LONG": 0.25,
+                "FANGLE": 20.0,
+                "CANGLE": 5.0,
+                "OVER": 1.0,
+            },
+            (),
+        )
+    ],
     "thread": [
         ("T", {"FROM": 0.5}, (Row(0.0, 0.0), Row(0.49, chamfer=0.05), Row(z=-0.8))),
         ("R", {"SIZE": "1/2", "LONG": 0.5}, ()),
@@ -215,6 +231,14 @@ def refused(key: str, typed: dict[str, Value], rows: tuple[Row, ...] = ()) -> di
         ("G", {"TOP": 0.5, "BOTTOM": 0.6, "AT": 0.1, "WIDE": 0.06}, "BOTTOM"),
         ("G", {"TOP": 0.5, "BOTTOM": 0.4, "AT": 0.1, "WIDE": 0.06, "SIDE": "BORE"}, "BOTTOM"),
         ("G", {"TOP": 0.5, "BOTTOM": 0.4, "AT": 0.1, "WIDE": 0.06, "COUNT": 3.0, "PITCH": 0.05}, "PITCH"),
+        ("G", {"TOP": 0.5, "BOTTOM": 0.4, "AT": 0.1, "WIDE": 0.06, "OVER": 0.45}, "OVER"),
+        ("G", {"TOP": 0.5, "BOTTOM": 0.3, "AT": 0.1, "WIDE": 0.06, "LONG": 0.12, "FANGLE": 45.0}, "LONG"),
+        ("G", {"TOP": 0.5, "BOTTOM": 0.4, "AT": 0.1, "WIDE": 0.06, "LONG": 0.2, "CANGLE": -5.0}, "CANGLE"),
+        (
+            "G",
+            {"TOP": 0.5, "BOTTOM": 0.4, "AT": 0.1, "WIDE": 0.06, "LONG": 0.2, "FANGLE": 20.0, "EDGE": 0.01},
+            "EDGE",
+        ),
         ("P", {"FROM": 0.5, "LONG": 0.5, "WIDE": 0.06, "TO": 0.5}, "TO"),
         ("P", {"FROM": 0.5, "LONG": 0.5, "WIDE": 0.06, "BACK": 0.3}, "BACK"),
         ("D", {"DIA": 0.25, "DEEP": 0.5, "START": 0.6}, "START"),
